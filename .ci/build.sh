@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+#
+# Shell functions that ./run and ./check share. They expect $root, the folder of PeriDeal.
+
+build=$root/build/release
+
+# Install what is missing. Takes 0.1 s when nothing is.
+install_packages()
+{
+    bash "$root/.ci/install_packages.sh" || exit 1
+}
+
+# The Python with numpy, matplotlib and h5py: Debian's, since the first in PATH may lack them.
+find_python()
+{
+    for python in /usr/bin/python3 python3; do
+        "$python" -c 'import importlib.util as u, sys; sys.exit(any(u.find_spec(m) is None for m in ("numpy", "matplotlib", "h5py")))' \
+            2>/dev/null && return 0
+    done
+    echo "No python3 with numpy, matplotlib and h5py was found." >&2
+    return 1
+}
+
+# What every parallel program here needs: several processes on few cores, also as root and in containers.
+parallel_environment()
+{
+    export OMP_NUM_THREADS=1
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    export OMPI_MCA_hwloc_base_binding_policy=none
+    export OMPI_MCA_btl_vader_single_copy_mechanism=none
+}
+
+# Configure the release build where that has not been done, or was done for a tree that stood elsewhere.
+configure()
+{
+    local log=$build/configure.log
+    local fresh=""
+    if [ -f "$build/CMakeCache.txt" ]; then
+        grep -q -x -F "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build/CMakeCache.txt" || fresh=--fresh
+        [ -f "$build/build.ninja" ] && [ -z "$fresh" ] && return 0
+    fi
+    mkdir -p "$build"
+    echo "Configuring ..."
+    if ! (cd "$root" && cmake $fresh --preset release) >"$log" 2>&1 </dev/null; then
+        grep -A 12 -m 3 'CMake Error' "$log" || tail -n 30 "$log"
+        echo "Configuring failed (log: $log)."
+        exit 1
+    fi
+}
+
+# Build the given targets with one line of progress; print the compiler's message if that fails.
+compile()
+{
+    local log=$build/build.log start=$SECONDS said=0 step steps percent job
+    (cd "$build" && exec env NINJA_STATUS='[%f/%t] ' ninja "$@") >"$log" 2>&1 </dev/null &
+    job=$!
+    trap 'kill $job 2>/dev/null; exit 130' INT TERM
+    while kill -0 $job 2>/dev/null; do
+        sleep 0.2
+        IFS=' /' read -r step steps < <(sed -n 's/^\[\([0-9]*\/[0-9]*\)\].*/\1/p' "$log" | tail -n 1) || continue
+        percent=$((100 * step / steps))
+        if [ -t 1 ]; then
+            printf '\rBuilding: %d %% (%d of %d) ' $percent "$step" "$steps"
+        elif [ $((percent / 20)) -gt $said ] && [ "$steps" -gt 3 ]; then
+            said=$((percent / 20))
+            echo "Building: $percent % ($((SECONDS - start)) s)"
+        fi
+    done
+    wait $job
+    local status=$?
+    trap - INT TERM
+    [ -t 1 ] && printf '\r%60s\r' ''
+    if [ $status != 0 ]; then
+        # From the first failed step to the next step, without the command line.
+        awk '/^FAILED:/ {on = 1; print; getline; next} on && /^\[[0-9]+\/[0-9]+\]/ {exit} on {print}' "$log" | head -n 60
+        grep -q '^FAILED:' "$log" || tail -n 20 "$log"
+        echo "Building failed (log: $log)."
+        exit 1
+    fi
+    grep -q 'no work to do' "$log" || echo "Built in $((SECONDS - start)) s."
+}

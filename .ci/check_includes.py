@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Check the order of the house: who includes whom, how long files are, and that each names its licence.
+
+Prints one line for each finding and ends with exit status 1 if there is any.
+"""
+
+import os
+import re
+import sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+# From the bottom up. A room may include itself and the rooms of lower storeys; rooms of one storey do not know each other.
+STOREYS = [["base"], ["scene"], ["mesh", "laws"], ["bonds"], ["operators"], ["solvers", "analysis"], ["output"],
+           ["simulation"], ["study"]]
+STOREY = {room: number for number, rooms in enumerate(STOREYS) for room in rooms}
+
+MAX_HEADER, MAX_SOURCE = 300, 500
+LICENCE = "SPDX-License-Identifier: LGPL-2.1-or-later"
+COPYRIGHT = "Copyright (C) 2026 the PeriDeal authors"
+
+# Laws are functions of numbers: no mesh, no processes, no parameters.
+LAWS_DEAL_II = {"deal.II/base/point.h", "deal.II/base/tensor.h", "deal.II/base/symmetric_tensor.h",
+                "deal.II/base/exceptions.h", "deal.II/base/numbers.h"}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def files(folder, endings):
+    for path, folders, names in os.walk(os.path.join(ROOT, folder)):
+        folders[:] = sorted(f for f in folders if f not in ("build", "__pycache__"))
+        for name in sorted(names):
+            if name.endswith(endings):
+                yield os.path.relpath(os.path.join(path, name), ROOT)
+
+
+def room_of(path):
+    parts = path.split("/")
+    if path.startswith("include/perideal/"):
+        return parts[2]
+    if path.startswith("source/"):
+        return parts[1]
+    return None
+
+
+def check_includes(path, lines):
+    room = room_of(path)
+    for number, line in enumerate(lines, 1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        bracket, name = match.groups()
+        where = f"{path}:{number}"
+        if bracket == '"' and path.startswith("include/"):
+            yield f"{where}: include \"{name}\" as <perideal/room/file.h>"
+        if name.startswith("perideal/"):
+            if not os.path.isfile(os.path.join(ROOT, "include", name)):
+                yield f"{where}: there is no include/{name}"
+                continue
+            other = name.split("/")[1]
+            if room and other != room and STOREY[other] >= STOREY[room]:
+                yield f"{where}: {room} must not include {other} (<{name}>): it stands above or beside it"
+        if room == "laws" and name.startswith("deal.II/") and name not in LAWS_DEAL_II:
+            yield f"{where}: laws are functions of numbers and include no <{name}>"
+
+
+def check_source(path, lines):
+    header = path.endswith(".h")
+    head = "\n".join(lines[:4])
+    if LICENCE not in head or COPYRIGHT not in head:
+        yield f"{path}: the licence header is missing:\n  {LICENCE}\n  {COPYRIGHT}"
+    limit = MAX_HEADER if header else MAX_SOURCE
+    if len(lines) > limit and path.endswith((".h", ".cc")):
+        yield f"{path}: {len(lines)} lines; headers have at most {MAX_HEADER}, other sources {MAX_SOURCE}"
+    if not header:
+        return
+    if "#pragma once" not in lines and path != "cmake/precompiled.h":
+        yield f"{path}: #pragma once is missing"
+    for number, line in enumerate(lines, 1):
+        if re.match(r"\s*using\s+namespace\b", line):
+            yield f"{path}:{number}: no 'using namespace' in a header"
+
+
+def check_room(path):
+    room = room_of(path)
+    if room is not None and room not in STOREY:
+        yield f"{path}: '{room}' is not a room; there are {', '.join(STOREY)}"
+
+
+def check_lists():
+    """Every source is in the list that builds it."""
+    for list_file, folder in (("source/CMakeLists.txt", "source"), ("tests/unit/CMakeLists.txt", "tests/unit")):
+        path = os.path.join(ROOT, list_file)
+        if not os.path.isfile(path):
+            continue
+        with open(path) as file:
+            words = set(re.findall(r"[\w./]+\.cc", file.read()))
+        found = {os.path.relpath(name, folder) for name in files(folder, (".cc",))}
+        for name in sorted(found - words):
+            yield f"{list_file}: {name} is not in the list"
+        for name in sorted(words - found):
+            yield f"{list_file}: {name} does not exist"
+
+
+def main():
+    findings = []
+    n_files = 0
+    for folder in ("include", "source", "applications", "tests", "cmake"):
+        for path in files(folder, (".h", ".cc", ".py", ".cmake", "CMakeLists.txt")):
+            n_files += 1
+            with open(os.path.join(ROOT, path), encoding="utf-8") as file:
+                lines = file.read().splitlines()
+            findings += check_source(path, lines)
+            if path.endswith((".h", ".cc")):
+                room_findings = list(check_room(path))
+                findings += room_findings or check_includes(path, lines)
+    findings += check_lists()
+    for finding in findings:
+        print(finding)
+    if findings:
+        print(f"{len(findings)} findings in {n_files} files (.ci/check_includes.py).")
+        return 1
+    print(f"Include directions, lengths and licence headers: {n_files} files in order.")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Pictures of 2D fields: models side by side, their difference, the heat flux."""
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.ticker import MaxNLocator
+
+import style
+from raster import PixelMap, View, dual_mesh, is_constant_per_cell
+from read_run import DIFFERENCE, Mesh
+
+FEM, PD = "finite elements", "peridynamics"
+
+
+class Maps:
+    """The pixel maps of a run, one per mesh and view, made when first needed."""
+
+    def __init__(self, run, n_pixels=600):
+        self.run, self.n_pixels = run, n_pixels
+        self.on_faces = run.cracks_on_faces()
+        self._maps = {}
+
+    def view(self, axis=None, position=None):
+        """The whole body, or a slice through it."""
+        lower, upper = self.run.domain
+        return View(lower, upper, self.n_pixels, axis, position)
+
+    def picture(self, index, model, values, segments, key=None, view=None):
+        """A field of a model at the pixels; segments: the cracks in the view's plane."""
+        mesh = self.run.mesh(index, model)
+        tag = (id(mesh), key, np.concatenate([s.ravel() for s in segments]).tobytes()
+               if len(segments) else b"")
+        if tag not in self._maps:
+            self._maps[tag] = PixelMap(mesh, view or self.view(), segments, self.on_faces)
+        return self._maps[tag].evaluate(values)
+
+    def isotherm_picture(self, index, model, values, segments):
+        """The picture isotherms are drawn from, or None where it is the field's own picture."""
+        mesh = self.run.mesh(index, model)
+        if not is_constant_per_cell(mesh, values):
+            return None
+        tag = (id(mesh), "dual", len(segments))
+        if tag not in self._maps:
+            dual = dual_mesh(mesh)
+            self._maps[tag] = dual and (
+                PixelMap(Mesh(dual[0], dual[1]), self.view(), segments, False), dual[2])
+        if not self._maps[tag]:
+            return None
+        pixel_map, first = self._maps[tag]
+        return pixel_map.evaluate(values[first])
+
+
+def segments_of(cracks):
+    """The straight pieces of 2D cracks."""
+    return [np.array([c[i], c[i + 1]]) for c in cracks for i in range(len(c) - 1)]
+
+
+def draw_cracks(axes, segments, width=1.7):
+    """Cracks as black lines with a white outline."""
+    for a, b in segments:
+        axes.plot([a[0], b[0]], [a[1], b[1]], color="white", linewidth=width + 1.6,
+                  solid_capstyle="round", zorder=6)
+        axes.plot([a[0], b[0]], [a[1], b[1]], color="black", linewidth=width,
+                  solid_capstyle="round", zorder=7)
+
+
+def draw_isotherms(axes, view, picture, scale, segments):
+    """Isotherms of a picture; not across cracks, where they would only bunch."""
+    values = np.where(view.near_segments(segments, 1.2), np.nan, picture) if len(segments) \
+        else picture
+    finite = values[np.isfinite(values)]
+    if not len(finite) or not len(scale.lines):
+        return
+    inside = (scale.lines > finite.min()) & (scale.lines < finite.max())
+    if inside.any():
+        colors = [c for c, keep in zip(scale.line_colors(), inside) if keep]
+        x, y = view.centers()
+        axes.contour(x, y, np.ma.masked_invalid(values), levels=scale.lines[inside],
+                     colors=colors, linewidths=0.7, linestyles="solid", zorder=4)
+
+
+def draw_picture(axes, view, picture, scale, segments=(), isotherms=None):
+    """One picture in its axes."""
+    axes.imshow(picture, origin="lower", extent=view.extent, cmap=scale.colormap, norm=scale.norm,
+                interpolation="nearest", aspect="equal", zorder=2)
+    draw_isotherms(axes, view, picture if isotherms is None else isotherms, scale, segments)
+    draw_cracks(axes, segments)
+    axes.set_xlim(view.extent[:2])
+    axes.set_ylim(view.extent[2:])
+
+
+def color_bar(figure, box, scale, label, vertical=False):
+    """The bar of a scale in the box (fractions of the figure)."""
+    axes = figure.add_axes(box)
+    bar = figure.colorbar(ScalarMappable(scale.norm, scale.colormap), cax=axes,
+                          orientation="vertical" if vertical else "horizontal",
+                          extend=scale.extend, spacing="proportional")
+    lines = scale.lines
+    ticks = np.concatenate([[scale.levels[0]], lines, [scale.levels[-1]]]) if len(lines) \
+        else scale.levels[::5]
+    room = (box[3] * figure.get_figheight() / 0.25) if vertical \
+        else (box[2] * figure.get_figwidth() / 0.5)
+    stride = max(1, int(np.ceil(len(ticks) / max(room, 2))))
+    step = ticks[1] - ticks[0]
+    ticks = [t for t in ticks if round(t / step) % stride == 0] or ticks[::stride]
+    bar.set_ticks(ticks)
+    bar.ax.minorticks_off()
+    bar.outline.set_linewidth(0.5)
+    bar.outline.set_edgecolor("#9aa5b1")
+    bar.ax.tick_params(length=2.5, labelsize=8)
+    bar.set_label(label, fontsize=8.5)
+    return bar
+
+
+def sparse_ticks(axes, width, height):
+    """Few, round ticks for panels of so many inches."""
+    for axis, length in ((axes.xaxis, width), (axes.yaxis, height)):
+        axis.set_major_locator(MaxNLocator(nbins=int(np.clip(1.8 * length, 2, 9)),
+                                           steps=[1, 2, 5, 10], min_n_ticks=2))
+    axes.tick_params(length=2.5)
+
+
+class Layout:
+    """Places panels of one aspect ratio: side by side, or below each other when they are flat."""
+
+    WIDTH = 10.0
+
+    def __init__(self, n_panels, extent, n_values):
+        aspect = (extent[3] - extent[2]) / (extent[1] - extent[0])
+        self.n, self.n_values = n_panels, n_values
+        self.stacked = aspect < 0.42 and n_panels > 1
+        if self.stacked or (n_panels == 1 and aspect < 0.42):
+            self.stacked = True
+            self.panel_width = 7.9
+            self.panel_height = max(0.5, self.panel_width * aspect)
+            self.width = self.WIDTH
+            self.height = n_panels * (self.panel_height + 0.62) + 0.1
+        else:
+            room = (self.WIDTH - 0.75 - 0.4 * (n_panels - 1)) / n_panels
+            self.panel_width = min(room, 4.6, 5.6 / aspect)
+            self.panel_height = self.panel_width * aspect
+            self.gap = 0.4
+            used = n_panels * self.panel_width + (n_panels - 1) * self.gap
+            self.width = max(used + 0.9, 3.6)
+            self.left = 0.75 + max(0.0, (self.width - 0.9 - used) / 2)
+            self.height = self.panel_height + 1.5
+        self.figure = style.figure(self.width, self.height)
+
+    def panel(self, i):
+        """Axes of panel i."""
+        if self.stacked:
+            bottom = self.height - 0.32 - self.panel_height - i * (self.panel_height + 0.62)
+            box = (0.7, bottom, self.panel_width, self.panel_height)
+        else:
+            box = (self.left + i * (self.panel_width + self.gap), 1.18, self.panel_width,
+                   self.panel_height)
+        axes = self.figure.add_axes([box[0] / self.width, box[1] / self.height,
+                                     box[2] / self.width, box[3] / self.height])
+        sparse_ticks(axes, self.panel_width, self.panel_height)
+        return axes
+
+    def bar(self, first, last, scale, label):
+        """The colour bar of the panels first..last."""
+        if self.stacked:
+            top = self.height - 0.32 - first * (self.panel_height + 0.62)
+            bottom = self.height - 0.32 - self.panel_height - last * (self.panel_height + 0.62)
+            box = [8.8 / self.width, bottom / self.height, 0.14 / self.width,
+                   (top - bottom) / self.height]
+            return color_bar(self.figure, box, scale, label, vertical=True)
+        left = self.left + first * (self.panel_width + self.gap)
+        right = self.left + last * (self.panel_width + self.gap) + self.panel_width
+        length = min(right - left, 6.0)
+        left += (right - left - length) / 2
+        box = [left / self.width, 0.52 / self.height, length / self.width, 0.13 / self.height]
+        return color_bar(self.figure, box, scale, label)
+
+
+def label_axes(axes, units, view, i, layout):
+    """Axis labels where there is room for them."""
+    names = "xyz"
+    if not layout.stacked or i == layout.n - 1:
+        axes.set_xlabel(units.axis(names[view.axes[0]]), labelpad=1)
+    else:
+        axes.tick_params(labelbottom=False)
+    if layout.stacked or i == 0:
+        axes.set_ylabel(units.axis(names[view.axes[1]]), labelpad=2)
+    else:
+        axes.tick_params(labelleft=False)
+
+
+def difference_picture(maps, index, segments, pictures):
+    """PD minus FEM: the field the run wrote, else the difference of the pictures."""
+    if FEM not in pictures or PD not in pictures:
+        return None
+    values = maps.run.field(index, PD, DIFFERENCE, required=False)
+    if values is None:
+        return pictures[PD] - pictures[FEM]
+    return maps.picture(index, PD, values, segments)
+
+
+def temperature_figure(maps, index, units):
+    """All models at one written time and the difference; returns (figure, facts)."""
+    run = maps.run
+    segments = segments_of(run.cracks(index))
+    view = maps.view()
+    models = [m for m in run.models if run.field_file(index, m) is not None]
+    pictures, smooth = {}, {}
+    for model in models:
+        values = run.field(index, model, "temperature")
+        pictures[model] = maps.picture(index, model, values, segments)
+        smooth[model] = maps.isotherm_picture(index, model, values, segments)
+    difference = difference_picture(maps, index, segments, pictures)
+    layout = Layout(len(models) + (difference is not None), view.extent, len(models))
+    scale = style.value_scale(list(pictures.values()))
+    for i, model in enumerate(models):
+        axes = layout.panel(i)
+        draw_picture(axes, view, pictures[model], scale, segments, smooth[model])
+        axes.set_title(style.name(model), loc="left", pad=5)
+        label_axes(axes, units, view, i, layout)
+    layout.bar(0, len(models) - 1, scale, units.value())
+    facts = {}
+    if difference is not None:
+        facts = draw_difference(layout, len(models), view, difference, segments, units)
+    return layout.figure, facts
+
+
+def draw_difference(layout, i, view, difference, segments, units):
+    """The panel PD - FEM; returns its extreme value and place."""
+    axes = layout.panel(i)
+    scale = style.difference_scale([difference])
+    draw_picture(axes, view, difference, scale, segments)
+    axes.set_title("Peridynamics − finite elements", loc="left", pad=5,
+                   fontsize=10 if layout.panel_width > 2.6 else 8.5)
+    label_axes(axes, units, view, i, layout)
+    layout.bar(i, i, scale, units.with_unit("Difference", units.temperature))
+    if not np.isfinite(difference).any():
+        return {}
+    row, column = np.unravel_index(np.nanargmax(np.abs(difference)), difference.shape)
+    x, y = view.centers()
+    axes.plot(x[column], y[row], marker="o", markersize=7, markerfacecolor="none",
+              markeredgecolor=style.INK, markeredgewidth=1.0, zorder=8, clip_on=False)
+    return {"extreme": float(difference[row, column]), "at": (float(x[column]), float(y[row]))}
+
+
+def flux_parts(run, index, model):
+    """The heat flux of a model at the vertices, (N x dim), or None."""
+    for name in ("heat_flux", "heat_flux_one_sided"):
+        values = run.field(index, model, name, required=False)
+        if values is not None:
+            values = values.reshape(len(values), -1)
+            return values[:, :run.dimension]
+    return None
+
+
+def draw_arrows(axes, view, x_part, y_part, n=16):
+    """Arrows of the flux on a coarse lattice; lengths grow with the root of the magnitude."""
+    rows, columns = view.shape
+    stride = max(rows, columns) / n
+    row = (np.arange(stride / 2, rows, stride)).astype(int)
+    column = (np.arange(stride / 2, columns, stride)).astype(int)
+    x, y = view.centers()
+    u, v = x_part[np.ix_(row, column)], y_part[np.ix_(row, column)]
+    size = np.hypot(u, v)
+    top = np.nanquantile(size, 0.98) if np.isfinite(size).any() else 0
+    if not top > 0:
+        return
+    with np.errstate(invalid="ignore", divide="ignore"):
+        factor = np.where(size > 1e-3 * top, np.minimum(size / top, 1) ** 0.6 / size, np.nan)
+    spacing = stride * view.pixel.max()
+    keep = np.isfinite(factor)
+    grid_x, grid_y = np.meshgrid(x[column], y[row])
+    axes.quiver(grid_x[keep], grid_y[keep], (u * factor)[keep], (v * factor)[keep], pivot="mid",
+                angles="xy", scale_units="xy", scale=1 / (1.0 * spacing), width=0.0042,
+                headwidth=4.2, headlength=4.8, headaxislength=4.3, minlength=0.1,
+                color="#1f2933", edgecolor="white", linewidth=0.3, zorder=5)
+
+
+def flux_figure(maps, index, units, view=None, segments=None, key=None):
+    """Magnitude and direction of the heat flux of all models, or None without such a field."""
+    run = maps.run
+    view = view or maps.view()
+    segments = segments_of(run.cracks(index)) if segments is None else segments
+    parts = {}
+    for model in run.models:
+        if run.field_file(index, model) is None:
+            continue
+        values = flux_parts(run, index, model)
+        if values is not None:
+            parts[model] = [maps.picture(index, model, values[:, d], segments, key, view)
+                            for d in range(run.dimension)]
+    if not parts:
+        return None
+    magnitude = {m: np.sqrt(sum(p ** 2 for p in part)) for m, part in parts.items()}
+    scale = style.value_scale(list(magnitude.values()), style.FLUX, n=10, parts=6, clip=0.995)
+    layout = Layout(len(parts), view.extent, len(parts))
+    for i, model in enumerate(parts):
+        axes = layout.panel(i)
+        shown = style.Scale(scale.levels, style.FLUX, [], scale.extend)
+        draw_picture(axes, view, magnitude[model], shown, segments)
+        draw_arrows(axes, view, parts[model][view.axes[0]], parts[model][view.axes[1]])
+        axes.set_title(style.name(model), loc="left", pad=5)
+        label_axes(axes, units, view, i, layout)
+    layout.bar(0, len(parts) - 1, scale, "Magnitude of the heat flux")
+    return layout.figure

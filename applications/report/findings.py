@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Sentences that say what a run found, made from summary.json."""
+
+from style import plain
+
+FEM, PD = "finite elements", "peridynamics"
+ORDINAL = {1: "one", 2: "two", 3: "three"}
+
+
+def last(pairs):
+    """Last value of a list of [time, value], or None."""
+    if not pairs:
+        return None
+    return pairs[-1][1] if isinstance(pairs[-1], (list, tuple)) else pairs[-1]
+
+
+def percent(value):
+    """A relative number as a percentage."""
+    return f"{plain(100 * value, 3)} %"
+
+
+def wall_time(model):
+    """Total wall time of a model: its entry 'total', or the sum of the phases; None if absent."""
+    phases = model.get("wall time")
+    if isinstance(phases, (int, float)):
+        return float(phases)
+    if not phases:
+        return None
+    if "total" in phases:
+        return phases["total"]
+    return sum(v for v in phases.values() if isinstance(v, (int, float)))
+
+
+def counts(name, model):
+    """'peridynamics (14 641 unknowns, 432 000 bonds, m = 3, conical kernel)'."""
+    parts = []
+    if model.get("unknowns") is not None:
+        parts.append(f"{plain(model['unknowns'])} unknowns")
+    if model.get("bonds") is not None:
+        parts.append(f"{plain(model['bonds'])} bonds")
+    settings = model.get("settings") or {}
+    if "m" in settings:
+        parts.append(f"horizon ratio m = {settings['m']}")
+    if "kernel" in settings:
+        parts.append(f"{settings['kernel']} kernel")
+    return name + (f" ({', '.join(parts)})" if parts else "")
+
+
+def what_ran(run, units):
+    """The problem and the models."""
+    models = [counts(m, run.summary["models"][m]) for m in run.models]
+    joined = models[0] if len(models) == 1 else ", ".join(models[:-1]) + " and by " + models[-1]
+    dimension = ORDINAL[run.dimension]
+    dimension = f"{dimension} dimension" + ("s" if run.dimension > 1 else "")
+    if run.get("steady", default=False):
+        how = "The steady temperature"
+    else:
+        end = run.get("end time")
+        how = "The temperature" + ("" if end is None else f" up to {units.at_time(end)}")
+    cracks = run.cracks()
+    body = "" if not cracks else \
+        (", in a body with a crack," if len(cracks) == 1
+         else f", in a body with {len(cracks)} cracks,")
+    return f"{how} in {dimension}{body} was computed by {joined}."
+
+
+def how_far_apart(run, units, facts):
+    """Peridynamics against finite elements."""
+    relative = last(run.get("comparison", "relative l2"))
+    largest = last(run.get("comparison", "maximum"))
+    if relative is None and largest is None:
+        return None
+    parts = []
+    if relative is not None:
+        parts.append(f"by {percent(relative)} in the relative L2 norm")
+    if largest is not None:
+        place = ""
+        if facts.get("at"):
+            place = ", near (" + ", ".join(plain(v, 2) for v in facts["at"]) + ")"
+        parts.append(f"by at most {plain(abs(largest), 3)} {units.temperature}".rstrip() + place)
+    when = "" if run.get("steady", default=False) else "At the end "
+    text = f"{when}peridynamics differs from finite elements {' and '.join(parts)}."
+    return text[0].upper() + text[1:]
+
+
+def how_wrong(run):
+    """Errors against the exact solution."""
+    errors = {m: last((run.summary["models"][m].get("errors") or {}).get("relative l2"))
+              for m in run.models}
+    errors = {m: e for m, e in errors.items() if e is not None}
+    if not errors:
+        return None
+    listed = " and ".join(f"{percent(e)} ({m})" for m, e in errors.items())
+    text = f"Against the exact solution the relative L2 error is {listed}"
+    if len(errors) == 2 and min(errors.values()) > 0:
+        (a, b), (ea, eb) = errors.keys(), errors.values()
+        better, ratio = (a, eb / ea) if ea < eb else (b, ea / eb)
+        if ratio < 1.05:
+            text += "; the two are equally accurate"
+        else:
+            text += f"; {better} {'are' if better.endswith('s') and better != PD else 'is'} " \
+                    f"{plain(ratio, 2)} times more accurate"
+    return text + "."
+
+
+def what_it_cost(run):
+    """Wall times and their ratio."""
+    times = {m: wall_time(run.summary["models"][m]) for m in run.models}
+    times = {m: t for m, t in times.items() if t}
+    if not times:
+        return None
+    listed = " and ".join(f"{plain(t, 3)} s ({m})" for m, t in times.items())
+    processes = run.get("processes", default=1)
+    text = f"The wall time was {listed} on {plain(processes)} process" + \
+        ("es" if processes != 1 else "")
+    if FEM in times and PD in times:
+        ratio = times[PD] / times[FEM]
+        text += f": peridynamics cost {plain(ratio, 2)} times as much" if ratio >= 1 else \
+            f": finite elements cost {plain(1 / ratio, 2)} times as much"
+    return text + "."
+
+
+def is_heat_kept(run):
+    """The heat balance."""
+    worst = None
+    for model in run.models:
+        balance = run.summary["models"][model].get("heat balance") or {}
+        imbalance, throughput = balance.get("imbalance"), balance.get("throughput")
+        if imbalance is None or not throughput:
+            continue
+        share = abs(imbalance / throughput)
+        if worst is None or share > worst[1]:
+            worst = (model, share)
+    if worst is None:
+        return None
+    if worst[1] < 1e-6:
+        return (f"Heat is conserved: the imbalance is at most {plain(worst[1], 2)} "
+                "of the throughput.")
+    return (f"The heat balance closes to {percent(worst[1])} of the throughput "
+            f"(worst: {worst[0]}).")
+
+
+def what_broke(run, units):
+    """Models whose pictures have holes since values are not finite."""
+    if not run.not_finite:
+        return None
+    listed = " and ".join(f"{m} (first shown at {units.at_time(t)})"
+                          for m, t in run.not_finite.items())
+    return f"Warning: temperatures are not finite for {listed}; they are left white."
+
+
+def sentences(run, units, facts):
+    """Three to five sentences."""
+    found = [what_ran(run, units), what_broke(run, units), how_far_apart(run, units, facts), how_wrong(run),
+             what_it_cost(run), is_heat_kept(run)]
+    return [s for s in found if s]

@@ -1,0 +1,298 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Reads what a run of PeriDeal wrote: summary.json, the tables and the fields.
+
+Nothing here draws. Every fault of the files is a ReportError whose message names the file.
+"""
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+MODEL_ORDER = ("finite elements", "peridynamics", "coupled")
+EXACT = "exact"
+DIFFERENCE = "peridynamics_minus_finite_elements"
+
+
+class ReportError(Exception):
+    """A fault of the files a report is made from; the message is one line."""
+
+
+class Mesh:
+    """Cells with their own copies of the vertices, so that jumps at cracks are kept."""
+
+    def __init__(self, nodes, cells):
+        self.nodes = nodes
+        self.cells = cells
+        self._boxes = None
+
+    @property
+    def dimension(self):
+        """1, 2 or 3, from the number of vertices of a cell."""
+        return {2: 1, 4: 2, 8: 3}[self.cells.shape[1]]
+
+    def boxes(self, chunk=250_000):
+        """Lower and upper corners of the boxes around the cells, (M x dim) each."""
+        if self._boxes is None:
+            lower = np.empty((len(self.cells), self.nodes.shape[1]))
+            upper = np.empty_like(lower)
+            for start in range(0, len(self.cells), chunk):
+                part = slice(start, start + chunk)
+                corners = self.nodes[self.cells[part]]
+                lower[part] = corners.min(axis=1)
+                upper[part] = corners.max(axis=1)
+            self._boxes = lower, upper
+        return self._boxes
+
+    def same_as(self, other):
+        """Whether the other mesh is this one."""
+        return (other.nodes.shape == self.nodes.shape and other.cells.shape == self.cells.shape
+                and np.array_equal(other.nodes, self.nodes)
+                and np.array_equal(other.cells, self.cells))
+
+
+class Table:
+    """Rows of line.csv or probes.csv: value[model][time] = (points, values)."""
+
+    def __init__(self):
+        self.data = {}
+        self.dimension = 0
+
+    def models(self):
+        """Names of the models in the order of the report, the exact solution last."""
+        order = {name: i for i, name in enumerate(MODEL_ORDER + (EXACT,))}
+        return sorted(self.data, key=lambda name: order.get(name, len(MODEL_ORDER)))
+
+    def times(self):
+        """All times, ascending."""
+        return sorted({t for of_model in self.data.values() for t in of_model})
+
+    def at(self, model, time):
+        """(points, values) of one model at one time, or None."""
+        return self.data.get(model, {}).get(time)
+
+
+class Run:
+    """One output directory."""
+
+    def __init__(self, directory):
+        self.directory = Path(directory)
+        if not self.directory.is_dir():
+            raise ReportError(f"'{directory}' is not a directory")
+        self.summary = self._read_summary()
+        self.dimension = self._dimension()
+        present = self.summary["models"]
+        self.models = [m for m in MODEL_ORDER if m in present]
+        self.models += [m for m in present if m not in self.models]
+        self.line = self._read_table("line.csv")
+        self.probes = self._read_table("probes.csv")
+        self.totals = self._read_totals("totals.csv")
+        self.not_finite = {}  # model: first shown time with values that are no numbers
+        self._meshes = {}
+
+    # ---- summary.json ------------------------------------------------------------------
+
+    def _read_summary(self):
+        path = self.directory / "summary.json"
+        try:
+            text = path.read_text(encoding="utf-8")
+        except FileNotFoundError:
+            raise ReportError(f"'{path}' is missing: is this the output directory of a run that "
+                              "finished?") from None
+        except (OSError, UnicodeDecodeError) as error:
+            raise ReportError(f"'{path}' cannot be read: {error}") from None
+        try:
+            summary = json.loads(text)
+        except json.JSONDecodeError as error:
+            raise ReportError(f"'{path}' is not valid JSON: {error}") from None
+        if not isinstance(summary, dict):
+            raise ReportError(f"'{path}' must hold an object, found {type(summary).__name__}")
+        for entry, kind in (("models", dict), ("dimension", int), ("fields", list)):
+            if not isinstance(summary.get(entry), kind):
+                raise ReportError(f"'{path}' has no proper entry '{entry}'")
+        for entry in summary["fields"]:
+            if not isinstance(entry, dict) or not isinstance(entry.get("files"), dict) \
+                    or not isinstance(entry.get("time"), (int, float)):
+                raise ReportError(f"'{path}': every entry of 'fields' needs a 'time' and 'files', "
+                                  f"found {json.dumps(entry)[:80]}")
+        for model, entry in summary["models"].items():
+            if not isinstance(entry, dict):
+                raise ReportError(f"'{path}': the model '{model}' must hold an object")
+        if not summary["models"]:
+            raise ReportError(f"'{path}' names no model")
+        return summary
+
+    def _dimension(self):
+        dimension = self.summary["dimension"]
+        if dimension not in (1, 2, 3):
+            raise ReportError(f"'{self.directory / 'summary.json'}': dimension must be 1, 2 or 3, "
+                              f"found {dimension}")
+        return dimension
+
+    def get(self, *path, default=None):
+        """An entry of summary.json by its path, or the default where it is absent or null."""
+        value = self.summary
+        for key in path:
+            if not isinstance(value, dict) or value.get(key) is None:
+                return default
+            value = value[key]
+        return value
+
+    @property
+    def domain(self):
+        """Lower and upper corner of the body; from the mesh where the summary has none."""
+        lower, upper = self.get("domain", "lower"), self.get("domain", "upper")
+        if lower and upper:
+            return np.array(lower, float), np.array(upper, float)
+        for index, entry in enumerate(self.summary["fields"]):
+            for model in entry["files"]:
+                nodes = self.mesh(index, model).nodes
+                return nodes.min(axis=0), nodes.max(axis=0)
+        raise ReportError(f"'{self.directory / 'summary.json'}' has neither domain nor fields")
+
+    def cracks(self, index=None):
+        """Cracks as arrays of points; those of one written time where the run recorded them."""
+        cracks = self.get("cracks", default=[])
+        if index is not None:
+            cracks = self.summary["fields"][index].get("cracks", cracks)
+        return [np.array(c, float) for c in cracks if len(c) >= 2]
+
+    def cracks_on_faces(self):
+        """Whether cracks are cut into the mesh (entry 'Mesh = faces' of the scene as used)."""
+        try:
+            scene = (self.directory / "scene.prm").read_text(encoding="utf-8", errors="replace")
+        except OSError:
+            return False
+        return re.search(r"^\s*set\s+Mesh\s*=\s*faces\b", scene, re.MULTILINE) is not None
+
+    # ---- fields ------------------------------------------------------------------------
+
+    def field_file(self, index, model):
+        """Path of the fields of a model at the written time of that index, or None."""
+        name = self.summary["fields"][index].get("files", {}).get(model)
+        return None if name is None else self.directory / name
+
+    def _open(self, path):
+        if not path.is_file():
+            raise ReportError(f"'{path}' is missing, though summary.json names it")
+        try:
+            return h5py.File(path, "r")
+        except OSError as error:
+            raise ReportError(f"'{path}' is not a readable HDF5 file: {error}") from None
+
+    def mesh(self, index, model):
+        """The mesh of a model; read once, and shared between models where it is the same."""
+        if model in self._meshes:
+            return self._meshes[model]
+        path = self.field_file(index, model)
+        with self._open(path) as file:
+            for name in ("nodes", "cells"):
+                if name not in file:
+                    raise ReportError(f"'{path}' has no dataset '{name}'")
+            nodes = file["nodes"][()][:, :self.dimension].astype(float, copy=False)
+            cells = file["cells"][()]
+        if cells.ndim != 2 or cells.shape[1] != 2 ** self.dimension:
+            raise ReportError(f"'{path}': cells of a {self.dimension}D run have "
+                              f"{2 ** self.dimension} vertices, found shape {cells.shape}")
+        if cells.size and cells.max() >= len(nodes):
+            raise ReportError(f"'{path}': a cell names vertex {cells.max()} of {len(nodes)}")
+        mesh = Mesh(nodes, cells)
+        for other in self._meshes.values():
+            if other.same_as(mesh):
+                mesh = other
+                break
+        self._meshes[model] = mesh
+        return mesh
+
+    def field(self, index, model, name, required=True):
+        """Values of a field at the vertices, (N) or (N x 3); None if absent and not required."""
+        path = self.field_file(index, model)
+        if path is None:
+            return None
+        with self._open(path) as file:
+            if name not in file:
+                if required:
+                    raise ReportError(f"'{path}' has no dataset '{name}'")
+                return None
+            values = file[name][()]
+        if len(values) != len(self.mesh(index, model).nodes):
+            raise ReportError(f"'{path}': dataset '{name}' has {len(values)} rows, "
+                              f"the mesh {len(self.mesh(index, model).nodes)} vertices")
+        finite = np.isfinite(values)
+        if not finite.all():
+            values = np.where(finite, values, np.nan)
+            if name == "temperature":
+                self.not_finite.setdefault(model, self.written_times()[index])
+        return values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values
+
+    def written_times(self):
+        """Times of the written fields."""
+        return [float(entry["time"]) for entry in self.summary["fields"]]
+
+    def shown_indices(self, at_most):
+        """Indices of up to so many written times, spread evenly, the last one included."""
+        n = len(self.summary["fields"])
+        if n <= at_most:
+            return list(range(n))
+        return sorted({int(round(i)) for i in np.linspace(0, n - 1, at_most)})
+
+    # ---- tables ------------------------------------------------------------------------
+
+    def _rows(self, name, columns):
+        """Rows of a csv file that may be absent, with its header checked for the columns."""
+        path = self.directory / name
+        if not path.is_file():
+            return [], []
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        if not rows:
+            return [], []
+        header = [h.strip() for h in rows[0]]
+        for column in columns:
+            if column not in header:
+                raise ReportError(f"'{path}' has no column '{column}'; its header is "
+                                  f"'{','.join(header)}'")
+        for number, row in enumerate(rows[1:], 2):
+            if row and len(row) != len(header):
+                raise ReportError(f"'{path}' line {number}: {len(row)} entries, "
+                                  f"the header has {len(header)}")
+        return header, [row for row in rows[1:] if row]
+
+    def _read_table(self, name):
+        header, rows = self._rows(name, ("time", "model", "x"))
+        table = Table()
+        if not rows or "value" not in header:
+            return table
+        at = {h: i for i, h in enumerate(header)}
+        axes = [at[a] for a in "xyz" if a in at]
+        table.dimension = len(axes)
+        collected = {}
+        for number, row in enumerate(rows, 2):
+            try:
+                numbers = [float(row[a]) for a in axes] + [float(row[at["value"]])]
+                key = (row[at["model"]].strip(), float(row[at["time"]]))
+            except ValueError as error:
+                raise ReportError(f"'{self.directory / name}' line {number}: {error}") from None
+            collected.setdefault(key, []).append(numbers)
+        for (model, time), numbers in collected.items():
+            numbers = np.array(numbers)
+            table.data.setdefault(model, {})[time] = (numbers[:, :-1], numbers[:, -1])
+        return table
+
+    def _read_totals(self, name):
+        """totals[quantity][model] = list of (time, value)."""
+        header, rows = self._rows(name, ("time", "model", "quantity", "value"))
+        totals = {}
+        for number, row in enumerate(rows, 2):
+            entry = dict(zip(header, row))
+            try:
+                pair = (float(entry["time"]), float(entry["value"]))
+            except ValueError as error:
+                raise ReportError(f"'{self.directory / name}' line {number}: {error}") from None
+            of_quantity = totals.setdefault(entry["quantity"].strip(), {})
+            of_quantity.setdefault(entry["model"].strip(), []).append(pair)
+        return totals

@@ -1,0 +1,304 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Makes OUTPUT_DIRECTORY/report.html from the files of a run.
+
+    python3 report.py OUTPUT_DIRECTORY [--figures DIRECTORY]
+
+The page holds its figures itself and needs neither a network nor JavaScript. A fault of the files
+is told in one line, with exit status 1; no page is written then.
+"""
+
+import argparse
+import os
+import sys
+from html import escape
+from pathlib import Path
+
+try:
+    import numpy as np
+
+    import contours
+    import curves
+    import findings
+    import sketch
+    import solids
+    import tables
+    from page import Page, paragraphs
+    from read_run import EXACT, ReportError, Run
+    from style import Units, plain
+except ImportError as fault:
+    sys.exit(f"report: a Python package is missing ({fault}); "
+             "the report needs numpy, matplotlib and h5py")
+
+SHOWN_TIMES = {1: 6, 2: 6, 3: 4}
+
+
+class Report:
+    """Assembles the page of one run."""
+
+    def __init__(self, run, figure_directory=None):
+        self.run = run
+        self.units = Units(run.get("units"))
+        self.steady = bool(run.get("steady", default=False))
+        self.maps = contours.Maps(run)
+        self.page = Page(figure_directory)
+        self.shown = run.shown_indices(SHOWN_TIMES[run.dimension])
+        self.facts = {}
+
+    def html(self):
+        """The document."""
+        title = self.run.get("title", default="PeriDeal run")
+        self.problem()
+        place = len(self.page.parts)
+        self.temperature()
+        self.page.parts.insert(place, self.findings())
+        self.line()
+        self.probes()
+        self.flux()
+        self.cost()
+        self.boundary()
+        self.totals()
+        self.settings()
+        self.files()
+        return self.page.html(title, self.header(title))
+
+    def header(self, title):
+        """Title and the facts of the run in one line."""
+        facts = [self.run.get("scene file"), self.run.get("program"),
+                 f"{self.run.dimension}D, " + ("steady" if self.steady else "transient")]
+        processes = self.run.get("processes")
+        if processes:
+            facts.append(f"{plain(processes)} process" + ("es" if processes != 1 else ""))
+        units = [u for u in (self.units.length, self.units.time, self.units.temperature) if u]
+        if units:
+            facts.append("units: " + ", ".join(units))
+        spans = "".join(f"<span>{escape(str(f))}</span>" for f in facts if f)
+        return f"<h1>{escape(title)}</h1><p>{spans}</p>"
+
+    def problem(self):
+        """Text and sketch."""
+        self.page.section("The problem", "problem")
+        self.page.add('<div class="problem"><div>')
+        self.page.add(paragraphs(self.run.get("text", default="")))
+        reference = self.run.get("reference", default="")
+        if reference:
+            self.page.add(f"<p><strong>Reference:</strong> {escape(str(reference))}</p>")
+        self.page.add(tables.sides_table(self.run))
+        self.page.add("</div>")
+        legend = []
+        if self.run.cracks() and self.run.dimension > 1:
+            legend.append("cracks in black")
+        if self.run.dimension == 2 and self.run.line.data:
+            legend.append("the line of the plots dashed")
+        if self.run.dimension == 2 and self.run.probes.data:
+            legend.append("probes as dots")
+        caption = "The body and its sides" + (": " + ", ".join(legend) if legend else "") + "."
+        self.page.figure(sketch.problem_sketch(self.maps, self.units), "problem", caption,
+                         vector=self.run.dimension != 2)
+        self.page.add("</div>")
+
+    def findings(self):
+        """The sentences, as a box that follows the problem."""
+        items = "".join(f"<li>{escape(s)}</li>"
+                        for s in findings.sentences(self.run, self.units, self.facts))
+        notes = len(self.run.get("notes", default=[]))
+        if notes:
+            items += (f'<li>The program left {plain(notes)} note{"s" if notes != 1 else ""}, '
+                      f'see <a href="#settings">Settings and notes</a>.</li>')
+        return f'<div class="findings"><h2>What this run says</h2><ul>{items}</ul></div>'
+
+    def temperature(self):
+        """The pictures of all shown times."""
+        run = self.run
+        if not self.shown:
+            return
+        self.page.section("Temperature", "temperature")
+        if run.dimension == 1:
+            if not self.line_is_body():
+                figure = curves.line_figure(curves.field_table(run, self.shown), self.units,
+                                            self.steady)
+                self.page.figure(figure, "temperature", "Nodal values over the body" + (
+                    "." if len(run.models) == 1 else ", and their difference below."), vector=True)
+            else:
+                self.draw_line("Temperature over the body")
+            return
+        module = contours if run.dimension == 2 else solids
+        self.page.add(f"<p>{self.picture_text()}</p>")
+        times = run.written_times()
+        for index in self.shown:
+            figure, self.facts = module.temperature_figure(self.maps, index, self.units)
+            heading = self.units.at_time(times[index], self.steady)
+            self.page.figure(figure, f"temperature_{index:04d}", self.picture_caption(), False,
+                             heading[0].upper() + heading[1:] if self.steady else heading)
+        hidden = [plain(t) for i, t in enumerate(times) if i not in self.shown]
+        if hidden:
+            self.page.add(f"<p>Also written, not shown: t = {', '.join(hidden)} "
+                          f"{self.units.time}.</p>")
+
+    def picture_text(self):
+        """How to read the pictures."""
+        text = "All models share one colour scale and one set of isotherms at each time. " \
+            if len(self.run.models) > 1 else "Lines are isotherms. "
+        if self.run.dimension == 3:
+            text += "Above, the outer faces that are seen from the upper front right; below, " \
+                "slices through the body. Dashed outlines are cracks inside, thick lines " \
+                "where a slice meets them."
+        elif self.run.cracks():
+            text += "Cracks are thick black lines; values are shown up to the crack from each " \
+                "side, never across it."
+        return text
+
+    def picture_caption(self):
+        """Where the extreme difference lies."""
+        if "extreme" not in self.facts:
+            return ""
+        x, y = (plain(v, 2) for v in self.facts["at"])
+        return (f"Largest difference {plain(self.facts['extreme'], 3)} {self.units.temperature} at "
+                f"({x}, {y}), marked by a circle.")
+
+    def line(self):
+        """Plots along the line."""
+        if not self.run.line.data or (self.shown and self.line_is_body()):
+            return
+        self.page.section("Along the line", "line")
+        self.draw_line("Temperature along the line")
+
+    def line_is_body(self):
+        """Whether a 1D body is shown by its line already."""
+        if self.run.dimension > 1 or not self.run.line.data:
+            return False
+        points = self.run.line.at(self.run.line.models()[0], self.run.line.times()[-1])[0]
+        lower, upper = self.run.domain
+        return np.ptp(points) > 0.95 * (upper - lower)[0]
+
+    def draw_line(self, text):
+        """The plot along the line."""
+        figure = curves.line_figure(self.run.line, self.units, self.steady)
+        exact = EXACT in self.run.line.models()
+        lower = "each model minus the exact solution" if exact else \
+            "peridynamics minus finite elements" if len(self.run.models) > 1 else ""
+        colored = f"{text}: colour tells the time, the kind of line the model" \
+            if len(self.run.line.times()) > 1 else text
+        self.page.figure(figure, "line", colored + (f"; below: {lower}." if lower else "."), True)
+
+    def probes(self):
+        """Probes over time and their values."""
+        html, left_out = tables.probe_table(self.run, self.units)
+        if not html:
+            return
+        self.page.section("Probes", "probes")
+        figure = curves.probe_figure(self.run.probes, self.units)
+        if figure is not None:
+            self.page.figure(figure, "probes", "Temperature at the probes over time.", True)
+        self.page.add(f'<div class="wide">{html}</div>')
+        if left_out:
+            self.page.add(f"<p>{plain(left_out)} more rows are in "
+                          f'<a href="probes.csv">probes.csv</a>.</p>')
+
+    def flux(self):
+        """The heat flux at the last time."""
+        run, index = self.run, len(self.run.summary["fields"]) - 1
+        if index < 0:
+            return
+        where = ""
+        if run.dimension == 1:
+            figure = curves.flux_figure_1d(run, index, self.units)
+        elif run.dimension == 2:
+            figure = contours.flux_figure(self.maps, index, self.units)
+        else:
+            figure, where = solids.flux_figure(self.maps, index, self.units)
+            where = f" in the slice {where}"
+        if figure is None:
+            return
+        self.page.section("Heat flux", "flux")
+        when = self.units.at_time(run.written_times()[index], self.steady)
+        arrows = "" if run.dimension == 1 else \
+            " Arrows point where heat flows; their length grows with its magnitude."
+        self.page.figure(figure, "heat_flux", f"Heat flux{escape(where)}, {escape(when)}.{arrows}",
+                         vector=run.dimension == 1)
+
+    def cost(self):
+        """Cost and error."""
+        self.page.section("Cost and error", "cost")
+        self.page.add(f'<div class="wide">{tables.cost_table(self.run, self.units)}</div>')
+        html = tables.error_table(self.run, self.units)
+        if html:
+            self.page.add(f'<h3>Over time</h3><div class="wide">{html}</div>' if not self.steady
+                          else f'<div class="wide">{html}</div>')
+
+    def boundary(self):
+        """Boundary flux."""
+        html = tables.boundary_table(self.run)
+        if html:
+            self.page.section("Heat through the sides", "sides")
+            self.page.add("<p>What enters the body is positive"
+                          + (", per unit thickness" if self.run.dimension == 2 else "") + ".</p>")
+            self.page.add(f'<div class="wide">{html}</div>')
+
+    def totals(self):
+        """Quantities over time."""
+        html = tables.totals_table(self.run)
+        if not html:
+            return
+        self.page.section("Totals", "totals")
+        figure = curves.totals_figure(self.run.totals, self.units)
+        if figure is not None:
+            self.page.figure(figure, "totals", "", True)
+        self.page.add(f'<div class="wide">{html}</div>')
+
+    def settings(self):
+        """Settings and notes."""
+        html, notes = tables.settings_table(self.run), self.run.get("notes", default=[])
+        if not html and not notes:
+            return
+        self.page.section("Settings and notes", "settings")
+        if notes:
+            kinds = {True: '<li class="warning">', False: "<li>"}
+            items = "".join(f'{kinds["warning" in n.lower()]}{escape(n)}</li>'
+                            for n in map(str, notes))
+            self.page.add(f'<ul class="notes">{items}</ul>')
+        if html:
+            self.page.add(f'<div class="wide">{html}</div>')
+
+    def files(self):
+        """Links to the files beside the page."""
+        directory = self.run.directory
+        found = [p for p in ("scene.prm", "summary.json", "line.csv", "probes.csv", "totals.csv")
+                 if (directory / p).is_file()]
+        found += sorted(str(p.relative_to(directory)) for p in (directory / "fields").glob("*")
+                        if p.is_file())
+        found += sorted(p.name for p in directory.glob("*") if p.suffix in (".pvd", ".xdmf"))
+        self.page.section("Files", "files")
+        shown = found[:60]
+        items = "".join(f'<li><a href="{escape(p, quote=True)}">{escape(p)}</a></li>'
+                        for p in shown)
+        self.page.add(f'<ul class="files">{items}</ul>')
+        if len(found) > len(shown):
+            self.page.add(f"<p>And {len(found) - len(shown)} more in fields/.</p>")
+        program = self.run.get("program", default="PeriDeal")
+        self.page.add(f"<footer>Written by {escape(program)}.</footer>")
+
+
+def main(arguments=None):
+    """Command line."""
+    parser = argparse.ArgumentParser(description="Makes report.html from the files of a run.")
+    parser.add_argument("directory", metavar="OUTPUT_DIRECTORY")
+    parser.add_argument("--figures", metavar="DIRECTORY",
+                        help="also write the figures there, as PNG")
+    options = parser.parse_args(arguments)
+    try:
+        html = Report(Run(options.directory), options.figures).html()
+        target = Path(options.directory) / "report.html"
+        partial = target.with_suffix(".html.partial")
+        partial.write_text(html, encoding="utf-8")
+        os.replace(partial, target)
+    except (ReportError, OSError) as fault:
+        print(f"report: {fault}".replace("\n", " "), file=sys.stderr)
+        return 1
+    print(target)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""A small sketch of the problem: the body, what holds on its sides, its cracks, line and probes."""
+
+import numpy as np
+
+import contours
+import solids
+import style
+
+KIND_COLOR = (("dirichlet", "#c0392b"), ("flux", "#d98200"), ("convection", "#00897b"),
+              ("symmetry", "#5e60ce"), ("insulated", "#7b8794"))
+BODY = "#eef2f6"
+
+
+def side_color(text):
+    """Colour of a boundary condition by its kind."""
+    lowered = text.lower()
+    for kind, color in KIND_COLOR:
+        if kind in lowered:
+            return color
+    return "#7b8794"
+
+
+def shorten(text, length=30):
+    """Long expressions are cut; the table of sides has them in full."""
+    return text if len(text) <= length else text[:length - 1] + "…"
+
+
+def draw_material(axes, maps):
+    """Where the body is: its cells, so that holes and outlines show."""
+    run = maps.run
+    if not run.summary["fields"]:
+        return False
+    for model in run.models:
+        if run.field_file(0, model) is None:
+            continue
+        view = maps.view()
+        nodes = run.mesh(0, model).nodes
+        picture = maps.picture(0, model, np.ones(len(nodes)), contours.segments_of(run.cracks(0)))
+        inside = np.isfinite(picture)
+        shades = np.zeros(picture.shape + (4,))
+        shades[inside] = (0.933, 0.949, 0.965, 1)
+        axes.imshow(shades, origin="lower", extent=view.extent, aspect="equal", zorder=1)
+        if not inside.all():
+            x, y = view.centers()
+            axes.contour(x, y, inside.astype(float), levels=[0.5], colors=["#52606d"],
+                         linewidths=1.0, zorder=2)
+        return bool(inside.all())
+    return True
+
+
+def draw_points(axes, run):
+    """The line and the probes."""
+    for model in run.line.data.values():
+        points = next(iter(model.values()))[0]
+        axes.plot(points[[0, -1], 0], points[[0, -1], 1], color="#0072b2", linewidth=1.1,
+                  linestyle=(0, (4, 2.5)), zorder=4)
+        break
+    for model in run.probes.data.values():
+        points = next(iter(model.values()))[0]
+        axes.plot(points[:, 0], points[:, 1], linestyle="none", marker="o", markersize=4.5,
+                  color="#0072b2", markeredgecolor="white", zorder=6)
+        break
+
+
+def sketch_2d(maps, units):
+    """The rectangle with its four sides, or the outline of any other mesh."""
+    run = maps.run
+    lower, upper = run.domain
+    extent = upper - lower
+    width = 3.1 if extent[0] >= extent[1] else max(1.0, 3.1 * extent[0] / extent[1])
+    height = min(width * extent[1] / extent[0], 3.4)
+    height = max(height, 0.35)
+    size = (width + 1.9, height + 1.25)
+    figure = style.figure(*size)
+    axes = figure.add_axes([0.95 / size[0], 0.72 / size[1], width / size[0], height / size[1]])
+    full = draw_material(axes, maps)
+    sides = run.get("sides", default={})
+    box = {"bottom": ((0, 0), (1, 0)), "top": ((0, 1), (1, 1)), "left": ((0, 0), (0, 1)),
+           "right": ((1, 0), (1, 1))}
+    place = {"bottom": (0.5, -0.055, "center", "top", 0), "top": (0.5, 1.04, "center", "bottom", 0),
+             "left": (-0.045, 0.5, "right", "center", 90),
+             "right": (1.045, 0.5, "left", "center", 90)}
+    for side, ends in box.items():
+        if side not in sides:
+            continue
+        color = side_color(sides[side])
+        line = lower + np.array(ends) * extent
+        insulated = color == "#7b8794"
+        axes.plot(line[:, 0], line[:, 1], color=color, linewidth=1.4 if insulated else 3.2,
+                  solid_capstyle="butt", clip_on=False, zorder=3)
+        x, y, horizontal, vertical, turn = place[side]
+        text = shorten(f"{side}: {sides[side]}", int(width / 0.068) + 14)
+        if turn and len(f"{side}: {sides[side]}") * 0.068 > height:
+            turn, text = 0, f"{side}:\n" + shorten(sides[side], 11)
+        axes.text(x, y, text,
+                  transform=axes.transAxes, rotation=turn, color=color, fontsize=8,
+                  ha=horizontal, va=vertical)
+    if not any(side in sides for side in box) and full:
+        axes.plot(*(lower + np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)]) * extent).T,
+                  color="#52606d", linewidth=1.2, clip_on=False)
+    contours.draw_cracks(axes, contours.segments_of(run.cracks()), 1.8)
+    draw_points(axes, run)
+    finish_2d(axes, lower, upper, units, size)
+    return figure
+
+
+def finish_2d(axes, lower, upper, units, size):
+    """Extents instead of axes."""
+    axes.set_xlim(lower[0], upper[0])
+    axes.set_ylim(lower[1], upper[1])
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    axes.set_xticks([])
+    axes.set_yticks([])
+    text = ",   ".join(f"${'xyz'[d]}$ = {style.plain(lower[d])} … {style.plain(upper[d])}"
+                     for d in range(len(lower)))
+    axes.figure.text(0.95 / size[0], 0.12 / size[1], f"{text} {units.length}", fontsize=8,
+                     color="#52606d", ha="left", va="bottom")
+
+
+def sketch_1d(run, units):
+    """A bar with its two ends."""
+    lower, upper = run.domain
+    figure = style.figure(4.8, 1.5)
+    axes = figure.add_axes([0.06, 0.42, 0.88, 0.2])
+    axes.axvspan(lower[0], upper[0], color=BODY)
+    sides = run.get("sides", default={})
+    for side, x, align in (("left", lower[0], "left"), ("right", upper[0], "right")):
+        text = sides.get(side, "")
+        color = side_color(text)
+        axes.plot([x, x], [0, 1], color=color, linewidth=4, clip_on=False, solid_capstyle="butt")
+        fraction = 0.0 if align == "left" else 1.0
+        axes.text(fraction, 1.25, shorten(text, 26), transform=axes.transAxes, color=color,
+                  fontsize=8.5, ha=align, va="bottom")
+        axes.text(fraction, -0.25, f"{'x = ' if align == 'left' else ''}{style.plain(x)} "
+                  f"{units.length}", transform=axes.transAxes, color="#52606d", fontsize=8,
+                  ha=align, va="top")
+    for crack in run.cracks():
+        axes.axvline(crack[:, 0].mean(), color="black", linewidth=2)
+    axes.set_xlim(lower[0], upper[0])
+    axes.set_ylim(0, 1)
+    axes.axis("off")
+    return figure
+
+
+def sketch_3d(run, units):
+    """An isometric box with its cracks; the sides are named beside it."""
+    lower, upper = run.domain
+    figure = style.figure(4.8, 3.5)
+    axes = figure.add_axes([0.0, 0.0, 0.62, 1.0])
+    corners = {(i, j, k): solids.project([(lower, upper)[i][0], (lower, upper)[j][1],
+                                          (lower, upper)[k][2]])
+               for i in (0, 1) for j in (0, 1) for k in (0, 1)}
+    sides = run.get("sides", default={})
+    faces = {"top": [(0, 1, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1)],
+             "front": [(0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
+             "right": [(1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0, 1)]}
+    for face in faces.values():
+        points = np.array([corners[c] for c in face])
+        axes.fill(points[:, 0], points[:, 1], facecolor=BODY, edgecolor="#52606d", linewidth=1.0)
+    for c in ((1, 0, 0), (0, 1, 0), (0, 0, 1)):
+        points = np.array([corners[0, 0, 0], corners[c]])
+        axes.plot(points[:, 0], points[:, 1], color="#9aa5b1", linewidth=0.8,
+                  linestyle=(0, (3, 3)))
+    for polygon in run.cracks():
+        if len(polygon) >= 3:
+            points = solids.project(polygon)
+            axes.fill(points[:, 0], points[:, 1], facecolor="#1f293355", edgecolor="black",
+                      linewidth=1.3)
+    solids.label_body(axes, lower, upper, units)
+    solids.frame_body(axes, lower, upper)
+    names = ("left", "right", "bottom", "top", "back", "front")
+    listed = [(n, sides[n]) for n in names if n in sides]
+    for i, (side, text) in enumerate(listed):
+        figure.text(0.63, 0.80 - 0.1 * i, f"{side}: {shorten(text, 20)}", fontsize=8,
+                    color=side_color(text))
+    return figure
+
+
+def problem_sketch(maps, units):
+    """The sketch of a run of any dimension."""
+    if maps.run.dimension == 1:
+        return sketch_1d(maps.run, units)
+    if maps.run.dimension == 2:
+        return sketch_2d(maps, units)
+    return sketch_3d(maps.run, units)

@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Pictures of 3D fields: slices through the body and its three visible outer faces."""
+
+import numpy as np
+
+import contours
+import style
+from raster import PAPER_AXES, View
+
+# Directions of x, y, z on paper, y upwards: the sides right, top and front are seen.
+ISOMETRIC = np.array([[0.866, -0.5], [0.0, 1.0], [-0.866, -0.5]])
+FACES = (0, 1, 2)
+
+
+def project(points):
+    """Points of space on paper."""
+    return np.asarray(points, float) @ ISOMETRIC
+
+
+def body_corners(lower, upper):
+    """The eight corners of a box on paper."""
+    ends = (lower, upper)
+    return project([[ends[i][0], ends[j][1], ends[k][2]]
+                    for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+
+
+def crack_normal(polygon):
+    """Unit normal of a plane polygon (right-hand rule), by Newell's sum."""
+    following = np.roll(polygon, -1, axis=0)
+    normal = np.cross(polygon, following).sum(axis=0)
+    return normal / max(np.linalg.norm(normal), 1e-300)
+
+
+def slice_positions(run, index):
+    """Where the three slices lie: through the first crack's centre, else the body's centre.
+
+    The slice most nearly parallel to the crack is moved just off it, to its left side: on the
+    crack the temperature has two values.
+    """
+    lower, upper = run.domain
+    position = 0.5 * (lower + upper)
+    polygons = [c for c in run.cracks(index) if len(c) >= 3]
+    remark = {}
+    if polygons:
+        normal = crack_normal(polygons[0])
+        position = polygons[0].mean(axis=0)
+        parallel = int(np.argmax(np.abs(normal)))
+        spread = np.ptp(polygons[0][:, parallel])
+        if spread < 1e-9 * (upper - lower).max():
+            model = next(m for m in run.models if run.field_file(index, m) is not None)
+            mesh = run.mesh(index, model)
+            cell = np.ptp(mesh.nodes[mesh.cells[0]], axis=0)[parallel]
+            position[parallel] += np.copysign(1.01 * cell, normal[parallel])
+            remark[parallel] = "one cell off the crack"
+    margin = 1e-6 * (upper - lower)
+    return np.clip(position, lower + margin, upper - margin), remark
+
+
+def slice_segments(cracks, axis, position):
+    """Lines in which crack polygons meet the plane x_axis = position, in its two coordinates."""
+    segments = []
+    for polygon in cracks:
+        if len(polygon) < 3:
+            continue
+        hits = []
+        for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
+            u, v = a[axis] - position, b[axis] - position
+            if u * v < 0 or (u == 0) != (v == 0):
+                hits.append(a + (b - a) * (u / (u - v)))
+        if len(hits) >= 2:
+            distances = [np.linalg.norm(h - hits[0]) for h in hits]
+            segment = np.array([hits[0], hits[int(np.argmax(distances))]])[:, PAPER_AXES[axis]]
+            if np.ptp(segment, axis=0).max() > 0:
+                segments.append(segment)
+    return segments
+
+
+class Slices:
+    """The views of one run at one time: three slices and three outer faces."""
+
+    def __init__(self, maps, index):
+        self.maps, self.index, run = maps, index, maps.run
+        self.lower, self.upper = run.domain
+        self.position, self.remark = slice_positions(run, index)
+        self.cracks = run.cracks(index)
+        self.slices = []
+        for axis in (2, 1, 0):
+            view = View(self.lower, self.upper, 400, axis, self.position[axis])
+            self.slices.append((view, slice_segments(self.cracks, axis, self.position[axis])))
+        inset = 1e-6 * (self.upper - self.lower)
+        self.faces = []
+        for axis in FACES:
+            at = self.upper[axis] - inset[axis]
+            view = View(self.lower, self.upper, 160, axis, at)
+            self.faces.append((view, slice_segments(self.cracks, axis, at)))
+
+    def pictures(self, model, values):
+        """Pictures of the slices and of the faces."""
+        return [[self.maps.picture(self.index, model, values, segments,
+                                   (view.axis, float(view.position), view.shape), view)
+                 for view, segments in group] for group in (self.slices, self.faces)]
+
+    def title(self, view, units):
+        """Name of a slice."""
+        text = f"{'xyz'[view.axis]} = {style.plain(view.position)} {units.length}".strip()
+        return text + (f" ({self.remark[view.axis]})" if view.axis in self.remark else "")
+
+
+def face_points(view, fraction_x, fraction_y):
+    """Points on paper at fractions of a face."""
+    points = np.empty(np.broadcast(fraction_x, fraction_y).shape + (3,))
+    extent = view.upper - view.lower
+    points[..., view.axes[0]] = view.lower[view.axes[0]] + fraction_x * extent[view.axes[0]]
+    points[..., view.axes[1]] = view.lower[view.axes[1]] + fraction_y * extent[view.axes[1]]
+    points[..., view.axis] = view.position
+    return project(points)
+
+
+def draw_body(axes, slices, pictures, scale):
+    """The three visible outer faces in isometric projection."""
+    for (view, _), picture in zip(slices.faces, pictures):
+        rows, columns = view.shape
+        edges = face_points(view, np.linspace(0, 1, columns + 1)[None, :],
+                            np.linspace(0, 1, rows + 1)[:, None])
+        axes.pcolormesh(edges[..., 0], edges[..., 1], np.ma.masked_invalid(picture),
+                        cmap=scale.colormap, norm=scale.norm, rasterized=True,
+                        edgecolors="face", linewidth=0.2, zorder=2)
+        middle = face_points(view, (np.arange(columns)[None, :] + 0.5) / columns,
+                             (np.arange(rows)[:, None] + 0.5) / rows)
+        finite = picture[np.isfinite(picture)]
+        if len(finite) and len(scale.lines):
+            inside = (scale.lines > finite.min()) & (scale.lines < finite.max())
+            colors = [c for c, keep in zip(scale.line_colors(), inside) if keep]
+            if inside.any():
+                axes.contour(middle[..., 0], middle[..., 1], np.ma.masked_invalid(picture),
+                             levels=scale.lines[inside], colors=colors, linewidths=0.6,
+                             linestyles="solid", zorder=3)
+        outline = face_points(view, np.array([0, 1, 1, 0, 0]), np.array([0, 0, 1, 1, 0]))
+        axes.plot(outline[:, 0], outline[:, 1], color=style.INK, linewidth=0.9, zorder=4,
+                  solid_joinstyle="round")
+
+
+def draw_hidden_cracks(axes, cracks):
+    """Cracks inside the body as dashed outlines."""
+    for polygon in cracks:
+        closed = project(np.vstack([polygon, polygon[:1]]))
+        axes.plot(closed[:, 0], closed[:, 1], color="white", linewidth=2.6, zorder=5)
+        axes.plot(closed[:, 0], closed[:, 1], color="black", linewidth=1.2,
+                  linestyle=(0, (3.5, 2)), zorder=6)
+
+
+def label_body(axes, lower, upper, units, size=8):
+    """Coordinate names and end values along three edges."""
+    extent = upper - lower
+    offset = 0.075 * np.ptp(body_corners(lower, upper), axis=0).max()
+    edges = ((0, np.array([0, 0, 1]), (-0.6, -1.0)), (1, np.array([0, 0, 1]), (-1.0, 0.0)),
+             (2, np.array([1, 0, 0]), (0.6, -1.0)))
+    for axis, start, shift in edges:
+        a = lower + start * extent
+        b = a.copy()
+        b[axis] = upper[axis]
+        for fraction, text in ((0.0, style.plain(lower[axis])), (0.5, f"${'xyz'[axis]}$"),
+                               (1.0, style.plain(upper[axis]))):
+            point = project(a + (b - a) * (0.1 + 0.8 * fraction)) + offset * np.array(shift)
+            axes.text(point[0], point[1], text, ha="center", va="center", fontsize=size,
+                      color=style.INK if fraction == 0.5 else "#52606d")
+
+
+def frame_body(axes, lower, upper):
+    """Limits that hold the body and its labels; equal scales, no axes."""
+    corners = body_corners(lower, upper)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    pad = 0.13 * (high - low).max()
+    axes.set_xlim(low[0] - pad, high[0] + pad)
+    axes.set_ylim(low[1] - 0.7 * pad, high[1] + 0.1 * pad)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.axis("off")
+
+
+class Grid:
+    """Columns of models, rows of views with their own heights, colour bars below."""
+
+    def __init__(self, n_columns, extents):
+        self.column = min(2.85, (10 - 0.75 - 0.4 * (n_columns - 1)) / n_columns)
+        self.width = max(0.9 + n_columns * self.column + 0.4 * (n_columns - 1), 4.6)
+        self.left = 0.75
+        if n_columns == 1:
+            self.column = 3.7
+        self.heights = []
+        for width, height in extents:
+            self.heights.append(min(self.column * height / width, 3.4))
+        self.height = sum(self.heights) + 0.62 * len(extents) + 0.8
+        self.figure = style.figure(self.width, self.height)
+
+    def panel(self, row, column):
+        """Axes of a panel."""
+        bottom = self.height - 0.3 - sum(self.heights[:row + 1]) - 0.62 * row
+        bottom += 0.25 if row else 0.0
+        left = self.left + column * (self.column + 0.4)
+        return self.figure.add_axes([left / self.width, bottom / self.height,
+                                     self.column / self.width,
+                                     self.heights[row] / self.height])
+
+    def bar(self, first, last, scale, label):
+        """The colour bar below some columns."""
+        left = self.left + first * (self.column + 0.4)
+        length = (last - first) * (self.column + 0.4) + self.column
+        box = [left / self.width, 0.52 / self.height, length / self.width, 0.13 / self.height]
+        contours.color_bar(self.figure, box, scale, label)
+
+
+def draw_column(grid, column, slices, pictures, scale, units, title):
+    """The body and its slices for one model."""
+    sections, faces = pictures
+    axes = grid.panel(0, column)
+    draw_body(axes, slices, faces, scale)
+    draw_hidden_cracks(axes, slices.cracks)
+    label_body(axes, slices.lower, slices.upper, units, 7.5)
+    frame_body(axes, slices.lower, slices.upper)
+    axes.set_title(title, loc="left", pad=4, fontsize=9.5)
+    for row, ((view, segments), picture) in enumerate(zip(slices.slices, sections), 1):
+        axes = grid.panel(row, column)
+        contours.draw_picture(axes, view, picture, scale, segments)
+        axes.set_anchor("W")
+        axes.set_title(slices.title(view, units), loc="left", pad=3, fontsize=8,
+                       fontweight="normal")
+        axes.set_xlabel(units.axis("xyz"[view.axes[0]]), labelpad=0)
+        contours.sparse_ticks(axes, grid.column, grid.heights[row])
+        if column == 0:
+            axes.set_ylabel(units.axis("xyz"[view.axes[1]]), labelpad=2)
+        else:
+            axes.tick_params(labelleft=False)
+
+
+def temperature_figure(maps, index, units):
+    """Body and slices of all models and the difference; returns (figure, facts)."""
+    run = maps.run
+    slices = Slices(maps, index)
+    models = [m for m in run.models if run.field_file(index, m) is not None]
+    pictures = {m: slices.pictures(m, run.field(index, m, "temperature")) for m in models}
+    both = contours.FEM in pictures and contours.PD in pictures
+    difference = None
+    if both:
+        values = run.field(index, contours.PD, contours.DIFFERENCE, required=False)
+        difference = slices.pictures(contours.PD, values) if values is not None else \
+            [[p - f for p, f in zip(*groups)]
+             for groups in zip(pictures[contours.PD], pictures[contours.FEM])]
+    extents = [(1.0, 1.0)] + [(v.extent[1] - v.extent[0], v.extent[3] - v.extent[2])
+                              for v, _ in slices.slices]
+    grid = Grid(len(models) + both, extents)
+    scale = style.value_scale([p for group in pictures.values() for part in group for p in part])
+    for column, model in enumerate(models):
+        draw_column(grid, column, slices, pictures[model], scale, units, style.name(model))
+    grid.bar(0, len(models) - 1, scale, units.value())
+    if both:
+        shown = style.difference_scale([p for part in difference for p in part])
+        draw_column(grid, len(models), slices, difference, shown, units,
+                    "Peridynamics − finite elements")
+        grid.bar(len(models), len(models), shown,
+                 units.with_unit("Difference", units.temperature))
+    return grid.figure, {}
+
+
+def flux_figure(maps, index, units):
+    """The heat flux in the first slice; returns (figure, name of the slice)."""
+    slices = Slices(maps, index)
+    view, segments = slices.slices[0]
+    figure = contours.flux_figure(maps, index, units, view, segments,
+                                  (view.axis, float(view.position), view.shape))
+    return figure, slices.title(view, units)

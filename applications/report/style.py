@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Colours, fonts, labels and number formats shared by all figures and tables."""
+
+import math
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.patheffects as patheffects
+import numpy as np
+from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap, to_rgb
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+INK = "#1f2933"
+FAINT = "#7b8794"
+GRID = "#e4e7eb"
+
+# Okabe-Ito colours: told apart with any colour vision.
+MODEL_COLOR = {"finite elements": "#0072b2", "peridynamics": "#d55e00", "coupled": "#009e73",
+               "exact": "#000000"}
+MODEL_DASHES = {"finite elements": "-", "peridynamics": (0, (5, 2)),
+                "coupled": (0, (5, 1.5, 1, 1.5)), "exact": (0, (1, 1.6))}
+MODEL_MARKER = {"finite elements": "o", "peridynamics": "s", "coupled": "D", "exact": ""}
+SHORT = {"finite elements": "FEM", "peridynamics": "PD", "coupled": "coupled", "exact": "exact"}
+
+THERMAL = LinearSegmentedColormap.from_list(
+    "thermal", ["#0d2a5b", "#2a4f8f", "#5d5fa5", "#95619f", "#c9647f", "#ec7a55", "#f8a545",
+                "#fbd36b", "#fff6c9"])
+FLUX = LinearSegmentedColormap.from_list(
+    "flux", ["#f7fbfb", "#cfe8e6", "#93cfd0", "#4faab8", "#2a7f9e", "#1d5680", "#142f57"])
+DIFFERENCE = LinearSegmentedColormap.from_list(
+    "difference", ["#123e7c", "#3f7fc0", "#9cc4e4", "#f7f7f7", "#f3b79b", "#d0603f", "#7f1d1d"])
+
+matplotlib.rcParams.update({
+    "font.family": "DejaVu Sans", "font.size": 9, "text.color": INK, "axes.labelcolor": INK,
+    "axes.edgecolor": "#9aa5b1", "axes.linewidth": 0.8, "xtick.color": "#52606d",
+    "ytick.color": "#52606d", "xtick.labelsize": 8, "ytick.labelsize": 8, "axes.titlesize": 10,
+    "axes.titleweight": "bold", "axes.titlecolor": INK, "legend.frameon": False,
+    "legend.fontsize": 8, "axes.formatter.limits": (-3, 4), "axes.formatter.use_mathtext": True,
+    "mathtext.fontset": "dejavusans", "figure.facecolor": "white", "svg.fonttype": "path",
+    "svg.hashsalt": "perideal", "image.interpolation": "nearest"})
+
+HALO = [patheffects.withStroke(linewidth=3.2, foreground="white")]
+
+
+class Units:
+    """Labels of the scene's units."""
+
+    def __init__(self, units):
+        self.length = (units or {}).get("length", "") or ""
+        self.time = (units or {}).get("time", "") or ""
+        temperature = (units or {}).get("temperature", "") or ""
+        self.temperature = {"C": "°C", "F": "°F", "degC": "°C"}.get(temperature, temperature)
+
+    def with_unit(self, name, unit):
+        """'name (unit)', or the name alone without a unit."""
+        return f"{name} ({unit})" if unit else name
+
+    def axis(self, name):
+        """Label of a coordinate axis."""
+        return self.with_unit(f"${name}$", self.length)
+
+    def value(self):
+        """Label of the solution."""
+        return self.with_unit("Temperature", self.temperature)
+
+    def at_time(self, time, steady=False):
+        """'t = 0.5 s', or 'steady state'."""
+        if steady:
+            return "steady state"
+        return f"t = {plain(time)} {self.time}".strip()
+
+
+def plain(value, digits=4):
+    """A number for figures and running text: few digits, 1.2e-05 as 1.2×10⁻⁵."""
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int) or (float(value).is_integer() and 1000 <= abs(value) < 1e15):
+        return f"{int(value):,}".replace(",", "\u202f").replace("-", "−")
+    value = float(value)
+    if not math.isfinite(value):
+        return str(value)
+    text = f"{value:.{digits}g}"
+    if "e" in text:
+        mantissa, exponent = text.split("e")
+        superscript = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+        return f"{mantissa}×10{superscript}".replace("-", "−")
+    return text.replace("-", "−")
+
+
+def nice_levels(low, high, n):
+    """Round levels that cover [low, high]."""
+    if not high > low:
+        middle, width = low, max(abs(low) * 1e-6, 1e-12)
+        low, high = middle - width, middle + width
+    levels = MaxNLocator(nbins=n, steps=[1, 2, 2.5, 4, 5, 10]).tick_values(low, high)
+    step = levels[1] - levels[0]
+    kept = [v for v in levels if v > low - step * (1 + 1e-9) and v < high + step * (1 + 1e-9)]
+    while len(kept) > 2 and kept[1] <= low + 1e-9 * step:
+        kept = kept[1:]
+    while len(kept) > 2 and kept[-2] >= high - 1e-9 * step:
+        kept = kept[:-1]
+    return np.array(kept)
+
+
+def refined(levels, parts):
+    """Levels with each interval divided in so many parts."""
+    position = np.arange((len(levels) - 1) * parts + 1) / parts
+    return np.interp(position, np.arange(len(levels)), levels)
+
+
+class Scale:
+    """One colour scale: bands, the levels of its isotherms, and whether values exceed it."""
+
+    def __init__(self, levels, colormap, lines, extend="neither"):
+        self.levels, self.lines, self.extend = np.asarray(levels), np.asarray(lines), extend
+        n_bands = len(self.levels) - 1
+        self.colormap = ListedColormap(colormap((np.arange(n_bands) + 0.5) / n_bands))
+        self.colormap.set_under(colormap(0.0))
+        self.colormap.set_over(colormap(1.0))
+        self.colormap.set_bad("#ffffff00")
+        self.norm = BoundaryNorm(self.levels, n_bands)
+
+    def line_colors(self):
+        """Dark lines on light bands, light lines on dark ones."""
+        colors = []
+        for level in self.lines:
+            red, green, blue = to_rgb(self.colormap(self.norm(level)))
+            light = 0.299 * red + 0.587 * green + 0.114 * blue > 0.45
+            colors.append("#1f293399" if light else "#ffffffb0")
+        return colors
+
+
+def value_scale(pictures, colormap=THERMAL, n=20, parts=2, clip=None):
+    """The common scale of several pictures; clip: the share of pixels that sets its upper end."""
+    values = np.concatenate([p[np.isfinite(p)] for p in pictures] or [np.zeros(1)])
+    if not len(values):
+        values = np.zeros(1)
+    low, high = float(values.min()), float(values.max())
+    extend = "neither"
+    if clip is not None:
+        low, top = 0.0, float(np.quantile(values, clip))
+        if 0 < top < 0.8 * high:
+            high, extend = top, "max"
+    levels = nice_levels(low, high, n)
+    if extend == "neither" and high > levels[-1] + 1e-6 * (levels[-1] - levels[0]):
+        extend = "max"
+    return Scale(refined(levels, parts), colormap, levels[1:-1], extend)
+
+
+def difference_scale(pictures, n=8, clip=0.998):
+    """A scale symmetric about zero; single extreme pixels (crack tips) may exceed it."""
+    values = np.concatenate([np.abs(p[np.isfinite(p)]) for p in pictures] or [np.zeros(1)])
+    top = float(values.max(initial=0))
+    bound = float(np.quantile(values, clip)) if len(values) else 0.0
+    extend = "neither"
+    if top == 0:
+        return Scale(np.linspace(-1, 1, 4 * n + 1), DIFFERENCE, [])
+    if bound > 0.6 * top or bound == 0:
+        bound = top
+    levels = nice_levels(-bound, bound, n)
+    bound = max(-levels[0], levels[-1])
+    step = levels[1] - levels[0]
+    levels = np.linspace(-bound, bound, int(round(2 * bound / step)) + 1)
+    if top > bound * (1 + 1e-9):
+        extend = "both"
+    return Scale(refined(levels, 5), DIFFERENCE, [], extend)
+
+
+def figure(width, height):
+    """A figure in inches; one inch is 100 pixels of the page."""
+    return Figure(figsize=(width, height))
+
+
+def tidy(axes):
+    """The common look of line plots."""
+    axes.grid(True, color=GRID, linewidth=0.8)
+    axes.set_axisbelow(True)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+
+
+def name(model):
+    """Name of a model with a capital, for titles."""
+    return model[:1].upper() + model[1:]

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""The tables of the report as HTML."""
+
+from html import escape
+
+import findings
+from curves import probe_name, probe_points
+from style import name, plain
+
+
+def cell(value, digits=4):
+    """A number or text of a table."""
+    if value is None:
+        return "–"
+    if isinstance(value, (int, float)):
+        return escape(plain(value, digits))
+    return escape(str(value))
+
+
+def table(header, rows, kind=""):
+    """An HTML table; a row of one entry is a heading over the rows that follow."""
+    lines = [f'<table class="{kind}">' if kind else "<table>", "<thead><tr>"]
+    lines += [f"<th scope=\"col\">{escape(h)}</th>" for h in header]
+    lines.append("</tr></thead><tbody>")
+    for row in rows:
+        if len(row) == 1:
+            lines.append(f'<tr class="group"><th colspan="{len(header)}">{row[0]}</th></tr>')
+            continue
+        lines.append("<tr>" + f'<th scope="row">{row[0]}</th>'
+                     + "".join(f"<td>{entry}</td>" for entry in row[1:]) + "</tr>")
+    lines.append("</tbody></table>")
+    return "\n".join(lines)
+
+
+def memory(value):
+    """Bytes as MB or GB."""
+    if not isinstance(value, (int, float)):
+        return None
+    return f"{plain(value / 1e9, 3)} GB" if value >= 1e9 else f"{plain(value / 1e6, 3)} MB"
+
+
+def seconds(value):
+    """A wall time."""
+    return None if value is None else f"{plain(value, 3)} s"
+
+
+def model_rows(run, title, value):
+    """One row of the cost table, or none where no model has the number."""
+    values = [value(run.summary["models"][m]) for m in run.models]
+    if all(v is None for v in values):
+        return []
+    return [[escape(title)] + [cell(v) for v in values]]
+
+
+def entry(*path):
+    """Reader of an entry of a model."""
+    def read(model):
+        for key in path:
+            model = model.get(key) if isinstance(model, dict) else None
+        return model
+    return read
+
+
+def final(*path):
+    """Reader of the last value of a series of a model."""
+    return lambda model: findings.last(entry(*path)(model))
+
+
+def cost_table(run, units):
+    """Cost and error of each model."""
+    rows = []
+    for title, key in (("Unknowns", "unknowns"), ("Bonds", "bonds"), ("Nonzeros", "nonzeros"),
+                       ("Operator form", "operator form"), ("Time stepper", "stepper"),
+                       ("Time steps", "steps"),
+                       ("Operator applications", "operator applications"),
+                       ("Solver iterations", "iterations")):
+        rows += model_rows(run, title, entry(key))
+    unit = f" ({units.time})" if units.time else ""
+    rows += model_rows(run, f"Stable step, sharp{unit}", entry("stable step", "sharp"))
+    rows += model_rows(run, f"Stable step, safe bound{unit}", entry("stable step", "safe"))
+    cost = []
+    phases = []
+    for model in run.models:
+        times = run.summary["models"][model].get("wall time")
+        phases += [p for p in times if p not in phases] if isinstance(times, dict) else []
+    for phase in phases:
+        if phase != "total":
+            cost += model_rows(run, name(phase), lambda m, p=phase: seconds(
+                entry("wall time", p)(m)))
+    cost += [["<strong>Total wall time</strong>"]
+             + [f"<strong>{cell(seconds(findings.wall_time(run.summary['models'][m])))}</strong>"
+                for m in run.models]] if phases else []
+    cost += model_rows(run, "Peak memory", lambda m: memory(m.get("peak memory")))
+    errors = model_rows(run, "Relative L2 error at the end", final("errors", "relative l2"))
+    at = f" ({units.temperature})" if units.temperature else ""
+    errors += model_rows(run, f"Largest error at the end{at}", final("errors", "maximum"))
+    errors += model_rows(run, "Heat throughput", entry("heat balance", "throughput"))
+    errors += model_rows(run, "Heat imbalance", entry("heat balance", "imbalance"))
+    groups = (("Size and method", rows), ("Cost", cost), ("Error", errors))
+    listed = []
+    for title, part in groups:
+        if part:
+            listed += [[title]] + part
+    return table([""] + [name(m) for m in run.models], listed, "numbers")
+
+
+def boundary_table(run):
+    """What enters through each side."""
+    sides = []
+    for model in run.models:
+        sides += [s for s in entry("boundary flux")(run.summary["models"][model]) or {}
+                  if s not in sides]
+    if not sides:
+        return ""
+    conditions = run.get("sides", default={})
+    rows = []
+    for side in sides:
+        values = [entry("boundary flux", side)(run.summary["models"][m]) for m in run.models]
+        rows.append([escape(side), escape(str(conditions.get(side, "")))]
+                    + [cell(v, 6) for v in values])
+    sums = []
+    for model in run.models:
+        fluxes = entry("boundary flux")(run.summary["models"][model])
+        sums.append(f"<strong>{cell(sum(fluxes.values()), 6)}</strong>" if fluxes else "–")
+    rows.append(["<strong>Sum</strong>", ""] + sums)
+    return table(["Side", "Condition"] + [name(m) for m in run.models], rows, "numbers second-text")
+
+
+def sides_table(run):
+    """The boundary conditions in full."""
+    sides = run.get("sides", default={})
+    if not sides:
+        return ""
+    return table(["Side", "Condition"], [[escape(s), escape(str(c))] for s, c in sides.items()])
+
+
+def error_table(run, units):
+    """Difference and errors at every written time; empty with nothing to tell."""
+    columns = []
+    for key, title in (("relative l2", "relative L2"), ("maximum", "largest")):
+        series = run.get("comparison", key)
+        if series:
+            columns.append((f"PD − FEM, {title}", dict(map(tuple, series))))
+    for model in run.models:
+        for key, title in (("relative l2", "relative L2"), ("maximum", "largest")):
+            series = entry("errors", key)(run.summary["models"][model])
+            if series:
+                columns.append((f"{name(model)} − exact, {title}", dict(map(tuple, series))))
+    if not columns:
+        return ""
+    times = sorted({t for _, series in columns for t in series})
+    rows = [[escape(plain(t))] + [cell(series.get(t)) for _, series in columns] for t in times]
+    first = "" if run.get("steady", default=False) else units.with_unit("Time", units.time)
+    return table([first] + [title for title, _ in columns], rows, "numbers")
+
+
+def probe_table(run, units, at_most=60):
+    """Values at the probes."""
+    probes = run.probes
+    times, points = probes.times(), probe_points(probes)
+    models = probes.models()
+    rows, steady = [], run.get("steady", default=False)
+    for k, point in enumerate(points):
+        for time in times:
+            values = []
+            for model in models:
+                pair = probes.at(model, time)
+                values.append(None if pair is None or len(pair[1]) <= k else float(pair[1][k]))
+            lead = [escape(probe_name(point))] + ([] if steady else [escape(plain(time))])
+            rows.append(lead + [cell(v, 6) for v in values])
+    if not rows:
+        return "", 0
+    header = ["Probe"] + ([] if steady else [units.with_unit("Time", units.time)])
+    header += [name(m) for m in models]
+    return table(header, rows[:at_most], "numbers"), max(0, len(rows) - at_most)
+
+
+def totals_table(run):
+    """Quantities of totals.csv at the end."""
+    rows = []
+    for quantity, of_model in run.totals.items():
+        values = [max(of_model[m])[1] if m in of_model else None for m in run.models]
+        rows.append([escape(quantity)] + [cell(v, 6) for v in values])
+    if not rows:
+        return ""
+    return table(["At the end"] + [name(m) for m in run.models], rows, "numbers")
+
+
+def settings_table(run):
+    """Settings of each model, as the program used them."""
+    names = []
+    for model in run.models:
+        names += [s for s in run.summary["models"][model].get("settings") or {} if s not in names]
+    if not names:
+        return ""
+    rows = [[escape(s)] + [cell((run.summary["models"][m].get("settings") or {}).get(s))
+                           for m in run.models] for s in names]
+    return table(["Setting"] + [name(m) for m in run.models], rows)

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+
+# find_package(PeriDeal): the same package file serves the build tree and an installation.
+
+include(CMakePackageConfigHelpers)
+set(perideal_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/PeriDeal)
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/PeriDealConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/PeriDealConfig.cmake
+  INSTALL_DESTINATION ${perideal_package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/PeriDealConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/PeriDealDealII.cmake ${PROJECT_BINARY_DIR}/PeriDealDealII.cmake COPYONLY)
+
+install(TARGETS perideal_library EXPORT PeriDealTargets)
+install(TARGETS perideal)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/perideal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT PeriDealTargets NAMESPACE PeriDeal:: DESTINATION ${perideal_package_dir})
+install(FILES ${PROJECT_BINARY_DIR}/PeriDealConfig.cmake ${PROJECT_BINARY_DIR}/PeriDealConfigVersion.cmake
+  ${PROJECT_BINARY_DIR}/PeriDealDealII.cmake DESTINATION ${perideal_package_dir})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+export(EXPORT PeriDealTargets NAMESPACE PeriDeal:: FILE ${PROJECT_BINARY_DIR}/PeriDealTargets.cmake)

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/analysis/decay_rate.h>
+#include <perideal/scene/choices.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * A known solution of a diffusion problem, to measure errors against. Coordinates are those of
+   * the scene.
+   */
+  class ExactSolution
+  {
+  public:
+    virtual ~ExactSolution() = default;
+
+    /** The value at the point x (dim numbers) and time t >= 0. */
+    virtual double value(const double *x, const double t) const = 0;
+
+    /**
+     * Write the spatial gradient (dim numbers) if it is known; false, and nothing written, if not.
+     */
+    virtual bool gradient(const double *x, const double t, double *g) const = 0;
+  };
+
+
+  /** What an exact solution may need to know of the scene. */
+  struct ExactSolutionContext
+  {
+    unsigned int             dim = 2;
+    std::vector<double>      lower{0., 0.}, upper{1., 1.}; // corners of the box
+    double                   conductivity = 1., storage = 1.;
+    std::vector<LatticeTerm> family;        // for lattice harmonics; may be empty
+    double                   horizon  = 0.; // for nonlocal harmonics; zero: none
+    KernelShape              kernel   = KernelShape::conical;
+    unsigned int             exponent = 2;
+  };
+
+
+  /**
+   * The solution that the entry `Solution` in section `Reference` asks for: a name, or an
+   * expression of x, y, z, t.
+   *
+   * - `bobaru 2010 example 1`, `2`, `3` and `bobaru 2012 example 1`, `2`: the classical series of
+   *   the papers, misprints corrected (see HeatSeries), with their temperatures; the box and the
+   *   diffusivity come from the scene, so that it may be scaled. All but 2012 example 1 (2D only)
+   *   depend on x alone and hold in any dimension with insulated sides.
+   * - `lattice harmonic(n1, ...)`: prod_a sin(n_a pi (x_a - lower_a)/L_a) exp(-lambda t), one
+   *   positive integer per dimension, with the rate of the lattice: exact for the semi-discrete
+   *   peridynamic equations with odd continuation at the sides.
+   * - `nonlocal harmonic(n1, ...)`: with the rate of the continuous nonlocal operator; `classical
+   *   harmonic(n1, ...)`: kappa |k|^2/(rho c).
+   *
+   * At t = 0 a series is its initial value inside and its prescribed value on the Dirichlet sides.
+   * Below about 1e-11 L^2/alpha it is taken to be that still; the number of terms grows as t goes
+   * to zero.
+   *
+   * Throws UserError for an unknown name (with the nearest known one), wrong arguments, or what the
+   * scene cannot give; and what Expression throws for a mistake in an expression.
+   */
+  std::unique_ptr<ExactSolution> make_exact_solution(const std::string          &text,
+                                                     const ExactSolutionContext &context);
+
+  /** The names that make_exact_solution() knows, without arguments. */
+  const std::vector<std::string> &exact_solution_names();
+} // namespace PeriDeal

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <perideal/base/types.h>
+#include <perideal/mesh/nodes.h>
+#include <perideal/scene/cracks.h>
+
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Values of a field at given points: the Q1 (or Qp) interpolant for vertex dofs, the nearest node's value for cell centres. Points exactly on
+   * a crack are read on its left side. On a lattice the result is the same to the last bit on any number of processes.
+   */
+  template <int dim>
+  class PointEvaluator
+  {
+  public:
+    /**
+     * @param nodes the lattice the dofs lie on, or nullptr to look points up in the mesh (finite elements, mesh files).
+     * Throws UserError naming @p entry for points outside the body. Collective.
+     */
+    PointEvaluator(const dealii::DoFHandler<dim>          &dofs,
+                   const Nodes<dim>                       *nodes,
+                   const Cracks<dim>                      &cracks,
+                   const std::vector<std::vector<double>> &points,
+                   const std::string                      &entry);
+
+    /** One value per point, on all processes. u needs up-to-date ghosts. Collective. */
+    std::vector<double> evaluate(const Vector &u) const;
+
+  private:
+    struct Part
+    {
+      unsigned int slot; // of the gathered numbers
+      unsigned int dof;  // local index
+      double       weight;
+    };
+
+    void locate_on_lattice(const Nodes<dim> &nodes, const std::vector<dealii::Point<dim>> &points);
+    void locate_in_mesh(const dealii::DoFHandler<dim>         &dofs,
+                        const std::vector<dealii::Point<dim>> &points);
+    void locate_nearest(const Nodes<dim> &nodes, const std::vector<dealii::Point<dim>> &points);
+    void require_all_found(const std::vector<std::vector<double>> &points,
+                           const std::string                      &entry) const;
+
+    MPI_Comm          communicator;
+    unsigned int      n_points, n_slots;
+    std::vector<Part> parts;
+  };
+} // namespace PeriDeal

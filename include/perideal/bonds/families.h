@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/bonds/fictitious_nodes.h>
+#include <perideal/laws/lattice_family.h>
+#include <perideal/mesh/nodes.h>
+#include <perideal/scene/crack_geometry.h>
+#include <perideal/scene/scene.h>
+
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * The bonds of each node, one family at a time: who is bonded to whom and with which conductance. This is the plain definition of the
+   * peridynamic model, from which both forms of the operator are built.
+   *
+   * The heat that flows from j to i is W_ij (T_j - T_i) with
+   *
+   *   W_ij = V_i V_j w(xi) k_ij g_ij t_ij,   w = kernel * volume fraction / r^n
+   *
+   * (power; 2D per unit thickness, 1D per unit area), k_ij the bond's conductivity by the interface rule, t_ij the cracks' transmission, g_ij
+   * the surface correction. `Self term = paper` adds V_i^2 s(xi) k_ij for the touching neighbours, with the node's own volume; only then W is not symmetric.
+   *
+   * Neighbours are numbered like the nodes: owned, ghosts, then fictitious nodes from n_local() on. The order of a family is that of the lattice offsets
+   * (or of the relative positions), never of local numbers, so that sums come out the same on any number of processes.
+   */
+  template <int dim>
+  class Families
+  {
+  public:
+    struct Bond
+    {
+      unsigned int neighbor;
+      double       weight; // W_ij as above
+      double       intact; // W_ij without t_ij and g_ij
+      bool         cut;    // some crack separates the nodes
+    };
+
+    /** Adds the halo to the nodes. Collective. Throws UserError for empty families and isolated nodes. */
+    Families(Nodes<dim> &nodes, const Scene<dim> &scene);
+    ~Families();
+
+    /** The family of an owned node, in its fixed order. @p bonds is overwritten, its memory is reused. */
+    void bonds_of(const unsigned int node,
+                  std::vector<Bond> &bonds,
+                  const bool         with_self_term = true) const;
+
+    /** Relative position of a neighbour. */
+    dealii::Tensor<1, dim> bond_vector(const unsigned int node, const unsigned int neighbor) const;
+
+    const Nodes<dim>                       &nodes() const;
+    const std::vector<FictitiousNode<dim>> &fictitious() const;
+
+    /** On a lattice: the full family with weights w (unit conductivity), self term not included. Else empty. */
+    const std::vector<FamilyMember<dim>> &lattice_members() const;
+
+    /** Self term additions (own volume), empty if none. */
+    const std::vector<FamilyMember<dim>> &self_members() const;
+
+    /** Horizon as a length, and the largest distance of a bond (volume fractions may reach half a spacing farther). */
+    double horizon() const;
+    double reach() const;
+
+    /** One conductivity everywhere, so that the lattice form needs no corrections for it. */
+    bool   uniform_conductivity() const;
+    double conductivity(const unsigned int node) const;
+
+    /** Whether a relative position is that of a lattice member. */
+    bool is_offset(const dealii::Tensor<1, dim> &xi, const FamilyMember<dim> &member) const;
+
+    /** The nodes lie on a lattice, one per site. */
+    bool has_unique_sites() const;
+
+    /** Some bond of this node may cross a crack. */
+    bool near_crack(const unsigned int node) const;
+
+    /** Local number of the real node at a lattice site, or numbers::invalid_unsigned_int. Only without doubled nodes. */
+    unsigned int node_at(const typename Lattice<dim>::Index &site) const;
+
+    /** Crack-side scaling (DESIGN 1): factors of owned nodes and ghosts from the given rows; bonds_of() uses their pair means from now on. */
+    void set_node_factors(std::vector<double> factors);
+
+    /** Whether W is symmetric. */
+    bool symmetric() const;
+
+    std::size_t memory_consumption() const;
+
+  private:
+    struct Search; // neighbours off the lattice
+
+    void   find_weights(const Scene<dim> &scene);
+    void   index_lattice();
+    void   calibrate_off_lattice(const Scene<dim> &scene);
+    void   find_conductivities(const Scene<dim> &scene);
+    void   add_bond(const unsigned int node,
+                    const unsigned int neighbor,
+                    const double       w,
+                    std::vector<Bond> &bonds) const;
+    void   bonds_on_lattice(const unsigned int node, std::vector<Bond> &bonds) const;
+    void   bonds_off_lattice(const unsigned int node, std::vector<Bond> &bonds) const;
+    double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const;
+    double bond_conductivity(const unsigned int node, const unsigned int neighbor) const;
+    double off_lattice_weight(const double r) const;
+    void   add_self_term(const unsigned int node, std::vector<Bond> &bonds) const;
+    dealii::Point<dim> position(const unsigned int node) const;
+
+    Nodes<dim>                      *own_nodes;
+    const Material                  &material;
+    const Peridynamics              &parameters;
+    std::vector<CrackGeometry<dim>>  cracks;
+    double                           transmission, contact_conductance;
+    double                           delta, farthest = 0., factor = 1.;
+    bool                             on_lattice = false, uniform = true;
+    std::vector<FamilyMember<dim>>   members, self_additions;
+    std::vector<double>              conductivities, factors;
+    std::vector<FictitiousNode<dim>> outside;
+    typename Lattice<dim>::Index     corner, extent; // of the table of sites
+    std::vector<unsigned int>        node_of_site;
+    std::unordered_map<std::size_t, std::vector<unsigned int>> outside_of_site;
+    std::unique_ptr<Search>                                    search;
+
+    std::size_t site_key(const typename Lattice<dim>::Index &site) const;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/grid/tria.h>
+
+#include <perideal/scene/cracks.h>
+#include <perideal/scene/domain.h>
+
+#include <mpi.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** Boundary id of the two faces of a crack that is cut into the mesh. Always insulated. */
+  constexpr dealii::types::boundary_id crack_boundary_id = 100;
+
+  /** Boundary id of the hole of a plate with a hole. */
+  constexpr dealii::types::boundary_id hole_boundary_id = 6;
+
+  /**
+   * The mesh of a scene, distributed over the processes (in 1D every process knows all cells). Boxes are few coarse cells refined globally where the
+   * cell counts allow, because every process keeps the coarse mesh; `Cracks / Mesh = faces` keeps the crack on coarse faces and
+   * doubles its vertices. Boundary ids as in BoundaryConditions. Notes for the user are appended to @p notes.
+   *
+   * Throws UserError: crack not on faces, mesh file unreadable, broken or of other cells than quads and hexes, sides named in the scene
+   * that the mesh does not have. Collective.
+   */
+  template <int dim>
+  std::unique_ptr<dealii::Triangulation<dim>> build_mesh(const Domain<dim>        &domain,
+                                                         const Cracks<dim>        &cracks,
+                                                         const MPI_Comm            communicator,
+                                                         std::vector<std::string> &notes);
+} // namespace PeriDeal

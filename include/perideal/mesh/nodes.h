@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/partitioner.h>
+#include <deal.II/dofs/dof_handler.h>
+
+#include <perideal/mesh/lattice.h>
+#include <perideal/scene/choices.h>
+#include <perideal/scene/cracks.h>
+#include <perideal/scene/domain.h>
+
+#include <memory>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** What another process needs to know of a node to build bonds to it. */
+  template <int dim>
+  struct NodeRecord
+  {
+    dealii::types::global_dof_index global_index = 0;
+    double                          volume       = 0.;
+    std::array<double, dim>         position, crack_point;
+  };
+
+
+  /** A node's share of the boundary: its part of the area (3D), length (2D) or 1 (1D) of the faces of one boundary id. */
+  struct BoundaryShare
+  {
+    unsigned int               node;
+    dealii::types::boundary_id id;
+    double                     area;
+  };
+
+
+  /**
+   * Peridynamic nodes on a deal.II mesh: one per FE_Q(1) dof (mesh vertex; the volume is the node's share of the adjacent
+   * cells) or one per FE_DGQ(0) dof (cell centre; the volume is the cell's measure).
+   *
+   * Node l < n_owned() is the dof with global index first_owned() + l; ghosts follow once a halo has been added. All positions,
+   * volumes and shares are the same to the last bit on any number of processes.
+   */
+  template <int dim>
+  class Nodes
+  {
+  public:
+    /**
+     * @param dof_handler FE_Q(1) or FE_DGQ(0) with dofs distributed; on a lattice renumber them first with number_along_lattice().
+     * Collective.
+     */
+    Nodes(const dealii::DoFHandler<dim> &dof_handler,
+          const Domain<dim>             &domain,
+          const Cracks<dim>             &cracks,
+          const NodalVolume              nodal_volume);
+
+    unsigned int n_owned() const;
+    /** Owned nodes and ghosts. */
+    unsigned int                    n_local() const;
+    dealii::types::global_dof_index first_owned() const;
+    dealii::types::global_dof_index n_global() const;
+
+    const dealii::Point<dim> &position(const unsigned int node) const;
+    double                    volume(const unsigned int node) const;
+
+    /**
+     * The point that decides on which side of a crack the node is: its position, or for a node doubled by a crack cut into the mesh a
+     * point slightly inside its own cells.
+     */
+    dealii::Point<dim> crack_point(const unsigned int node) const;
+
+    /** Shares of owned nodes in boundary faces (both faces of a crack cut into the mesh are not listed). */
+    const std::vector<BoundaryShare> &boundary_shares() const;
+
+    /** The lattice of a box or a plate with a hole. Empty on mesh files. */
+    const std::optional<Lattice<dim>> &lattice() const;
+
+    /** Some lattice sites carry two nodes, because a crack was cut into the mesh. */
+    bool has_doubled_nodes() const;
+
+    /** Smallest edge of the lattice, or of the mesh's cells. */
+    double smallest_spacing() const;
+
+    const dealii::DoFHandler<dim> &dof_handler() const;
+    MPI_Comm                       communicator() const;
+
+    NodeRecord<dim> record(const unsigned int node) const;
+
+    /** Append ghosts (sorted by global index here). Collective. */
+    void set_ghosts(std::vector<NodeRecord<dim>> ghosts);
+
+    /** Owned nodes and halo, for vectors. Valid after set_ghosts(). */
+    const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &partitioner() const;
+
+    /** Bytes held, for the report. */
+    std::size_t memory_consumption() const;
+
+  private:
+    void find_positions(const Domain<dim> &domain);
+    void find_volumes(const NodalVolume nodal_volume);
+    void find_boundary_shares();
+    void find_crack_points(const Cracks<dim> &cracks);
+
+    const dealii::DoFHandler<dim>                             *dofs;
+    dealii::types::global_dof_index                            first;
+    unsigned int                                               owned_count = 0;
+    std::vector<dealii::Point<dim>>                            positions;
+    std::vector<double>                                        volumes;
+    std::unordered_map<unsigned int, dealii::Point<dim>>       crack_points;
+    std::vector<BoundaryShare>                                 shares;
+    std::optional<Lattice<dim>>                                regular;
+    bool                                                       doubled       = false;
+    double                                                     shortest_edge = 0.;
+    std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout;
+  };
+
+
+  /** Renumber dofs so that on each process x runs fastest, then y, then z. Only for meshes of a box. Collective. */
+  template <int dim>
+  void number_along_lattice(dealii::DoFHandler<dim> &dof_handler, const Domain<dim> &domain);
+} // namespace PeriDeal

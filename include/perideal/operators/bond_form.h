@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/bonds/families.h>
+
+#include <memory>
+#include <string>
+
+namespace PeriDeal
+{
+  /**
+   * How the sum over the bonds of each node, y_i = sum_j W_ij (u_i - u_j), is stored and evaluated. All forms give the same numbers to
+   * round-off. Evaluation allocates nothing and is not collective.
+   */
+  class BondForm
+  {
+  public:
+    virtual ~BondForm() = default;
+
+    /**
+     * @param values  owned and ghost values
+     * @param outside values of the fictitious nodes (may be null if there are none)
+     * @param y       n_owned sums, overwritten
+     */
+    virtual void apply(double *y, const double *values, const double *outside) const = 0;
+
+    /** Bytes held. */
+    virtual std::size_t memory_consumption() const = 0;
+
+    /** Numbers stored for bonds of this process. */
+    virtual unsigned long long n_stored() const = 0;
+
+    /** `lattice` or `stored`. */
+    virtual std::string name() const = 0;
+  };
+
+
+  /** Every bond stored, in compressed rows with 32-bit columns: any nodes, any bonds. */
+  template <int dim>
+  std::unique_ptr<BondForm> make_stored_form(const Families<dim> &families);
+
+  /**
+   * No bond stored: the family of a lattice is the same everywhere, so the sum is a convolution on a grid padded with zeros, minus a
+   * diagonal that knows the body's edge. Bonds that differ from the template (cut by a crack, other conductivity, self term at edges) are
+   * kept as a list of corrections. Only for nodes with unique lattice sites.
+   */
+  template <int dim>
+  std::unique_ptr<BondForm> make_lattice_form(const Families<dim> &families);
+
+  /** Whether the lattice form is possible and pays: unique sites and one conductivity. Says why not in @p reason. */
+  template <int dim>
+  bool lattice_form_suits(const Families<dim> &families, std::string &reason);
+} // namespace PeriDeal

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/bond_form.h>
+#include <perideal/operators/node_constraints.h>
+#include <perideal/operators/operator.h>
+
+#include <memory>
+
+namespace PeriDeal
+{
+  /**
+   * Peridynamic diffusion: rho c V_i dT_i/dt = sum_j W_ij (T_j - T_i) + loads (DESIGN 3, Bobaru 2012 eq 12 times the node's volume).
+   *
+   * Loads are the volume source, the natural flux through the node's share of a side, and convection as a surface source h A (T_inf - T).
+   * Vectors have the horizon-wide halo of the nodes.
+   */
+  template <int dim>
+  class BondOperator : public Operator
+  {
+  public:
+    /** Collective. Throws UserError, among others for isolated nodes, a storage that is not positive, a form that does not suit. */
+    BondOperator(Nodes<dim> &nodes, const Scene<dim> &scene);
+
+    void          initialize_vector(Vector &vector) const override;
+    void          apply(Vector &y, const Vector &x) const override;
+    void          residual(Vector &r, const Vector &u, const double t) const override;
+    void          distribute(Vector &u, const double t) const override;
+    void          distribute_homogeneous(Vector &x) const override;
+    void          clear_constrained(Vector &y) const override;
+    const Vector &lumped_capacity() const override;
+    bool          capacity_is_diagonal() const override;
+    void          apply_capacity(Vector &y, const Vector &x) const override;
+    const Vector &diagonal() const override;
+    Spectrum      spectrum() const override;
+    bool          symmetric() const override;
+    bool          depends_on_time() const override;
+    bool          has_steady_state() const override;
+    void          surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    bool          surrogate_is_exact() const override;
+    Balance       balance(const Vector &u, const double t, const bool steady) const override;
+    OperatorSize  size() const override;
+
+    const Families<dim> &families() const;
+
+    /** Which form is in use, and why, for the user. */
+    const std::string &form_note() const;
+
+    /** Values of the fictitious nodes for given node values (ghosts up to date) at time t. */
+    void fictitious_values(const Vector &u, const double t, std::vector<double> &values) const;
+
+  private:
+    struct SideLoad
+    {
+      unsigned int         node;
+      double               area;
+      const SideCondition *condition;
+    };
+
+    void choose_form(const OperatorForm wanted);
+    void find_capacity();
+    void find_side_loads();
+    void find_diagonal();
+    void scale_crack_sides();
+    void sum_bonds(Vector &y, const Vector &x, const double *outside) const;
+    void add_loads(Vector &r, const double t) const;
+    void add_loads_now(Vector &r, const double t) const;
+
+    const Scene<dim>                            &scene;
+    Families<dim>                                bonds;
+    NodeConstraints<dim>                         constraints;
+    std::unique_ptr<BondForm>                    form;
+    std::string                                  note;
+    Vector                                       capacity, bond_diagonal, constant_loads;
+    std::vector<SideLoad>                        fluxes, convections;
+    std::vector<std::pair<unsigned int, double>> convection_diagonal;
+    bool                                         loads_vary = false;
+    unsigned long long                           n_bonds = 0, n_nonzeros = 0;
+    double                                       gershgorin = 0.;
+    mutable Spectrum                             bounds;
+    mutable std::vector<double>                  outside_values, outside_signs_only;
+    mutable Vector                               scratch;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <perideal/operators/operator.h>
+#include <perideal/scene/crack_geometry.h>
+#include <perideal/scene/scene.h>
+
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Heat conduction with continuous finite elements Q1 to Q3 on the mesh as it is.
+   *
+   * Cracks: `faces` are in the mesh already (doubled vertices). `pairs` (Q1): in each cell with a pair of vertices that a crack separates, the
+   * cell matrix is replaced by the pair conductances w_ab = max(0, -K_ab) of the pairs that are not separated; a separated pair keeps the
+   * crack's transmission (DESIGN 1). With `Surface correction = crack scaling` the cell matrices next to cracks are multiplied by the mean of their vertices' factors.
+   * `removed`: cut cells conduct nothing.
+   *
+   * Vectors have the locally relevant dofs as ghosts.
+   */
+  template <int dim>
+  class FEMOperator : public Operator
+  {
+  public:
+    /** Collective. Throws UserError for material values that are not positive and for nodes that `removed` isolates. */
+    FEMOperator(const dealii::DoFHandler<dim> &dof_handler, const Scene<dim> &scene);
+
+    void          initialize_vector(Vector &vector) const override;
+    void          apply(Vector &y, const Vector &x) const override;
+    void          residual(Vector &r, const Vector &u, const double t) const override;
+    void          distribute(Vector &u, const double t) const override;
+    void          distribute_homogeneous(Vector &x) const override;
+    void          clear_constrained(Vector &y) const override;
+    const Vector &lumped_capacity() const override;
+    bool          capacity_is_diagonal() const override;
+    void          apply_capacity(Vector &y, const Vector &x) const override;
+    const Vector &diagonal() const override;
+    Spectrum      spectrum() const override;
+    bool          symmetric() const override;
+    bool          depends_on_time() const override;
+    bool          has_steady_state() const override;
+    void          surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    bool          surrogate_is_exact() const override;
+    Balance       balance(const Vector &u, const double t, const bool steady) const override;
+    OperatorSize  size() const override;
+
+    const dealii::DoFHandler<dim> &dof_handler() const;
+
+    /** Cells of this process that a crack cuts, by active cell index. */
+    const std::vector<bool> &cut_cells() const;
+
+  private:
+    struct Prescribed
+    {
+      unsigned int         dof; // local index
+      dealii::Point<dim>   position;
+      const SideCondition *condition;
+    };
+
+    struct CellData;
+
+    void find_prescribed();
+    void find_cut_cells();
+    void check_material() const;
+    void assemble();
+    void assemble_cell(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+                       CellData                                                     &data) const;
+    void keep_unseparated_pairs(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+                                CellData &data) const;
+    void assemble_loads(Vector &loads, const double t) const;
+    void add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
+    void find_crack_factors(CellData &data);
+    void find_gershgorin();
+    void mask(Vector &y, const double value = 0.) const;
+
+    const dealii::DoFHandler<dim>         &dofs;
+    const Scene<dim>                      &scene;
+    std::vector<CrackGeometry<dim>>        cracks;
+    dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
+    Vector                                 capacity, stiffness_diagonal, constant_loads;
+    mutable Vector                         scratch;
+    std::vector<Prescribed>                prescribed;
+    std::vector<bool>                      cut; // by active cell index
+    Vector                                 crack_factors;
+    bool                                   loads_vary = false, any_prescribed = false;
+    double                                 gershgorin = 0.;
+    mutable Spectrum                       bounds;
+  };
+} // namespace PeriDeal

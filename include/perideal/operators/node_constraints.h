@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/base/types.h>
+#include <perideal/bonds/families.h>
+
+#include <Eigen/SparseLU>
+#include <cstdint>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Which peridynamic nodes are not free: those that carry a Dirichlet value, and slaves whose value follows from other nodes so that a given heat
+   * flux comes out (`Flux treatment = extrapolation`, Bobaru 2012 section 3.2; `layer extrapolation`, Bobaru 2010 eq 22).
+   *
+   * Slaves near a corner depend on each other. Their small system is assembled and factored once on every process, and solved at each
+   * distribution.
+   */
+  template <int dim>
+  class NodeConstraints
+  {
+  public:
+    enum Kind : std::uint8_t
+    {
+      free,
+      prescribed,
+      slave
+    };
+
+    struct Prescribed
+    {
+      unsigned int         node;
+      const SideCondition *condition;
+    };
+
+    /** Throws UserError for treatments that need a box. Collective. */
+    NodeConstraints(const Families<dim> &families, const Scene<dim> &scene);
+
+    /** Of an owned node. */
+    Kind kind(const unsigned int node) const;
+
+    const std::vector<Prescribed> &prescribed_nodes() const;
+
+    /** Slaves exist on some process. */
+    bool any_slave() const;
+
+    /** Something is prescribed on some process. */
+    bool any_prescribed() const;
+
+    /** Set prescribed values and slaves for time t. Ghosts are exchanged if there are slaves. Collective. */
+    void distribute(Vector &u, const double t) const;
+
+    /** The same with zero values and fluxes. Collective. */
+    void distribute_homogeneous(Vector &x) const;
+
+    /** Set entries that are not free to the given value. */
+    void mask(Vector &y, const double value = 0.) const;
+
+  private:
+    struct Slave
+    {
+      unsigned int         node;
+      const SideCondition *condition;        // the flux
+      double               flux_coefficient; // multiplies the flux into the body
+      int                  coupled = -1;     // number in the coupled system
+      std::vector<std::pair<unsigned int, double>>
+        masters; // local nodes that are not coupled slaves
+    };
+
+    void find_prescribed(const Families<dim> &families, const Scene<dim> &scene);
+    void find_slaves(const Families<dim> &families, const Scene<dim> &scene);
+    void extrapolate(const Families<dim> &families, const unsigned int side, Slave &slave) const;
+    void extrapolate_layer(const Families<dim> &families,
+                           const unsigned int   side,
+                           const Scene<dim>    &scene);
+    void couple_slaves(const Nodes<dim> &nodes);
+    void set_slaves(Vector &u, const double t, const bool homogeneous) const;
+
+    const Nodes<dim>                            &nodes;
+    std::vector<Kind>                            kinds; // owned and ghosts
+    std::vector<Prescribed>                      prescribed_list;
+    std::vector<Slave>                           slaves;
+    bool                                         slaves_exist = false, prescribed_exist = false;
+    unsigned int                                 n_coupled = 0;
+    Eigen::SparseLU<Eigen::SparseMatrix<double>> coupling;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/base/types.h>
+
+#include <map>
+#include <string>
+
+namespace dealii::TrilinosWrappers
+{
+  class SparseMatrix;
+}
+
+namespace PeriDeal
+{
+  /** Bounds of the eigenvalues of C^{-1} K, the fastest rate of decay of the model. */
+  struct Spectrum
+  {
+    double safe  = 0.; // Gershgorin
+    double sharp = 0.; // Lanczos (symmetric) or power iterations, rounded up to three digits
+  };
+
+
+  /** Heat flows at one instant, all positive into the body. */
+  struct Balance
+  {
+    std::map<std::string, double> sides;        // by the side's name
+    double                        sources = 0.; // volume sources
+    double                        stored  = 0.; // rate of change of the heat in the free unknowns
+    double                        content = 0.; // sum C_i T_i
+
+    /** Sum of everything that enters. */
+    double throughput() const;
+
+    /** Everything entering, minus what is stored. */
+    double imbalance() const;
+  };
+
+
+  /** What a model costs, for summary.json. */
+  struct OperatorSize
+  {
+    unsigned long long unknowns = 0, bonds = 0, nonzeros = 0;
+    std::size_t        memory =
+      0; // bytes of this process's nodes, bonds and matrices, without mesh and DoFHandler
+    std::string form; // lattice | stored | matrix
+  };
+
+
+  /**
+   * A semi-discrete model C du/dt = f(t) - K u with some unknowns prescribed (Dirichlet values) and some slaved to others. Every
+   * model has this one interface, so time steppers and solvers know nothing of bonds or elements.
+   *
+   * Vectors come from initialize_vector(). K is positive semidefinite; f, K u are in power (W; per unit thickness in 2D). "Free" are the unknowns
+   * that are neither prescribed nor slaves. All functions are collective unless stated; ghosts are exchanged inside, arguments need no
+   * up-to-date ghost values.
+   */
+  class Operator
+  {
+  public:
+    virtual ~Operator() = default;
+
+    virtual void initialize_vector(Vector &vector) const = 0;
+
+    /**
+     * y = K x on free unknowns for homogeneous conditions: prescribed values of x must be zero, its slaves are filled in here.
+     * Entries of y that are not free are set to zero.
+     */
+    virtual void apply(Vector &y, const Vector &x) const = 0;
+
+    /** r = f(t) - K u on free unknowns, zero elsewhere. u must have been through distribute(u, t). */
+    virtual void residual(Vector &r, const Vector &u, const double t) const = 0;
+
+    /** Set the prescribed and the slave values of u at time t. */
+    virtual void distribute(Vector &u, const double t) const = 0;
+
+    /** Set prescribed values to zero, slaves as for zero loads: what apply() assumes of x. */
+    virtual void distribute_homogeneous(Vector &x) const = 0;
+
+    /** Set entries that are not free to zero. Not collective. */
+    virtual void clear_constrained(Vector &y) const = 0;
+
+    /** Diagonal of C, or its lumped form. Positive everywhere. Not collective. */
+    virtual const Vector &lumped_capacity() const = 0;
+
+    /** Whether C is its diagonal: explicit steppers need that. Not collective. */
+    virtual bool capacity_is_diagonal() const = 0;
+
+    /** y = C x. */
+    virtual void apply_capacity(Vector &y, const Vector &x) const = 0;
+
+    /** Diagonal of K, one on unknowns that are not free. Not collective. */
+    virtual const Vector &diagonal() const = 0;
+
+    /** Bounds of the spectrum of C^{-1} K (with diagonal C). Computed once. */
+    virtual Spectrum spectrum() const = 0;
+
+    /** K is symmetric on the free unknowns: CG and Chebyshev expansions are allowed. Not collective. */
+    virtual bool symmetric() const = 0;
+
+    /** Loads or prescribed values change with time. Not collective. */
+    virtual bool depends_on_time() const = 0;
+
+    /** Some unknown is prescribed or held by convection, so that a steady state is determined. Not collective. */
+    virtual bool has_steady_state() const = 0;
+
+    /**
+     * A sparse matrix spectrally near K on the free unknowns, cheap enough for algebraic multigrid: K itself for finite elements, the graph
+     * Laplacian of the nearest neighbours, cut where bonds are cut, for peridynamics. Rows not free are those of the identity.
+     */
+    virtual void surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const = 0;
+
+    /** The surrogate is K itself, so that multigrid on it needs no further smoothing. Not collective. */
+    virtual bool surrogate_is_exact() const = 0;
+
+    /** Heat through each side and in the body; u must have been through distribute(u, t). @p steady leaves out storage. */
+    virtual Balance balance(const Vector &u, const double t, const bool steady) const = 0;
+
+    virtual OperatorSize size() const = 0;
+
+    /** Number of calls of apply() and residual() so far. Not collective. */
+    unsigned long long n_applications() const
+    {
+      return applications;
+    }
+
+  protected:
+    mutable unsigned long long applications = 0;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/operator.h>
+
+#include <functional>
+
+namespace PeriDeal
+{
+  /**
+   * Upper estimate of the largest eigenvalue of C^{-1} K: Lanczos with full reorthogonalisation in the inner product of C if K is
+   * symmetric (largest Ritz value plus its residual), else power iterations with a margin. Rounded up to three digits, so that it does not depend on
+   * the number of processes, and never above the Gershgorin bound. The start vector is made from positions by @p fill. Collective.
+   */
+  double sharp_bound(const Operator                            &op,
+                     const double                               gershgorin,
+                     const std::function<void(Vector &vector)> &fill);
+
+  /** The number rounded up to three significant digits. */
+  double round_up(const double x);
+
+  /** A number in [-1, 1] that looks random but depends on the position alone. */
+  template <typename PointType>
+  double position_noise(const PointType &p)
+  {
+    double phase = 0.;
+    for (unsigned int d = 0; d < PointType::dimension; ++d)
+      phase += (12.9898 + 65.233 * d) * static_cast<float>(p[d]) * 1e3;
+    const double s = std::sin(phase) * 43758.5453;
+    return 2. * (s - std::floor(s)) - 1.;
+  }
+} // namespace PeriDeal

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/data_out_base.h>
+#include <deal.II/dofs/dof_handler.h>
+
+#include <perideal/base/types.h>
+
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** A named field for output: one component, or one per coordinate direction. Vectors need up-to-date ghosts. */
+  struct OutputField
+  {
+    std::string         name;
+    std::vector<Vector> components;
+  };
+
+
+  /**
+   * Writes fields of one model at one time: VTU pieces with a PVTU record, and HDF5 with an XDMF description. Patches are made straight
+   * from the dofs (vertex dofs, or cell centres as constants per cell), so that vertices doubled by a crack stay apart and
+   * vectors need no finite element system. In 1D the HDF5 file is written by rank 0 (`/nodes`, `/cells`, one data set per field).
+   */
+  template <int dim>
+  class FieldWriter : public dealii::DataOutInterface<dim>
+  {
+  public:
+    /** @param directory where the series goes; @param series its name, for example `finite_elements` */
+    FieldWriter(const dealii::DoFHandler<dim> &dofs,
+                const std::string             &directory,
+                const std::string             &series);
+
+    /** Returns the name of the HDF5 file relative to the directory (empty if not asked for). Collective. */
+    std::string write(const std::vector<OutputField> &fields,
+                      const double                    time,
+                      const bool                      vtu,
+                      const bool                      hdf5);
+
+  private:
+    const std::vector<dealii::DataOutBase::Patch<dim, dim>> &get_patches() const override;
+    std::vector<std::string>                                 get_dataset_names() const override;
+    std::vector<std::tuple<unsigned int,
+                           unsigned int,
+                           std::string,
+                           dealii::DataComponentInterpretation::DataComponentInterpretation>>
+    get_nonscalar_data_ranges() const override;
+
+    void build_patches(const std::vector<OutputField> &fields);
+    void write_vtu_series(const double time);
+    void write_hdf5_file(const std::string &name, const double time);
+    void write_1d_hdf5_file(const std::string &name) const;
+
+    const dealii::DoFHandler<dim>                    &dofs;
+    std::string                                       directory, series;
+    unsigned int                                      n_written = 0;
+    std::vector<dealii::DataOutBase::Patch<dim, dim>> patches;
+    std::vector<std::string>                          names;
+    std::vector<std::pair<unsigned int, std::string>>
+      vectors; // first component and name of each vector field
+    std::vector<std::pair<double, std::string>> vtu_records;
+    std::vector<dealii::XDMFEntry>              xdmf_entries;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/types.h>
+
+#include <perideal/scene/expression.h>
+#include <perideal/scene/section.h>
+
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * One condition on one side: `name` as the user wrote it, `id` the deal.II boundary id (box: 0
+   * left, 1 right, 2 bottom, 3 top, 4 back, 5 front).
+   */
+  struct SideCondition
+  {
+    std::string                name;
+    dealii::types::boundary_id id = 0;
+    Expression value;       // Dirichlet value, flux into the body, or ambient value of a convection
+    Expression coefficient; // convection only
+  };
+
+  /**
+   * Section `Boundary conditions`. The lists keep the user's order: where two sides with values
+   * meet, the one named first holds. A side named nowhere is insulated.
+   */
+  template <int dim>
+  class BoundaryConditions : public SceneSection
+  {
+  public:
+    BoundaryConditions();
+
+    std::vector<SideCondition>              dirichlet, flux, convection;
+    std::vector<dealii::types::boundary_id> symmetry;
+
+    /** The condition of the given list on a side, or nullptr. */
+    static const SideCondition *find(const std::vector<SideCondition> &list,
+                                     const dealii::types::boundary_id  id);
+
+    /** Some value, flux or ambient value changes with time. */
+    bool depends_on_time() const;
+
+    /**
+     * @param box_sides whether sides have the names of a box; else numbers (mesh boundary ids)
+     * only.
+     * @param hole      whether there is a side `hole` (boundary id 6).
+     * Throws UserError: unknown sides, sides named twice, conditions that contradict each other on
+     * a side, wrong formulas.
+     */
+    void parse(const bool box_sides, const bool hole = false);
+
+  private:
+    dealii::types::boundary_id side_id(const std::string &name,
+                                       const std::string &entry,
+                                       const bool         box_sides,
+                                       const bool         hole) const;
+
+    std::vector<SideCondition> parse_list(const std::string &entry,
+                                          const bool         box_sides,
+                                          const bool         hole) const;
+
+    /** An error if the list of an entry names a side that another entry names, too. */
+    void refuse_both(const std::string                &entry,
+                     const std::vector<SideCondition> &list,
+                     const std::string                &other_entry,
+                     const dealii::types::boundary_id  id) const;
+  };
+
+  /**
+   * left, right, bottom, top, back, front in the order of deal.II's boundary ids, 2 dim of them.
+   */
+  const std::vector<std::string> &box_side_names();
+} // namespace PeriDeal

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+/**
+ * @file
+ * The choices of a scene file that pure laws also take: enumerations and
+ * nothing else, so that the laws need no parameter handler.
+ */
+
+namespace PeriDeal
+{
+  enum class KernelShape
+  {
+    constant,
+    conical,
+    gaussian
+  };
+
+  enum class VolumeFraction
+  {
+    none,
+    linear,
+    exact
+  };
+
+  enum class Calibration
+  {
+    discrete,
+    analytic
+  };
+
+  enum class SelfTerm
+  {
+    none,
+    paper
+  };
+
+  enum class NodalVolume
+  {
+    partial,
+    full
+  };
+
+  enum class BoundaryTreatment
+  {
+    none,
+    layer,
+    fictitious_mirror,
+    fictitious_constant
+  };
+
+  enum class FluxTreatment
+  {
+    natural,
+    extrapolation,
+    layer_extrapolation
+  };
+
+  enum class SurfaceCorrection
+  {
+    none,
+    crack_scaling
+  };
+
+  enum class OperatorForm
+  {
+    automatic,
+    lattice,
+    stored
+  };
+
+  enum class InterfaceRule
+  {
+    minimum,
+    arithmetic,
+    harmonic
+  };
+} // namespace PeriDeal

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/section.h>
+
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** Section `Time`. */
+  class TimeControl : public SceneSection
+  {
+  public:
+    TimeControl();
+
+    bool        steady   = false;
+    double      end_time = 1.;
+    std::string stepper =
+      "auto"; // auto | euler | rk4 | rkc2 | chebyshev | crank nicolson | bdf2 | sdirk2
+    double time_step = -1.; // negative: auto
+    double tolerance = 1e-4;
+
+    void parse();
+  };
+
+
+  /** Section `Solver`. */
+  class SolverControlParameters : public SceneSection
+  {
+  public:
+    SolverControlParameters();
+
+    double       tolerance      = 1e-10;
+    unsigned int max_iterations = 1000;
+
+    void parse();
+  };
+
+
+  /** Section `Output`: points are stored as text-free coordinates, dim numbers each. */
+  template <int dim>
+  class OutputControl : public SceneSection
+  {
+  public:
+    OutputControl();
+
+    bool vtu = true, hdf5 = true;
+    std::vector<double>
+      write_times; // sorted, without the end time unless given; from `Write at` and `Write every`
+    std::vector<std::vector<double>> probes;
+    std::vector<std::vector<double>> line; // the points of the line, evenly spaced, ends included
+
+    /**
+     * Throws UserError. @param end_time last time written by `Write every`; times beyond it are an
+     * error.
+     */
+    void parse(const double end_time, const bool steady);
+
+  private:
+    void parse_write_times(const double end_time, const bool steady);
+
+    void parse_points_of_output();
+  };
+
+
+  /** Section `Reference`: the exact solution to compare with. */
+  class Reference : public SceneSection
+  {
+  public:
+    Reference();
+
+    std::string solution; // expression of x, y, z, t or the name of an exact solution; empty: none
+
+    void parse();
+  };
+
+
+  /** Section `Units`: labels for reports only. */
+  class Units : public SceneSection
+  {
+  public:
+    Units();
+
+    std::string length = "m", time = "s", temperature = "K";
+
+    void parse();
+  };
+} // namespace PeriDeal

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * One static crack: a segment in 2D, a planar polygon in 3D. Pure geometry.
+   *
+   * The normal points to the crack's *left* side: in 2D the direction from start to end turned by +90 degrees, in 3D the polygon's
+   * right-hand normal. A point exactly on the crack (within 1e-10 of the crack's size) belongs to that side, so that
+   * a crack through a row of nodes acts like the same crack moved by an infinitesimal distance against its normal. A strict crossing
+   * test would let such nodes keep all of their bonds, and heat would leak through the crack.
+   */
+  template <int dim>
+  class CrackGeometry
+  {
+  public:
+    /** @param corners two points in 2D; three or more corners of a planar polygon in 3D. */
+    explicit CrackGeometry(const std::vector<dealii::Point<dim>> &corners);
+
+    /** Whether the straight line between two points crosses the crack. Symmetric in its arguments. The tip belongs to the crack. */
+    bool separates(const dealii::Point<dim> &a, const dealii::Point<dim> &b) const;
+
+    /** Signed distance to the crack's line or plane, positive on the left side; points on it count as positive. */
+    double signed_distance(const dealii::Point<dim> &p) const;
+
+    /** Whether the point lies on the crack itself (not only on its line or plane). */
+    bool contains(const dealii::Point<dim> &p) const;
+
+    /** Whether the ball of the given radius about p meets the crack's bounding box: a quick test to skip far nodes. */
+    bool is_near(const dealii::Point<dim> &p, const double radius) const;
+
+    const dealii::Tensor<1, dim> &normal() const;
+
+    /** Length in 2D, area in 3D. */
+    double measure() const;
+
+    const std::vector<dealii::Point<dim>> &corners() const;
+
+  private:
+    bool plane_point_inside(const dealii::Point<dim> &p) const;
+
+    std::vector<dealii::Point<dim>> corner_points;
+    dealii::Point<dim>              lowest, highest;
+    dealii::Tensor<1, dim>          unit_normal, first_axis, second_axis;
+    double                          size = 0., tolerance = 0., content = 0.;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <memory>
+#include <string>
+
+namespace PeriDeal
+{
+  /**
+   * A number given as a formula of x, y, z and t (muparser syntax), compiled when it is read so
+   * that a mistake in it is reported with its position before anything runs. Copies share the
+   * compiled form. Not thread safe.
+   */
+  class Expression
+  {
+  public:
+    /** The constant zero. */
+    Expression();
+
+    explicit Expression(const double constant);
+
+    /**
+     * @param text  the formula
+     * @param where entry and section for messages, for example "'Source' in section 'Initial and
+     * source'" Throws UserError with the position and what is wrong.
+     */
+    Expression(const std::string &text, const std::string &where);
+
+    /** Value at a point; coordinates beyond dim are zero. Throws UserError if it is not finite. */
+    template <int dim>
+    double value(const dealii::Point<dim> &p, const double t = 0.) const;
+
+    /** No x, y, z or t in it. */
+    bool is_constant() const;
+
+    bool depends_on_time() const;
+
+    bool depends_on_position() const;
+
+    const std::string &text() const;
+
+  private:
+    struct Compiled;
+    std::shared_ptr<Compiled> compiled;
+    std::string               formula, where;
+    double                    constant;
+  };
+} // namespace PeriDeal

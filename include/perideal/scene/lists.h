@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <perideal/base/user_error.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  /*
+   * The texts of a scene: `;` separates sides and points, the first `:` separates a name from its
+   * value, `,` separates components; separators count only outside parentheses. In all functions
+   * below @p where names the entry and its section for messages, for example "'Cells' in section
+   * 'Domain'".
+   */
+
+  /** Throw the UserError "Entry <where>: <what>". */
+  [[noreturn]] void entry_error(const std::string &where, const std::string &what);
+
+  /** Without blanks, tabs and line ends around it. */
+  std::string trimmed(const std::string &text);
+
+  /**
+   * The trimmed pieces between separators outside parentheses. No piece for an empty text; one
+   * separator at the end is allowed.
+   */
+  std::vector<std::string> split_list(const std::string &text, const char separator);
+
+  /** Name and value around the first `:`, or an error if one of them is missing. */
+  std::pair<std::string, std::string> name_and_value(const std::string &text,
+                                                     const std::string &where);
+
+  /** A finite decimal number and nothing else. */
+  double parse_number(const std::string &text, const std::string &where);
+
+  /** A whole number from 0 to @p maximum. */
+  unsigned int parse_whole_number(const std::string &text,
+                                  const std::string &where,
+                                  const unsigned int maximum = 4294967294u);
+
+  /** Exactly @p n numbers separated by commas; @p what is what they are called ("coordinates"). */
+  std::vector<double> parse_numbers(const std::string &text,
+                                    const unsigned int n,
+                                    const std::string &what,
+                                    const std::string &where);
+
+  /** dim coordinates separated by commas. */
+  template <int dim>
+  dealii::Point<dim> parse_point(const std::string &text, const std::string &where);
+
+  /** Points separated by semicolons. */
+  template <int dim>
+  std::vector<dealii::Point<dim>> parse_points(const std::string &text, const std::string &where);
+
+  /** Position of @p text in @p names, or an error with the names and the nearest of them. */
+  unsigned int choice_of(const std::string              &text,
+                         const std::vector<std::string> &names,
+                         const std::string              &where);
+
+  /** " Did you mean 'X'?" or nothing, to end a message about an unknown name. */
+  std::string did_you_mean(const std::string &name, const std::vector<std::string> &known);
+
+  /** Shortest decimal text that reads back as the same number, as far as 12 digits allow. */
+  std::string number_text(const double value);
+} // namespace PeriDeal

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/choices.h>
+#include <perideal/scene/expression.h>
+#include <perideal/scene/section.h>
+
+namespace PeriDeal
+{
+  /**
+   * Section `Material`: conductivity and storage (Density x Heat capacity) as expressions of x, y,
+   * z.
+   */
+  class Material : public SceneSection
+  {
+  public:
+    Material();
+
+    Expression    conductivity, density, heat_capacity;
+    InterfaceRule interface_rule = InterfaceRule::arithmetic;
+
+    bool uniform_conductivity() const;
+
+    /** rho c at a point. */
+    template <int dim>
+    double storage(const dealii::Point<dim> &p) const;
+
+    void parse();
+  };
+
+
+  /** Section `Initial and source`. */
+  class InitialAndSource : public SceneSection
+  {
+  public:
+    InitialAndSource();
+
+    Expression initial_value, source;
+
+    void parse();
+  };
+} // namespace PeriDeal

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/choices.h>
+#include <perideal/scene/section.h>
+
+#include <string>
+
+namespace PeriDeal
+{
+  /** Section `Peridynamics`. */
+  class Peridynamics : public SceneSection
+  {
+  public:
+    Peridynamics();
+
+    double            horizon_ratio      = 3.;  // m, used when horizon is not given
+    double            horizon            = -1.; // length; negative: not given
+    KernelShape       kernel             = KernelShape::conical;
+    unsigned int      kernel_exponent    = 2;
+    VolumeFraction    volume_fraction    = VolumeFraction::linear;
+    Calibration       calibration        = Calibration::discrete;
+    SelfTerm          self_term          = SelfTerm::none;
+    NodalVolume       nodal_volume       = NodalVolume::partial;
+    BoundaryTreatment treatment          = BoundaryTreatment::none;
+    unsigned int      layer_rows         = 1;
+    FluxTreatment     flux_treatment     = FluxTreatment::natural;
+    SurfaceCorrection surface_correction = SurfaceCorrection::none;
+    OperatorForm form = OperatorForm::automatic; // entry `Operator form` = auto | lattice | stored
+
+    /** Throws UserError for values out of range and contradicting entries. */
+    void parse();
+
+  private:
+    void declare_quadrature();
+
+    void declare_boundary();
+  };
+
+
+  /** Section `Finite elements`. */
+  class FiniteElements : public SceneSection
+  {
+  public:
+    FiniteElements();
+
+    unsigned int degree              = 1;
+    bool         consistent_capacity = false;
+
+    void parse();
+  };
+} // namespace PeriDeal

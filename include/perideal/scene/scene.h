@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/control.h>
+#include <perideal/scene/cracks.h>
+#include <perideal/scene/domain.h>
+#include <perideal/scene/material.h>
+#include <perideal/scene/models.h>
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  enum class Model
+  {
+    finite_elements,
+    peridynamics
+  };
+
+  /** `finite elements` or `peridynamics`: as in scenes and in all output files. */
+  std::string to_string(const Model model);
+
+
+  /** The entries outside all sections. */
+  class General : public SceneSection
+  {
+  public:
+    General();
+
+    std::string        title, output_directory;
+    unsigned int       dimension = 2;
+    std::vector<Model> models; // in the order the user named them
+
+    /**
+     * Throws UserError: unknown physics or models, none or one twice, a dimension other than 1,
+     * 2, 3.
+     */
+    void parse();
+  };
+
+
+  /**
+   * All that a user describes in one .prm file, parsed and checked. A scene has the defaults once
+   * it is constructed; its values come from parse_scene(), or from SceneSection::set() and
+   * parse_and_validate().
+   *
+   * Scenes can follow each other in one program. While parse_scene() works, only the scene that it
+   * fills should be alive, since deal.II's ParameterAcceptor gives the texts of a section to all
+   * objects of that section.
+   */
+  template <int dim>
+  struct Scene
+  {
+    General                 general;
+    Domain<dim>             domain;
+    Material                material;
+    InitialAndSource        initial_and_source;
+    BoundaryConditions<dim> boundary_conditions;
+    Cracks<dim>             cracks;
+    Peridynamics            peridynamics;
+    FiniteElements          finite_elements;
+    TimeControl             time;
+    SolverControlParameters solver;
+    OutputControl<dim>      output;
+    Reference               reference;
+    Units                   units;
+
+    /**
+     * The horizon as a length: `Horizon`, or `Horizon ratio` times the smallest spacing of the
+     * lattice.
+     */
+    double horizon() const;
+
+    /** All sections in the order of a scene file. */
+    std::vector<SceneSection *> sections();
+
+    /** Parse all sections and check them one by one and against each other. Throws UserError. */
+    void parse_and_validate();
+  };
+
+
+  /**
+   * The text of a scene file with command line overrides (`Section/Entry=value`) applied.
+   */
+  struct SceneText
+  {
+    std::string file_name, text;
+  };
+
+  /**
+   * Read a scene file on rank 0 and broadcast it, scan its lines against the declared entries
+   * (unknown section or entry with the nearest known name, entry in the wrong section, duplicate,
+   * missing `end`, ...), and apply the overrides. Collective; throws the same UserError on all
+   * processes.
+   */
+  SceneText read_scene(const std::string              &file_name,
+                       const std::vector<std::string> &overrides,
+                       const MPI_Comm                  communicator);
+
+  /** First pass: the entry `Dimension`. Throws UserError unless 1, 2 or 3. */
+  unsigned int dimension_of(const SceneText &text);
+
+  /** Second pass: the entries into the scene, then parse_and_validate(). */
+  template <int dim>
+  void parse_scene(const SceneText &text, Scene<dim> &scene);
+
+  /** The scene with all defaults, as .prm text (after parse_scene). */
+  std::string scene_with_defaults();
+
+  /** All entries with type, default, unit and explanation; format is prm, markdown, JSON or XML. */
+  std::string parameter_manual(const std::string &format);
+} // namespace PeriDeal

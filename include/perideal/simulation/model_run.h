@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <perideal/analysis/comparison.h>
+#include <perideal/base/timing.h>
+#include <perideal/mesh/nodes.h>
+#include <perideal/operators/operator.h>
+#include <perideal/output/field_writer.h>
+#include <perideal/scene/scene.h>
+#include <perideal/solvers/stepper.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * One model of a scene during a run: its unknowns on the shared mesh, its operator, its solution, and what both have cost so far. All
+   * functions are collective.
+   */
+  template <int dim>
+  class ModelRun
+  {
+  public:
+    virtual ~ModelRun() = default;
+
+    /** As in scenes and output files. */
+    virtual std::string name() const = 0;
+
+    virtual const dealii::DoFHandler<dim> &dofs() const = 0;
+
+    /** Nodes on a lattice, for reading values at points without a mesh search; nullptr for finite elements. */
+    virtual const Nodes<dim> *nodes() const = 0;
+
+    virtual const Operator &op() const = 0;
+
+    /** Initial value on the unknowns. */
+    virtual void set_initial_value(Vector &u) const = 0;
+
+    /** Fields for output besides the temperature; u has up-to-date ghosts. */
+    virtual std::vector<OutputField> derived_fields(const Vector &u, const double t) const = 0;
+
+    virtual Difference error(
+      const Vector                                            &u,
+      const std::function<double(const dealii::Point<dim> &)> &exact) const = 0;
+
+    /** What was chosen, for the report: name and value. */
+    virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
+
+    Vector                   solution;
+    std::unique_ptr<Stepper> stepper; // null if steady
+    unsigned int             steady_iterations = 0;
+    Timings                  timings;
+  };
+
+
+  /** Builds a model's unknowns and operator. The time goes into the run's timings. */
+  template <int dim>
+  std::unique_ptr<ModelRun<dim>> make_model_run(const Model                       model,
+                                                const dealii::Triangulation<dim> &mesh,
+                                                const Scene<dim>                 &scene);
+} // namespace PeriDeal

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/grid/tria.h>
+
+#include <perideal/analysis/exact_solution.h>
+#include <perideal/analysis/point_evaluator.h>
+#include <perideal/base/progress.h>
+#include <perideal/output/result_files.h>
+#include <perideal/simulation/model_run.h>
+
+#include <map>
+#include <memory>
+
+namespace PeriDeal
+{
+  struct ResultRecord;
+
+  /**
+   * Owns and wires the members of a run: mesh, models, steppers, output. All models of the scene advance together from one output time
+   * to the next, so that they can be compared. No numerics here. All functions are collective and throw UserError.
+   */
+  template <int dim>
+  class Simulation
+  {
+  public:
+    /** @param scene parsed; @param text what it was read from; @param quiet no messages but errors */
+    Simulation(const Scene<dim> &scene,
+               const SceneText  &text,
+               const MPI_Comm    communicator,
+               const bool        quiet);
+    ~Simulation();
+
+    /** Compute, write all files, summary.json last. */
+    void run();
+
+    /** Build everything, say what a run would need, compute and write nothing. */
+    void dry_run();
+
+  private:
+    void                build();
+    void                make_steppers();
+    void                make_evaluators();
+    void                make_reference();
+    void                advance_to(const double t);
+    void                write_output(const double t);
+    void                add_points(const double t);
+    void                add_totals(const double t, ModelRun<dim> &model);
+    void                add_errors(const double t);
+    void                compare_models(const double t);
+    void                write_fields(const double t);
+    void                write_summary();
+    void                describe(const ModelRun<dim> &model) const;
+    void                check_sides() const;
+    std::vector<double> output_times() const;
+    double              expected_applications(const ModelRun<dim> &model) const;
+    double              time_of_application(const ModelRun<dim> &model) const;
+
+    const Scene<dim>                                 &scene;
+    const SceneText                                  &text;
+    MPI_Comm                                          communicator;
+    mutable Progress                                  progress;
+    Timings                                           timings;
+    std::unique_ptr<dealii::Triangulation<dim>>       mesh;
+    std::vector<std::unique_ptr<ModelRun<dim>>>       models;
+    std::vector<std::unique_ptr<FieldWriter<dim>>>    writers;
+    std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers;
+    std::unique_ptr<ExactSolution>                    exact;
+    std::unique_ptr<PointTable>                       probes, line;
+    std::unique_ptr<ResultRecord>                     record;
+    Vector difference; // peridynamics minus finite elements, at the nodes
+    double now = 0.;
+  };
+} // namespace PeriDeal

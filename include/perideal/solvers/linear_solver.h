@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/operator.h>
+#include <perideal/solvers/preconditioner.h>
+
+namespace PeriDeal
+{
+  /**
+   * Solves (a C + b K) x = rhs on the free unknowns: CG if K is symmetric, else restarted GMRES, with the multigrid preconditioner. The preconditioner
+   * is kept while b/a stays within a factor of three of what it was made for.
+   */
+  class LinearSolver
+  {
+  public:
+    /**
+     * @param tolerance relative residual. Throws UserError, naming the entries of section 'Solver', if it is not reached.
+     */
+    LinearSolver(const Operator &op, const double tolerance, const unsigned int max_iterations);
+
+    /** Returns the number of iterations. x is the start on entry; its entries that are not free must be zero. Collective. */
+    unsigned int solve(const double  capacity_factor,
+                       const double  stiffness_factor,
+                       Vector       &x,
+                       const Vector &rhs);
+
+  private:
+    const Operator         &op;
+    const double            tolerance;
+    const unsigned int      max_iterations;
+    MultigridPreconditioner preconditioner;
+    double                  built_capacity = -1., built_stiffness = -1.;
+  };
+
+
+  /**
+   * The steady state f(t) = K u; u holds the start on entry. Returns the number of iterations. Throws UserError if nothing fixes the
+   * level of the solution. Collective.
+   */
+  unsigned int solve_steady(const Operator    &op,
+                            Vector            &u,
+                            const double       t,
+                            const double       tolerance,
+                            const unsigned int max_iterations);
+} // namespace PeriDeal

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/operator.h>
+
+#include <memory>
+
+namespace PeriDeal
+{
+  /**
+   * Approximate inverse of a C + b K: algebraic multigrid (Trilinos ML) on the operator's surrogate matrix, plus, where that is not K itself, the inverse
+   * diagonal. Multigrid on the nearest neighbours' graph takes care of what varies slowly; on what varies fast it
+   * is too stiff by the number of bonds in a family, and there K is its diagonal. Symmetric positive definite.
+   */
+  class MultigridPreconditioner
+  {
+  public:
+    explicit MultigridPreconditioner(const Operator &op);
+    ~MultigridPreconditioner();
+
+    /** Set up for a C + b K. Collective. */
+    void initialize(const double capacity_factor, const double stiffness_factor);
+
+    /** y = P^{-1} x; entries that are not free are zero. Collective. */
+    void vmult(Vector &y, const Vector &x) const;
+
+  private:
+    struct Data;
+
+    const Operator       &op;
+    std::unique_ptr<Data> data;
+  };
+} // namespace PeriDeal

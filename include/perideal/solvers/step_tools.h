@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/operator.h>
+
+#include <string>
+
+namespace PeriDeal
+{
+  /** rate = C^{-1} (f(t) - K u) with diagonal C; u is distributed at t first. Collective. */
+  void compute_rate(const Operator &op, Vector &u, const double t, Vector &rate);
+
+  /** sqrt(sum C_i v_i^2 / sum C_i): the root mean square in the measure of the capacity. Collective. */
+  double capacity_norm(const Operator &op, const Vector &v);
+
+  /** Throws a UserError that says what to change if u is not finite. Collective. */
+  void check_finite(const Vector &u, const std::string &stepper, const double t);
+
+  /** Number of equal steps, each at most dt, that fill a span; a span that is dt up to round-off counts as one. */
+  unsigned long long n_equal_steps(const double span, const double dt);
+} // namespace PeriDeal

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/operator.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** What a stepper has to know of the scene. */
+  struct StepperOptions
+  {
+    double       time_step        = -1.; // negative: the stepper's own choice
+    double       tolerance        = 1e-4;
+    double       solver_tolerance = 1e-10;
+    unsigned int max_iterations   = 1000;
+  };
+
+
+  struct StepperCost
+  {
+    unsigned long long steps = 0, rejected = 0, iterations = 0;
+  };
+
+
+  /**
+   * Advances C du/dt = f(t) - K u of an Operator in time. Steppers allocate their vectors once, in the constructor.
+   */
+  class Stepper
+  {
+  public:
+    virtual ~Stepper() = default;
+
+    /** The name used in scenes. */
+    virtual std::string name() const = 0;
+
+    /**
+     * From u at time t to exactly t_end > t. u must be distributed at t, and comes back distributed at t_end. Throws UserError as
+     * soon as values are no longer finite. Collective.
+     */
+    virtual void advance(Vector &u, const double t, const double t_end) = 0;
+
+    /** Forget the past (multistep methods): the operator or the solution has changed abruptly. */
+    virtual void restart() {}
+
+    /** The time step used last or planned; 0 if there is none yet. */
+    virtual double current_step() const = 0;
+
+    /** Predicted operator applications to advance over a time span; 0 if unknown. For the estimate of a dry run. */
+    virtual double expected_applications(const double time_span) const = 0;
+
+    const StepperCost &cost() const
+    {
+      return spent;
+    }
+
+  protected:
+    StepperCost spent;
+  };
+
+
+  /** All names that a scene may give, `auto` first. */
+  const std::vector<std::string> &stepper_names();
+
+  /**
+   * `auto`: the Chebyshev expansion of the exponential where it applies (symmetric K, diagonal C, loads and boundary values constant in time), adaptive RKC2
+   * where C is diagonal, else SDIRK2.
+   */
+  std::string choose_stepper(const Operator &op);
+
+  /**
+   * The one factory. Throws UserError for a stepper that the operator does not allow, and for a step above the stability bound
+   * (with both bounds in the message). Collective.
+   */
+  std::unique_ptr<Stepper> make_stepper(const std::string    &name,
+                                        const Operator       &op,
+                                        const StepperOptions &options);
+
+  /** Largest stable step of an explicit method (`euler` 2/lambda, `rk4` 2.785/lambda); infinite for all others. */
+  double stable_step(const std::string &name, const double largest_eigenvalue);
+
+  // One maker per family of methods, each in its own file.
+  std::unique_ptr<Stepper> make_euler(const Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_rk4(const Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_rkc2(const Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_chebyshev(const Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_crank_nicolson(const Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_bdf2(const Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_sdirk2(const Operator &op, const StepperOptions &options);
+} // namespace PeriDeal

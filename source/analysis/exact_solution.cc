@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/point.h>
+
+#include <perideal/analysis/exact_solution.h>
+#include <perideal/analysis/heat_series.h>
+#include <perideal/base/user_error.h>
+#include <perideal/scene/expression.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <functional>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    const std::string where = "'Solution' in section 'Reference'";
+
+
+    /** A solution that depends on x alone. */
+    class BarSolution : public ExactSolution
+    {
+    public:
+      using Series = std::function<ValueAndSlope(double x, double t)>;
+
+      /** @param series in units of the length in x and of its diffusion time. */
+      BarSolution(const ExactSolutionContext &context, const Series &series)
+        : dim(context.dim)
+        , lower(context.lower[0])
+        , length(context.upper[0] - context.lower[0])
+        , rate(context.conductivity / context.storage / (length * length))
+        , series(series)
+      {}
+
+      double value(const double *x, const double t) const override
+      {
+        return series((x[0] - lower) / length, rate * t).value;
+      }
+
+      bool gradient(const double *x, const double t, double *g) const override
+      {
+        std::fill(g, g + dim, 0.);
+        g[0] = series((x[0] - lower) / length, rate * t).slope / length;
+        return true;
+      }
+
+    private:
+      const unsigned int dim;
+      const double       lower, length, rate;
+      const Series       series;
+    };
+
+
+    /**
+     * Bobaru 2012, example 1: a rectangle at 40 whose sides are held at 0; a product of two slabs.
+     */
+    class CoolingPlate : public ExactSolution
+    {
+    public:
+      explicit CoolingPlate(const ExactSolutionContext &context)
+        : context(context)
+      {
+        AssertThrow(context.dim == 2,
+                    UserError(where +
+                              ": 'bobaru 2012 example 1' is two-dimensional, but 'Dimension' is " +
+                              std::to_string(context.dim) + "."));
+      }
+
+      double value(const double *x, const double t) const override
+      {
+        return 40. * along(0, x, t).value * along(1, x, t).value;
+      }
+
+      bool gradient(const double *x, const double t, double *g) const override
+      {
+        const ValueAndSlope a = along(0, x, t), b = along(1, x, t);
+        g[0] = 40. * a.slope * b.value;
+        g[1] = 40. * a.value * b.slope;
+        return true;
+      }
+
+    private:
+      /** The slab's value and its slope per length in direction d. */
+      ValueAndSlope along(const unsigned int d, const double *x, const double t) const
+      {
+        const double  length = context.upper[d] - context.lower[d];
+        ValueAndSlope slab =
+          HeatSeries::cooling_slab((x[d] - context.lower[d]) / length,
+                                   context.conductivity / context.storage * t / (length * length));
+        slab.slope /= length;
+        return slab;
+      }
+
+      const ExactSolutionContext context;
+    };
+
+
+    /** A product of sines that decays at a given rate. */
+    class Harmonic : public ExactSolution
+    {
+    public:
+      Harmonic(const std::vector<double>   &lower,
+               const std::array<double, 3> &wave_numbers,
+               const unsigned int           dim,
+               const double                 rate)
+        : dim(dim)
+        , lower(lower)
+        , k(wave_numbers)
+        , rate(rate)
+      {}
+
+      double value(const double *x, const double t) const override
+      {
+        double product = std::exp(-rate * t);
+        for (unsigned int d = 0; d < dim; ++d)
+          product *= std::sin(k[d] * (x[d] - lower[d]));
+        return product;
+      }
+
+      bool gradient(const double *x, const double t, double *g) const override
+      {
+        for (unsigned int a = 0; a < dim; ++a)
+          {
+            g[a] = std::exp(-rate * t);
+            for (unsigned int d = 0; d < dim; ++d)
+              g[a] *= d == a ? k[d] * std::cos(k[d] * (x[d] - lower[d])) :
+                               std::sin(k[d] * (x[d] - lower[d]));
+          }
+        return true;
+      }
+
+    private:
+      const unsigned int          dim;
+      const std::vector<double>   lower;
+      const std::array<double, 3> k;
+      const double                rate;
+    };
+
+
+    class ExpressionSolution : public ExactSolution
+    {
+    public:
+      ExpressionSolution(const std::string &text, const unsigned int dim)
+        : dim(dim)
+        , expression(text, where)
+      {}
+
+      double value(const double *x, const double t) const override
+      {
+        Point<3> p;
+        for (unsigned int d = 0; d < dim; ++d)
+          p[d] = x[d];
+        return expression.value<3>(p, t);
+      }
+
+      bool gradient(const double *, const double, double *) const override
+      {
+        return false;
+      }
+
+    private:
+      const unsigned int dim;
+      const Expression   expression;
+    };
+
+
+    /** Lower case, without blanks at the ends, single blanks inside. */
+    std::string tidy(const std::string &text)
+    {
+      std::string result;
+      for (const char c : text)
+        if (!std::isspace(static_cast<unsigned char>(c)))
+          result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        else if (!result.empty() && result.back() != ' ')
+          result += ' ';
+      if (!result.empty() && result.back() == ' ')
+        result.pop_back();
+      return result;
+    }
+
+
+    /**
+     * `lattice harmonic(1, 2)` taken apart: the name before the parenthesis and what stands in it.
+     */
+    struct Call
+    {
+      std::string name, arguments;
+      bool        has_arguments;
+    };
+
+
+    Call take_apart(const std::string &text)
+    {
+      const std::size_t open = text.find('(');
+      if (open == std::string::npos || text.back() != ')')
+        return {text, "", false};
+      return {tidy(text.substr(0, open)), text.substr(open + 1, text.size() - open - 2), true};
+    }
+
+
+    std::array<double, 3> wave_numbers(const Call &call, const ExactSolutionContext &context)
+    {
+      const std::string wrong =
+        where + ": '" + call.name + "' needs " + std::to_string(context.dim) +
+        " positive whole number" + (context.dim == 1 ? "" : "s") +
+        ", one per dimension, for example '" + call.name + "(1" + (context.dim > 1 ? ", 1" : "") +
+        (context.dim > 2 ? ", 1" : "") + ")', but found '" + call.arguments + "'.";
+      std::array<double, 3> k{{0., 0., 0.}};
+      std::size_t           start = 0;
+      for (unsigned int d = 0; d < context.dim; ++d)
+        {
+          const bool        last = d + 1 == context.dim;
+          const std::size_t end  = call.arguments.find(',', start);
+          AssertThrow((end == std::string::npos) == last && start <= call.arguments.size(),
+                      UserError(wrong));
+          const std::string number = tidy(call.arguments.substr(start, end - start));
+          AssertThrow(!number.empty() && number.size() < 8 &&
+                        number.find_first_not_of("0123456789") == std::string::npos &&
+                        std::stoi(number) > 0,
+                      UserError(wrong));
+          k[d]  = std::stoi(number) * std::acos(-1.) / (context.upper[d] - context.lower[d]);
+          start = end + 1;
+        }
+      return k;
+    }
+
+
+    std::unique_ptr<ExactSolution> make_harmonic(const Call                 &call,
+                                                 const ExactSolutionContext &context)
+    {
+      const std::array<double, 3> k    = wave_numbers(call, context);
+      double                      rate = 0.;
+      if (call.name == "lattice harmonic")
+        {
+          AssertThrow(
+            !context.family.empty(),
+            UserError(
+              where +
+              ": 'lattice harmonic' needs peridynamic nodes on a lattice; 'nonlocal harmonic' and "
+              "'classical harmonic' do not."));
+          rate = lattice_decay_rate(context.family, k, context.storage);
+        }
+      else if (call.name == "nonlocal harmonic")
+        {
+          AssertThrow(
+            context.horizon > 0.,
+            UserError(
+              where +
+              ": 'nonlocal harmonic' needs a horizon; give 'Horizon ratio' or 'Horizon' in section "
+              "'Peridynamics'."));
+          rate = nonlocal_decay_rate(context.dim,
+                                     context.kernel,
+                                     context.exponent,
+                                     context.horizon,
+                                     k,
+                                     context.conductivity,
+                                     context.storage);
+        }
+      else
+        rate = classical_decay_rate(k, context.conductivity, context.storage);
+      return std::make_unique<Harmonic>(context.lower, k, context.dim, rate);
+    }
+
+
+    std::unique_ptr<ExactSolution> make_series(const std::string          &name,
+                                               const ExactSolutionContext &context)
+    {
+      if (name == "bobaru 2012 example 1")
+        return std::make_unique<CoolingPlate>(context);
+      BarSolution::Series series;
+      const double        length = context.upper[0] - context.lower[0];
+      if (name == "bobaru 2010 example 1")
+        series = [](const double x, const double t) {
+          const ValueAndSlope slab = HeatSeries::cooling_slab(x, t);
+          return ValueAndSlope{100. * slab.value, 100. * slab.slope};
+        };
+      else if (name == "bobaru 2010 example 2")
+        series = [](const double x, const double t) {
+          return HeatSeries::two_part_bar(x, t, 60., 0., 100.);
+        };
+      else if (name == "bobaru 2010 example 3") // dT/dx = 3 at the right end
+        series = [length](const double x, const double t) {
+          return HeatSeries::heated_bar(x, t, 20., 3. * length);
+        };
+      else
+        series = [](const double x, const double t) {
+          return HeatSeries::heated_bar(x, t, 1., 0.);
+        };
+      return std::make_unique<BarSolution>(context, series);
+    }
+
+
+    /** Words and numbers without operators: somebody meant a name, and not a formula. */
+    bool reads_like_a_name(const std::string &text)
+    {
+      return !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) &&
+             std::all_of(text.begin(), text.end(), [](const char c) {
+               return std::isalnum(static_cast<unsigned char>(c)) || c == ' ';
+             });
+    }
+  } // namespace
+
+
+  const std::vector<std::string> &exact_solution_names()
+  {
+    static const std::vector<std::string> names = {"bobaru 2010 example 1",
+                                                   "bobaru 2010 example 2",
+                                                   "bobaru 2010 example 3",
+                                                   "bobaru 2012 example 1",
+                                                   "bobaru 2012 example 2",
+                                                   "lattice harmonic",
+                                                   "nonlocal harmonic",
+                                                   "classical harmonic"};
+    return names;
+  }
+
+
+  std::unique_ptr<ExactSolution> make_exact_solution(const std::string          &text,
+                                                     const ExactSolutionContext &context)
+  {
+    Assert(context.dim >= 1 && context.dim <= 3 && context.lower.size() >= context.dim &&
+             context.upper.size() >= context.dim,
+           ExcMessage("The context needs both corners of the box."));
+    const auto       &names = exact_solution_names();
+    const std::string clean = tidy(text);
+    AssertThrow(!clean.empty(), UserError(where + " is empty."));
+    const Call call     = take_apart(clean);
+    const bool known    = std::find(names.begin(), names.end(), call.name) != names.end();
+    const bool harmonic = known && call.name.find("harmonic") != std::string::npos;
+    if (harmonic)
+      return make_harmonic(call, context);
+    if (known)
+      {
+        AssertThrow(!call.has_arguments,
+                    UserError(where + ": '" + call.name + "' takes no arguments."));
+        return make_series(call.name, context);
+      }
+    try
+      {
+        return std::make_unique<ExpressionSolution>(text, context.dim);
+      }
+    catch (const UserError &)
+      {
+        if (!reads_like_a_name(call.name))
+          throw;
+        const std::string nearest = nearest_name(call.name, names);
+        // A misspelt function, as in 'sinn(x)', is a mistake in a formula.
+        if (nearest.empty() && call.has_arguments)
+          throw;
+        throw UserError(where + ": there is no exact solution '" + call.name + "'" +
+                        (nearest.empty() ? "" : "; did you mean '" + nearest + "'?") +
+                        " Known are " + join_names(names) + ", and expressions of x, y, z and t.");
+      }
+  }
+} // namespace PeriDeal

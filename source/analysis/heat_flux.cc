@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/fe/fe_values.h>
+
+#include <perideal/analysis/heat_flux.h>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  void bond_heat_flux(const Families<dim>       &families,
+                      const Vector              &u,
+                      const std::vector<double> &outside,
+                      VectorField<dim>          &two_sided,
+                      VectorField<dim>          &one_sided)
+  {
+    const Nodes<dim>                         &nodes = families.nodes();
+    std::vector<typename Families<dim>::Bond> bonds;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        families.bonds_of(i, bonds);
+        Tensor<1, dim> both, hotter;
+        for (const auto &bond : bonds)
+          {
+            const double         other      = bond.neighbor < nodes.n_local() ?
+                                                u.local_element(bond.neighbor) :
+                                                outside[bond.neighbor - nodes.n_local()];
+            const double         difference = other - u.local_element(i);
+            const Tensor<1, dim> q =
+              bond.weight / nodes.volume(i) * difference * families.bond_vector(i, bond.neighbor);
+            both -= 0.5 * q;
+            if (difference > 0.)
+              hotter -= q;
+          }
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            two_sided[d].local_element(i) = both[d];
+            one_sided[d].local_element(i) = hotter[d];
+          }
+      }
+  }
+
+
+  template <int dim>
+  void cut_fraction(const Families<dim> &families, Vector &fraction)
+  {
+    const Nodes<dim>                         &nodes = families.nodes();
+    std::vector<typename Families<dim>::Bond> bonds;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        fraction.local_element(i) = 0.;
+        if (!families.near_crack(i))
+          continue;
+        families.bonds_of(i, bonds);
+        double all = 0., cut = 0.;
+        for (const auto &bond : bonds)
+          if (bond.neighbor < nodes.n_local())
+            {
+              all += nodes.volume(bond.neighbor);
+              if (bond.cut)
+                cut += nodes.volume(bond.neighbor);
+            }
+        fraction.local_element(i) = all > 0. ? cut / all : 0.;
+      }
+  }
+
+
+  template <int dim>
+  void element_heat_flux(const DoFHandler<dim> &dofs,
+                         const Material        &material,
+                         const Vector          &u,
+                         VectorField<dim>      &flux)
+  {
+    const FiniteElement<dim>            &fe = dofs.get_fe();
+    FEValues<dim>                        values(fe,
+                         Quadrature<dim>(fe.get_unit_support_points()),
+                         update_gradients | update_quadrature_points);
+    std::vector<Tensor<1, dim>>          gradients(fe.n_dofs_per_cell());
+    std::vector<types::global_dof_index> indices(fe.n_dofs_per_cell());
+    Vector                               weight(u.get_partitioner());
+    for (Vector &component : flux)
+      component = 0.;
+    // Owned dofs see all of their cells: owned ones and the layer of ghost cells.
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          values.reinit(cell);
+          values.get_function_gradients(u, gradients);
+          cell->get_dof_indices(indices);
+          const double size = cell->measure();
+          for (unsigned int i = 0; i < indices.size(); ++i)
+            if (weight.in_local_range(indices[i]))
+              {
+                const double kappa = material.conductivity.value(values.quadrature_point(i));
+                weight(indices[i]) += size;
+                for (unsigned int d = 0; d < dim; ++d)
+                  flux[d](indices[i]) -= size * kappa * gradients[i][d];
+              }
+        }
+    for (unsigned int i = 0; i < weight.locally_owned_size(); ++i)
+      for (Vector &component : flux)
+        component.local_element(i) /= weight.local_element(i);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                \
+  template void bond_heat_flux<dim>(const Families<dim> &,       \
+                                    const Vector &,              \
+                                    const std::vector<double> &, \
+                                    VectorField<dim> &,          \
+                                    VectorField<dim> &);         \
+  template void cut_fraction(const Families<dim> &, Vector &);   \
+  template void element_heat_flux<dim>(const DoFHandler<dim> &,  \
+                                       const Material &,         \
+                                       const Vector &,           \
+                                       VectorField<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

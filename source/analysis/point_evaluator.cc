@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/mapping_q1.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/grid_tools_cache.h>
+
+#include <perideal/analysis/point_evaluator.h>
+#include <perideal/base/user_error.h>
+#include <perideal/scene/crack_geometry.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <unordered_map>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** The point, moved a little to the left of a crack it lies on. */
+    template <int dim>
+    Point<dim> off_cracks(Point<dim>                             p,
+                          const std::vector<CrackGeometry<dim>> &cracks,
+                          const double                           shift)
+    {
+      for (const CrackGeometry<dim> &crack : cracks)
+        if (crack.contains(p))
+          p += shift * crack.normal();
+      return p;
+    }
+  } // namespace
+
+
+  template <int dim>
+  PointEvaluator<dim>::PointEvaluator(const DoFHandler<dim>                  &dofs,
+                                      const Nodes<dim>                       *nodes,
+                                      const Cracks<dim>                      &cracks,
+                                      const std::vector<std::vector<double>> &coordinates,
+                                      const std::string                      &entry)
+    : communicator(dofs.get_communicator())
+    , n_points(static_cast<unsigned int>(coordinates.size()))
+    , n_slots(1u << dim)
+  {
+    std::vector<CrackGeometry<dim>> geometries;
+    for (const auto &corners : cracks.cracks)
+      geometries.emplace_back(corners);
+    const bool   at_centers = dofs.get_fe().n_dofs_per_vertex() == 0;
+    const bool   on_lattice = nodes != nullptr && nodes->lattice() && !nodes->has_doubled_nodes();
+    const double shift      = at_centers || cracks.mesh == CrackMesh::faces ?
+                                1e-7 * GridTools::minimal_cell_diameter(dofs.get_triangulation()) :
+                                0.;
+    std::vector<Point<dim>> points(n_points);
+    for (unsigned int k = 0; k < n_points; ++k)
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          points[k][d] = coordinates[k][d];
+        points[k] = off_cracks(points[k], geometries, shift);
+      }
+    if (at_centers && nodes != nullptr)
+      locate_nearest(*nodes, points);
+    else if (on_lattice)
+      locate_on_lattice(*nodes, points);
+    else
+      locate_in_mesh(dofs, points);
+    require_all_found(coordinates, entry);
+  }
+
+
+  template <int dim>
+  void PointEvaluator<dim>::locate_on_lattice(const Nodes<dim>              &nodes,
+                                              const std::vector<Point<dim>> &points)
+  {
+    const Lattice<dim> &lattice = *nodes.lattice();
+    const auto          key     = [&](const typename Lattice<dim>::Index &site) {
+      std::size_t k = 0;
+      for (unsigned int d = dim; d-- > 0;)
+        k = k * (lattice.n_sites[d] + 1) + site[d];
+      return k;
+    };
+    std::unordered_map<std::size_t, std::vector<std::pair<unsigned int, double>>> wanted;
+    for (unsigned int k = 0; k < points.size(); ++k)
+      {
+        typename Lattice<dim>::Index base;
+        std::array<double, dim>      fraction;
+        bool                         inside = true;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double s = (points[k][d] - lattice.lower[d]) / lattice.spacing[d];
+            base[d]        = static_cast<int>(std::floor(s + 1e-9));
+            fraction[d]    = s - base[d] < 1e-9 ? 0. : s - base[d];
+            inside         = inside && base[d] >= 0 && base[d] < lattice.n_sites[d];
+          }
+        for (unsigned int v = 0; v < n_slots && inside; ++v)
+          {
+            typename Lattice<dim>::Index site   = base;
+            double                       weight = 1.;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                site[d] += (v >> d) & 1;
+                weight *= ((v >> d) & 1) ? fraction[d] : 1. - fraction[d];
+              }
+            if (weight > 0.)
+              wanted[key(site)].emplace_back(k * n_slots + v, weight);
+          }
+      }
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      if (const auto found = wanted.find(key(lattice.index(nodes.position(i))));
+          found != wanted.end())
+        for (const auto &[slot, weight] : found->second)
+          parts.push_back({slot, i, weight});
+  }
+
+
+  template <int dim>
+  void PointEvaluator<dim>::locate_nearest(const Nodes<dim>              &nodes,
+                                           const std::vector<Point<dim>> &points)
+  {
+    // Ties go to the node that comes first in space, so that the answer does not depend on the partition.
+    const auto before = [](const Point<dim> &a, const Point<dim> &b) {
+      for (unsigned int d = dim; d-- > 0;)
+        if (a[d] != b[d])
+          return a[d] < b[d];
+      return false;
+    };
+    std::vector<double>       own(points.size(), std::numeric_limits<double>::max());
+    std::vector<unsigned int> nearest(points.size(), numbers::invalid_unsigned_int);
+    const double              slack = 1e-9 * nodes.smallest_spacing() * nodes.smallest_spacing();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      for (unsigned int k = 0; k < points.size(); ++k)
+        {
+          const double square = nodes.position(i).distance_square(points[k]);
+          if (square < own[k] - slack ||
+              (square < own[k] + slack && before(nodes.position(i), nodes.position(nearest[k]))))
+            {
+              own[k]     = std::min(square, own[k]);
+              nearest[k] = i;
+            }
+        }
+    std::vector<double> best(own.size());
+    Utilities::MPI::min(own, communicator, best);
+    for (unsigned int k = 0; k < points.size(); ++k)
+      {
+        // Among processes with equally near nodes the one with the first position wins.
+        const bool candidate = nearest[k] != numbers::invalid_unsigned_int &&
+                               own[k] <= best[k] + slack;
+        Point<dim> first;
+        for (unsigned int d = 0; d < dim; ++d)
+          first[d] = candidate ? nodes.position(nearest[k])[d] : std::numeric_limits<double>::max();
+        bool mine = candidate;
+        for (unsigned int d = dim; d-- > 0;)
+          {
+            const double lowest =
+              Utilities::MPI::min(mine ? first[d] : std::numeric_limits<double>::max(),
+                                  communicator);
+            mine = mine && first[d] == lowest;
+          }
+        if (mine)
+          parts.push_back({k * n_slots, nearest[k], 1.});
+      }
+  }
+
+
+  template <int dim>
+  void PointEvaluator<dim>::locate_in_mesh(const DoFHandler<dim>         &dofs,
+                                           const std::vector<Point<dim>> &points)
+  {
+    const MappingQ1<dim>        mapping;
+    const GridTools::Cache<dim> cache(dofs.get_triangulation(), mapping);
+    const unsigned int          me     = Utilities::MPI::this_mpi_process(communicator);
+    const unsigned int          nobody = Utilities::MPI::n_mpi_processes(communicator);
+    std::vector<unsigned int>   finder(points.size(), nobody), first(points.size());
+    std::vector<std::pair<typename Triangulation<dim>::active_cell_iterator, Point<dim>>> places(
+      points.size());
+    std::vector<bool> owned_vertices(dofs.get_triangulation().n_vertices(), false);
+    for (const auto &cell : dofs.get_triangulation().active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int v : cell->vertex_indices())
+          owned_vertices[cell->vertex_index(v)] = true;
+    for (unsigned int k = 0; k < points.size(); ++k)
+      {
+        if (std::none_of(owned_vertices.begin(), owned_vertices.end(), [](const bool b) {
+              return b;
+            }))
+          break;
+        const auto found = GridTools::find_all_active_cells_around_point(
+          mapping,
+          dofs.get_triangulation(),
+          points[k],
+          1e-8,
+          GridTools::find_active_cell_around_point(cache, points[k], {}, owned_vertices, 1e-8));
+        for (const auto &place : found)
+          if (place.first->is_locally_owned() && finder[k] == nobody)
+            {
+              finder[k] = me;
+              places[k] = place;
+            }
+      }
+    Utilities::MPI::min(finder, communicator, first);
+    const FiniteElement<dim> &fe = dofs.get_fe();
+    n_slots                      = fe.n_dofs_per_cell();
+    std::vector<types::global_dof_index> indices(n_slots);
+    IndexSet                             relevant;
+    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    const Utilities::MPI::Partitioner partitioner(dofs.locally_owned_dofs(),
+                                                  relevant,
+                                                  communicator);
+    for (unsigned int k = 0; k < points.size(); ++k)
+      if (first[k] == me)
+        {
+          const typename DoFHandler<dim>::active_cell_iterator cell(&dofs.get_triangulation(),
+                                                                    places[k].first->level(),
+                                                                    places[k].first->index(),
+                                                                    &dofs);
+          cell->get_dof_indices(indices);
+          for (unsigned int v = 0; v < n_slots; ++v)
+            parts.push_back({k * n_slots + v,
+                             partitioner.global_to_local(indices[v]),
+                             fe.shape_value(v, places[k].second)});
+        }
+  }
+
+
+  template <int dim>
+  void PointEvaluator<dim>::require_all_found(const std::vector<std::vector<double>> &points,
+                                              const std::string                      &entry) const
+  {
+    std::vector<double> weights(n_points, 0.), sums(n_points);
+    for (const Part &part : parts)
+      weights[part.slot / n_slots] += part.weight;
+    Utilities::MPI::sum(weights, communicator, sums);
+    for (unsigned int k = 0; k < n_points; ++k)
+      if (std::abs(sums[k] - 1.) > 1e-6)
+        {
+          std::ostringstream message;
+          message << "'" << entry << "' in section 'Output': the point (";
+          for (std::size_t d = 0; d < points[k].size(); ++d)
+            message << (d > 0 ? ", " : "") << points[k][d];
+          message << ") is not in the body.";
+          AssertThrow(false, UserError(message.str()));
+        }
+  }
+
+
+  template <int dim>
+  std::vector<double> PointEvaluator<dim>::evaluate(const Vector &u) const
+  {
+    // Every slot has one contributor, the others add zero: the same bits on any number of processes.
+    std::vector<double> own(static_cast<std::size_t>(n_points) * n_slots, 0.), all(own.size());
+    for (const Part &part : parts)
+      own[part.slot] = part.weight * u.local_element(part.dof);
+    Utilities::MPI::sum(own, communicator, all);
+    std::vector<double> values(n_points, 0.);
+    for (unsigned int k = 0; k < n_points; ++k)
+      for (unsigned int v = 0; v < n_slots; ++v)
+        values[k] += all[k * n_slots + v];
+    return values;
+  }
+
+  template class PointEvaluator<1>;
+  template class PointEvaluator<2>;
+  template class PointEvaluator<3>;
+} // namespace PeriDeal

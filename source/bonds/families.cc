@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/bonds/families.h>
+#include <perideal/bonds/halo.h>
+#include <perideal/laws/crack_conductance.h>
+#include <perideal/laws/interface.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "families_search.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  Families<dim>::Families(Nodes<dim> &nodes, const Scene<dim> &scene)
+    : own_nodes(&nodes)
+    , material(scene.material)
+    , parameters(scene.peridynamics)
+    , transmission(scene.cracks.transmission)
+    , contact_conductance(scene.cracks.contact_conductance)
+    , delta(scene.horizon())
+    , on_lattice(nodes.lattice().has_value() && !nodes.has_doubled_nodes())
+  {
+    for (const auto &corners : scene.cracks.cracks)
+      cracks.emplace_back(corners);
+    find_weights(scene);
+    add_halo(nodes, farthest);
+    typename Lattice<dim>::Index reach_in_sites{};
+    for (const FamilyMember<dim> &member : members)
+      for (unsigned int d = 0; d < dim; ++d)
+        reach_in_sites[d] = std::max(reach_in_sites[d], member.offset[d]);
+    AssertThrow(
+      on_lattice || scene.boundary_conditions.symmetry.empty(),
+      UserError(
+        "'Symmetry' in section 'Boundary conditions' needs the lattice of a box without doubled nodes."));
+    outside = make_fictitious_nodes(nodes,
+                                    scene.boundary_conditions,
+                                    parameters.treatment,
+                                    parameters.nodal_volume,
+                                    reach_in_sites);
+    AssertThrow(
+      on_lattice || outside.empty(),
+      UserError(
+        "'Boundary treatment' in section 'Peridynamics': fictitious layers need a lattice without doubled "
+        "nodes; use 'Mesh = pairs' in section 'Cracks', or 'none'."));
+    extent = reach_in_sites;
+    if (on_lattice)
+      index_lattice();
+    else
+      {
+        search = std::make_unique<Search>(nodes);
+        calibrate_off_lattice(scene);
+      }
+    find_conductivities(scene);
+  }
+
+
+  template <int dim>
+  Families<dim>::~Families() = default;
+
+
+  template <int dim>
+  void Families<dim>::find_weights(const Scene<dim> &)
+  {
+    if (own_nodes->lattice())
+      {
+        const Tensor<1, dim> &h = own_nodes->lattice()->spacing;
+        members                 = lattice_family<dim>(h,
+                                      delta,
+                                      parameters.kernel,
+                                      parameters.kernel_exponent,
+                                      parameters.volume_fraction,
+                                      parameters.calibration);
+        if (parameters.self_term == SelfTerm::paper)
+          self_additions = self_term_family<dim>(h,
+                                                 delta,
+                                                 parameters.kernel,
+                                                 parameters.kernel_exponent,
+                                                 parameters.volume_fraction,
+                                                 parameters.calibration);
+        for (const FamilyMember<dim> &member : members)
+          farthest = std::max(farthest, member.r);
+        for (const FamilyMember<dim> &member : self_additions)
+          farthest = std::max(farthest, member.r);
+      }
+    else
+      farthest = parameters.volume_fraction == VolumeFraction::linear ?
+                   delta + 0.5 * own_nodes->smallest_spacing() :
+                   delta * (1. + 1e-9);
+  }
+
+
+  template <int dim>
+  std::size_t Families<dim>::site_key(const typename Lattice<dim>::Index &site) const
+  {
+    std::size_t key = 0;
+    for (unsigned int d = dim; d-- > 0;)
+      {
+        Assert(site[d] >= corner[d] && site[d] < corner[d] + extent[d], ExcInternalError());
+        key = key * extent[d] + (site[d] - corner[d]);
+      }
+    return key;
+  }
+
+
+  template <int dim>
+  void Families<dim>::index_lattice()
+  {
+    const typename Lattice<dim>::Index reach_in_sites = extent;
+    typename Lattice<dim>::Index       low{}, high{};
+    for (unsigned int i = 0; i < own_nodes->n_local(); ++i)
+      {
+        const auto site = own_nodes->lattice()->index(own_nodes->position(i));
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            low[d]  = i == 0 ? site[d] : std::min(low[d], site[d]);
+            high[d] = i == 0 ? site[d] : std::max(high[d], site[d]);
+          }
+      }
+    std::size_t n_sites = 1;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        corner[d] = low[d] - std::max(1, reach_in_sites[d]);
+        extent[d] = high[d] + std::max(1, reach_in_sites[d]) + 1 - corner[d];
+        n_sites *= extent[d];
+      }
+    node_of_site.assign(n_sites, numbers::invalid_unsigned_int);
+    for (unsigned int i = 0; i < own_nodes->n_local(); ++i)
+      node_of_site[site_key(own_nodes->lattice()->index(own_nodes->position(i)))] = i;
+    for (unsigned int f = 0; f < outside.size(); ++f)
+      outside_of_site[site_key(outside[f].site)].push_back(own_nodes->n_local() + f);
+  }
+
+
+  template <int dim>
+  void Families<dim>::find_conductivities(const Scene<dim> &scene)
+  {
+    uniform              = scene.material.uniform_conductivity();
+    const unsigned int n = uniform ? 1 : own_nodes->n_local();
+    std::string        message;
+    conductivities.resize(n);
+    for (unsigned int i = 0; i < n && message.empty(); ++i)
+      {
+        const Point<dim> p = own_nodes->n_local() > 0 ? own_nodes->position(i) : Point<dim>();
+        conductivities[i]  = scene.material.conductivity.value(p);
+        if (!(conductivities[i] > 0.))
+          message = "'Conductivity' in section 'Material' is " + std::to_string(conductivities[i]) +
+                    " at a node; it must be positive everywhere in the body.";
+      }
+    throw_on_all_if_any(own_nodes->communicator(), message);
+  }
+
+
+  template <int dim>
+  double Families<dim>::conductivity(const unsigned int node) const
+  {
+    if (uniform)
+      return conductivities[0];
+    return conductivities[node < own_nodes->n_local() ?
+                            node :
+                            outside[node - own_nodes->n_local()].mirror];
+  }
+
+
+  template <int dim>
+  Point<dim> Families<dim>::position(const unsigned int node) const
+  {
+    return node < own_nodes->n_local() ?
+             own_nodes->position(node) :
+             own_nodes->lattice()->position(outside[node - own_nodes->n_local()].site);
+  }
+
+
+  template <int dim>
+  Tensor<1, dim> Families<dim>::bond_vector(const unsigned int node,
+                                            const unsigned int neighbor) const
+  {
+    return position(neighbor) - position(node);
+  }
+
+
+  template <int dim>
+  double Families<dim>::bond_conductivity(const unsigned int node,
+                                          const unsigned int neighbor) const
+  {
+    if (uniform)
+      return conductivities[0];
+    const double a = conductivity(node), b = conductivity(neighbor);
+    if (material.interface_rule != InterfaceRule::harmonic)
+      return interface_conductivity(material.interface_rule, a, b);
+    if (neighbor >= own_nodes->n_local())
+      return interface_conductivity(InterfaceRule::harmonic, a, b);
+    // From the end that comes first in space, so that both ends of a bond see the same value to the last bit.
+    Point<dim> start = position(node), end = position(neighbor);
+    for (unsigned int d = 0; d < dim; ++d)
+      if (start[d] != end[d])
+        {
+          if (end[d] < start[d])
+            std::swap(start, end);
+          break;
+        }
+    return harmonic_conductivity(
+      [&](const double s) { return material.conductivity.value(start + s * (end - start)); });
+  }
+
+
+  template <int dim>
+  double Families<dim>::kept_fraction(const unsigned int node,
+                                      const unsigned int neighbor,
+                                      bool              &cut) const
+  {
+    double kept = 1.;
+    cut         = false;
+    for (const CrackGeometry<dim> &crack : cracks)
+      {
+        if (!crack.is_near(own_nodes->position(node), farthest))
+          continue;
+        const Point<dim> a = own_nodes->crack_point(node), b = neighbor < own_nodes->n_local() ?
+                                                                 own_nodes->crack_point(neighbor) :
+                                                                 position(neighbor);
+        if (!crack.separates(a, b))
+          continue;
+        cut = true;
+        kept *= contact_conductance < 0. ?
+                  transmission :
+                  contact_fraction(contact_conductance,
+                                   std::abs(bond_vector(node, neighbor) * crack.normal()),
+                                   bond_conductivity(node, neighbor));
+      }
+    return kept;
+  }
+
+
+  template <int dim>
+  void Families<dim>::add_bond(const unsigned int node,
+                               const unsigned int neighbor,
+                               const double       w,
+                               std::vector<Bond> &bonds) const
+  {
+    const bool   real   = neighbor < own_nodes->n_local();
+    const double volume = real ? own_nodes->volume(neighbor) :
+                                 outside[neighbor - own_nodes->n_local()].volume;
+    Bond         bond;
+    bond.neighbor = neighbor;
+    bond.intact   = own_nodes->volume(node) * volume * w * bond_conductivity(node, neighbor);
+    bond.weight   = bond.intact * kept_fraction(node, neighbor, bond.cut);
+    if (!factors.empty())
+      bond.weight *= 0.5 * (factors[node] + (real ? factors[neighbor] : factors[node]));
+    bonds.push_back(bond);
+  }
+
+
+  template <int dim>
+  void Families<dim>::bonds_on_lattice(const unsigned int node, std::vector<Bond> &bonds) const
+  {
+    const auto site = own_nodes->lattice()->index(own_nodes->position(node));
+    for (const FamilyMember<dim> &member : members)
+      {
+        typename Lattice<dim>::Index other = site;
+        for (unsigned int d = 0; d < dim; ++d)
+          other[d] += member.offset[d];
+        const std::size_t key = site_key(other);
+        if (node_of_site[key] != numbers::invalid_unsigned_int)
+          add_bond(node, node_of_site[key], member.weight, bonds);
+        if (!outside.empty())
+          if (const auto found = outside_of_site.find(key); found != outside_of_site.end())
+            for (const unsigned int neighbor : found->second)
+              add_bond(node, neighbor, member.weight, bonds);
+      }
+  }
+
+
+  template <int dim>
+  void Families<dim>::add_self_term(const unsigned int node, std::vector<Bond> &bonds) const
+  {
+    const double volume    = own_nodes->volume(node);
+    unsigned int n_present = 0;
+    for (const Bond &bond : bonds)
+      for (const FamilyMember<dim> &self : self_additions)
+        if (bond.weight > 0. && is_offset(bond_vector(node, bond.neighbor), self))
+          ++n_present;
+    // In a bar the term is the mean over the neighbours that are there (Bobaru 2010, section 3).
+    const double share = dim == 1 && n_present == 1 ? 2. : 1.;
+    for (Bond &bond : bonds)
+      for (const FamilyMember<dim> &self : self_additions)
+        if (bond.intact > 0. && is_offset(bond_vector(node, bond.neighbor), self))
+          {
+            const double intact =
+              share * volume * volume * self.weight * bond_conductivity(node, bond.neighbor);
+            bond.weight += intact * (bond.weight / bond.intact);
+            bond.intact += intact;
+          }
+  }
+
+
+  template <int dim>
+  bool Families<dim>::is_offset(const Tensor<1, dim> &xi, const FamilyMember<dim> &member) const
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      if (std::lround(xi[d] / own_nodes->lattice()->spacing[d]) != member.offset[d])
+        return false;
+    return true;
+  }
+
+
+  template <int dim>
+  void Families<dim>::bonds_of(const unsigned int node,
+                               std::vector<Bond> &bonds,
+                               const bool         with_self_term) const
+  {
+    AssertIndexRange(node, own_nodes->n_owned());
+    bonds.clear();
+    if (on_lattice)
+      bonds_on_lattice(node, bonds);
+    else
+      bonds_off_lattice(node, bonds);
+    if (with_self_term && !self_additions.empty())
+      add_self_term(node, bonds);
+  }
+
+
+  template <int dim>
+  const Nodes<dim> &Families<dim>::nodes() const
+  {
+    return *own_nodes;
+  }
+
+  template <int dim>
+  const std::vector<FictitiousNode<dim>> &Families<dim>::fictitious() const
+  {
+    return outside;
+  }
+
+  template <int dim>
+  const std::vector<FamilyMember<dim>> &Families<dim>::lattice_members() const
+  {
+    return members;
+  }
+
+  template <int dim>
+  const std::vector<FamilyMember<dim>> &Families<dim>::self_members() const
+  {
+    return self_additions;
+  }
+
+  template <int dim>
+  double Families<dim>::horizon() const
+  {
+    return delta;
+  }
+
+  template <int dim>
+  double Families<dim>::reach() const
+  {
+    return farthest;
+  }
+
+  template <int dim>
+  bool Families<dim>::uniform_conductivity() const
+  {
+    return uniform;
+  }
+
+  template <int dim>
+  bool Families<dim>::has_unique_sites() const
+  {
+    return on_lattice;
+  }
+
+  template <int dim>
+  unsigned int Families<dim>::node_at(const typename Lattice<dim>::Index &site) const
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      if (site[d] < corner[d] || site[d] >= corner[d] + extent[d])
+        return numbers::invalid_unsigned_int;
+    return node_of_site[site_key(site)];
+  }
+
+  template <int dim>
+  bool Families<dim>::near_crack(const unsigned int node) const
+  {
+    return std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
+      return crack.is_near(own_nodes->position(node), farthest);
+    });
+  }
+
+  template <int dim>
+  void Families<dim>::set_node_factors(std::vector<double> node_factors)
+  {
+    AssertDimension(node_factors.size(), own_nodes->n_local());
+    factors = std::move(node_factors);
+  }
+
+  template <int dim>
+  bool Families<dim>::symmetric() const
+  {
+    return self_additions.empty();
+  }
+
+  template <int dim>
+  std::size_t Families<dim>::memory_consumption() const
+  {
+    return conductivities.capacity() * sizeof(double) + factors.capacity() * sizeof(double) +
+           node_of_site.capacity() * sizeof(unsigned int) +
+           outside.capacity() * sizeof(FictitiousNode<dim>);
+  }
+
+  template class Families<1>;
+  template class Families<2>;
+  template class Families<3>;
+} // namespace PeriDeal

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/bonds/fictitious_nodes.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    Point<dim> clamp_to_body(const Lattice<dim> &lattice, Point<dim> p)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        p[d] = std::clamp(p[d], lattice.lower[d], lattice.upper[d]);
+      return p;
+    }
+
+
+    /** Site of the mirror image about a side. */
+    template <int dim>
+    typename Lattice<dim>::Index reflect(const Lattice<dim>          &lattice,
+                                         typename Lattice<dim>::Index site,
+                                         const unsigned int           side)
+    {
+      const unsigned int d    = side / 2;
+      const int          last = lattice.n_sites[d] - 1, shift = lattice.at_centers ? 1 : 0;
+      site[d] = (side % 2 == 0) ? -site[d] - shift : 2 * last + shift - site[d];
+      return site;
+    }
+
+
+    /** How many spacings a site lies inside a side; 0 for the side's own row of vertices, 1 for the outermost row of cell centres. */
+    template <int dim>
+    int depth(const Lattice<dim>                 &lattice,
+              const typename Lattice<dim>::Index &site,
+              const unsigned int                  side)
+    {
+      const unsigned int d = side / 2;
+      return (side % 2 == 0 ? site[d] : lattice.n_sites[d] - 1 - site[d]) +
+             (lattice.at_centers ? 1 : 0);
+    }
+
+
+    /** The image of a node or of an earlier fictitious node about one side. */
+    template <int dim>
+    FictitiousNode<dim> image(const FictitiousNode<dim> &original,
+                              const Lattice<dim>        &lattice,
+                              const unsigned int         side,
+                              const SideCondition       *dirichlet,
+                              const bool                 constant)
+    {
+      FictitiousNode<dim> node = original;
+      node.site                = reflect(lattice, original.site, side);
+      node.side                = side;
+      if (dirichlet == nullptr) // symmetry
+        return node;
+      Point<dim> foot = lattice.position(node.site);
+      foot[side / 2]  = side % 2 == 0 ? lattice.lower[side / 2] : lattice.upper[side / 2];
+      foot            = clamp_to_body(lattice, foot);
+      node.sign       = constant ? 0. : -original.sign;
+      for (auto &term : node.terms)
+        term.coefficient *= -1.;
+      if (constant)
+        node.terms.clear();
+      node.terms.push_back({dirichlet, foot, constant ? 1. : 2.});
+      return node;
+    }
+  } // namespace
+
+
+  template <int dim>
+  std::vector<FictitiousNode<dim>> make_fictitious_nodes(const Nodes<dim>              &nodes,
+                                                         const BoundaryConditions<dim> &conditions,
+                                                         const BoundaryTreatment        treatment,
+                                                         const NodalVolume nodal_volume,
+                                                         const typename Lattice<dim>::Index &reach)
+  {
+    std::vector<FictitiousNode<dim>> result;
+    const bool                       constant = treatment == BoundaryTreatment::fictitious_constant;
+    const bool layers = constant || treatment == BoundaryTreatment::fictitious_mirror;
+    if (!layers && conditions.symmetry.empty())
+      return result;
+    AssertThrow(
+      nodes.lattice().has_value(),
+      UserError(
+        "'Boundary treatment' and 'Symmetry': fictitious layers need the flat sides of a box "
+        "(section 'Domain', Shape = box)."));
+    const Lattice<dim> &lattice = *nodes.lattice();
+
+    std::vector<FictitiousNode<dim>> all;
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      {
+        const SideCondition *dirichlet =
+          layers ? BoundaryConditions<dim>::find(conditions.dirichlet, side) : nullptr;
+        const bool symmetric =
+          std::find(conditions.symmetry.begin(), conditions.symmetry.end(), side) !=
+          conditions.symmetry.end();
+        if (dirichlet == nullptr && !symmetric)
+          continue;
+        const auto add_image = [&](const FictitiousNode<dim> &original) {
+          const int inside = depth(lattice, original.site, side);
+          if (inside < 0 || inside > reach[side / 2] ||
+              (inside == 0 && nodal_volume == NodalVolume::full))
+            return;
+          all.push_back(image(original, lattice, side, dirichlet, constant));
+        };
+        const std::size_t n_before = all.size();
+        for (unsigned int i = 0; i < nodes.n_local(); ++i)
+          add_image({lattice.index(nodes.position(i)), i, 1., nodes.volume(i), 0, {}});
+        for (std::size_t i = 0; i < n_before; ++i)
+          {
+            const FictitiousNode<dim> original = all[i];
+            add_image(original);
+          }
+      }
+    result = std::move(all);
+    return result;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template std::vector<FictitiousNode<dim>> make_fictitious_nodes(const Nodes<dim> &,              \
+                                                                  const BoundaryConditions<dim> &, \
+                                                                  const BoundaryTreatment,         \
+                                                                  const NodalVolume,               \
+                                                                  const Lattice<dim>::Index &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

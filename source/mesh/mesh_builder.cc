@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/distributed/shared_tria.h>
+#include <deal.II/distributed/tria.h>
+#include <deal.II/grid/grid_in.h>
+#include <deal.II/grid/grid_tools.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/mesh/crack_faces.h>
+#include <perideal/mesh/mesh_builder.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** The lattice of a box, with the cells for which keep(centre) is true. Vertices without cells are left out. */
+    template <int dim, typename Keep>
+    CoarseMesh<dim> lattice_mesh(const Domain<dim>                   &domain,
+                                 const std::array<unsigned int, dim> &n,
+                                 const Keep                          &keep)
+    {
+      CoarseMesh<dim>                     mesh;
+      std::map<std::size_t, unsigned int> vertex_of_lattice;
+      std::size_t                         n_cells = 1;
+      for (const unsigned int k : n)
+        n_cells *= k;
+      const auto lattice_point = [&](const std::array<double, dim> &index) {
+        Point<dim> p;
+        for (unsigned int d = 0; d < dim; ++d)
+          p[d] = domain.lower[d] + (domain.upper[d] - domain.lower[d]) * index[d] / n[d];
+        return p;
+      };
+      for (std::size_t c = 0; c < n_cells; ++c)
+        {
+          std::array<std::size_t, dim> cell;
+          std::array<double, dim>      middle;
+          std::size_t                  rest = c;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              cell[d]   = rest % n[d];
+              middle[d] = cell[d] + 0.5;
+              rest /= n[d];
+            }
+          if (!keep(lattice_point(middle)))
+            continue;
+          CellData<dim> data;
+          for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell; ++v)
+            {
+              std::size_t             key = 0;
+              std::array<double, dim> corner;
+              for (unsigned int d = dim; d-- > 0;)
+                {
+                  const std::size_t i = cell[d] + ((v >> d) & 1);
+                  corner[d]           = static_cast<double>(i);
+                  key                 = key * (n[d] + 1) + i;
+                }
+              const auto [entry, is_new] =
+                vertex_of_lattice.try_emplace(key, static_cast<unsigned int>(mesh.vertices.size()));
+              if (is_new)
+                mesh.vertices.push_back(lattice_point(corner));
+              data.vertices[v] = entry->second;
+            }
+          mesh.cells.push_back(data);
+        }
+      return mesh;
+    }
+
+
+    template <int dim>
+    bool in_hole(const Domain<dim> &domain, const Point<dim> &p)
+    {
+      Tensor<1, dim> r = p - domain.hole_center;
+      if (dim == 3) // the hole of a thick plate is a bore along z
+        r[dim - 1] = 0.;
+      if (domain.hole_shape == HoleShape::circle)
+        return r.norm() < domain.hole_radius;
+      const double angle = domain.hole_angle * std::acos(-1.) / 180., y = dim > 1 ? r[dim > 1] : 0.;
+      const double along  = std::cos(angle) * r[0] + std::sin(angle) * y,
+                   across = -std::sin(angle) * r[0] + std::cos(angle) * y;
+      return std::max(std::abs(along), std::abs(across)) < domain.hole_radius;
+    }
+
+
+    /** Halvings that all cell counts allow, at most those that leave at least one coarse cell. */
+    template <int dim>
+    unsigned int common_halvings(const std::array<unsigned int, dim> &cells)
+    {
+      unsigned int levels = 0;
+      while (std::all_of(cells.begin(), cells.end(), [&](const unsigned int n) {
+        return n % (2u << levels) == 0;
+      }))
+        ++levels;
+      return levels;
+    }
+
+
+    /** Does every crack lie on faces of this mesh? If not, the first one that does not. */
+    template <int dim>
+    const CrackGeometry<dim> *unresolved(const CoarseMesh<dim>                 &mesh,
+                                         const std::vector<CrackGeometry<dim>> &cracks)
+    {
+      for (const CrackGeometry<dim> &crack : cracks)
+        if (std::abs(measure_on_faces(mesh, crack) - crack.measure()) > 1e-8 * crack.measure())
+          return &crack;
+      return nullptr;
+    }
+
+
+    template <int dim>
+    void require_resolved(const CoarseMesh<dim>                 &mesh,
+                          const std::vector<CrackGeometry<dim>> &cracks)
+    {
+      const CrackGeometry<dim> *crack = unresolved(mesh, cracks);
+      if (crack == nullptr)
+        return;
+      std::ostringstream where;
+      where << crack->corners().front() << " to " << crack->corners().back();
+      AssertThrow(
+        false,
+        UserError(
+          "'Mesh = faces' in section 'Cracks' needs cracks that lie on cell faces all along, but the crack from " +
+          where.str() + " does not. Choose cells so that it does, or use 'Mesh = pairs'."));
+    }
+
+
+    /** Coarse mesh of a box on which cracks to be cut lie on faces, and how often to refine it. */
+    template <int dim>
+    std::pair<CoarseMesh<dim>, unsigned int> box_mesh(const Domain<dim>                     &domain,
+                                                      const std::vector<CrackGeometry<dim>> &cut)
+    {
+      const auto everywhere = [](const Point<dim> &) { return true; };
+      for (unsigned int levels = common_halvings<dim>(domain.cells);; --levels)
+        {
+          std::array<unsigned int, dim> coarse = domain.cells;
+          for (unsigned int &n : coarse)
+            n >>= levels;
+          CoarseMesh<dim> mesh = lattice_mesh<dim>(domain, coarse, everywhere);
+          if (levels == 0)
+            require_resolved(mesh, cut);
+          if (levels == 0 || unresolved(mesh, cut) == nullptr)
+            return {std::move(mesh), levels};
+        }
+    }
+
+
+    /** A key of a face's centre that does not depend on round-off in its last digits. */
+    template <int dim>
+    std::array<long long, dim> face_key(const Point<dim> &center, const double size)
+    {
+      std::array<long long, dim> key;
+      for (unsigned int d = 0; d < dim; ++d)
+        key[d] = std::llround(center[d] / size * 1e9);
+      return key;
+    }
+
+    template <int dim>
+    using BoundaryIds = std::map<std::array<long long, dim>, types::boundary_id>;
+
+
+    template <int dim>
+    CoarseMesh<dim> read_mesh_file(const std::string &file_name,
+                                   BoundaryIds<dim>  &ids,
+                                   double            &size)
+    {
+      std::ifstream file(file_name);
+      AssertThrow(file,
+                  UserError("'Mesh file' in section 'Domain': cannot read '" + file_name + "'."));
+      const std::string hint =
+        " PeriDeal reads Gmsh files (.msh, versions 2 and 4) of quadrilaterals in 2D and hexahedra in 3D only "
+        "(in Gmsh: recombine all surfaces, or use transfinite or extruded volumes).";
+      Triangulation<dim> mesh;
+      try
+        {
+          GridIn<dim> reader(mesh);
+          reader.read_msh(file);
+        }
+      catch (const std::exception &)
+        {
+          AssertThrow(false,
+                      UserError("'Mesh file' in section 'Domain': '" + file_name +
+                                "' is not a mesh of dimension " + std::to_string(dim) +
+                                " that can be used, or it is broken." + hint));
+        }
+      AssertThrow(mesh.n_active_cells() > 0 && mesh.all_reference_cells_are_hyper_cube(),
+                  UserError("'Mesh file' in section 'Domain': '" + file_name +
+                            "' has no quadrilaterals or hexahedra, or other cells too." + hint));
+      CoarseMesh<dim> coarse;
+      SubCellData     faces;
+      std::tie(coarse.vertices, coarse.cells, faces) = GridTools::get_coarse_mesh_description(mesh);
+      size                                           = GridTools::diameter(mesh);
+      for (const auto &cell : mesh.active_cell_iterators())
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            ids[face_key<dim>(cell->face(f)->center(), size)] = cell->face(f)->boundary_id();
+      return coarse;
+    }
+
+
+    /** Side of a box on which a boundary face lies, or the hole. */
+    template <int dim>
+    types::boundary_id box_side(const Domain<dim>                     &domain,
+                                const std::vector<CrackGeometry<dim>> &cut,
+                                const Point<dim>                      &center)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const double tolerance = 1e-8 * domain.spacing()[d];
+          if (std::abs(center[d] - domain.lower[d]) < tolerance)
+            return 2 * d;
+          if (std::abs(center[d] - domain.upper[d]) < tolerance)
+            return 2 * d + 1;
+        }
+      for (const CrackGeometry<dim> &crack : cut)
+        if (crack.contains(center))
+          return crack_boundary_id;
+      return hole_boundary_id;
+    }
+
+
+    /** An empty triangulation of the kind that suits the dimension. */
+    template <int dim>
+    std::unique_ptr<Triangulation<dim>> empty_triangulation(const MPI_Comm communicator)
+    {
+      if constexpr (dim == 1)
+        {
+          auto mesh = std::make_unique<parallel::shared::Triangulation<1>>(
+            communicator,
+            Triangulation<1>::none,
+            false,
+            parallel::shared::Triangulation<1>::partition_custom_signal);
+          parallel::shared::Triangulation<1> *pointer = mesh.get();
+          mesh->signals.post_refinement.connect([pointer, communicator]() {
+            const std::size_t n_proc = Utilities::MPI::n_mpi_processes(communicator);
+            std::size_t       n      = 0;
+            for (const auto &cell : pointer->active_cell_iterators())
+              cell->set_subdomain_id(n++ * n_proc / pointer->n_active_cells());
+          });
+          return mesh;
+        }
+      else
+        return std::make_unique<parallel::distributed::Triangulation<dim>>(communicator);
+    }
+  } // namespace
+
+
+  template <int dim>
+  std::unique_ptr<Triangulation<dim>> build_mesh(const Domain<dim>        &domain,
+                                                 const Cracks<dim>        &cracks,
+                                                 const MPI_Comm            communicator,
+                                                 std::vector<std::string> &notes)
+  {
+    std::vector<CrackGeometry<dim>> cut;
+    if (cracks.mesh == CrackMesh::faces)
+      for (const auto &corners : cracks.cracks)
+        cut.emplace_back(corners);
+
+    CoarseMesh<dim>  coarse;
+    BoundaryIds<dim> ids;
+    unsigned int     n_refinements = 0;
+    double           size          = 1.;
+    if (domain.shape == Shape::mesh_file)
+      coarse = read_mesh_file<dim>(domain.mesh_file, ids, size);
+    else if (domain.shape == Shape::plate_with_hole)
+      {
+        coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {
+          return !in_hole(domain, p);
+        });
+        AssertThrow(
+          !coarse.cells.empty(),
+          UserError("'Hole radius' in section 'Domain': the hole leaves no cell of the plate."));
+      }
+    else
+      std::tie(coarse, n_refinements) = box_mesh(domain, cut);
+    if (domain.shape != Shape::box)
+      require_resolved(coarse, cut);
+    if (Utilities::MPI::n_mpi_processes(communicator) > 1 && coarse.cells.size() > 100000)
+      notes.push_back(
+        "Every process keeps all " + std::to_string(coarse.cells.size()) +
+        " coarse cells. Cell counts divisible by a higher power of two need less memory.");
+    cut_along_faces(coarse, cut);
+
+    std::unique_ptr<Triangulation<dim>> mesh = empty_triangulation<dim>(communicator);
+    mesh->create_triangulation(coarse.vertices, coarse.cells, SubCellData());
+    for (const auto &cell : mesh->cell_iterators_on_level(0))
+      for (const unsigned int f : cell->face_indices())
+        if (cell->face(f)->at_boundary())
+          {
+            const Point<dim> center = cell->face(f)->center();
+            const auto       found  = ids.find(face_key<dim>(center, size));
+            cell->face(f)->set_boundary_id(domain.shape != Shape::mesh_file ?
+                                             box_side(domain, cut, center) :
+                                           found != ids.end() ? found->second :
+                                                                crack_boundary_id);
+          }
+    if (n_refinements > 0)
+      mesh->refine_global(n_refinements);
+    return mesh;
+  }
+
+
+  template std::unique_ptr<Triangulation<1>> build_mesh(const Domain<1> &,
+                                                        const Cracks<1> &,
+                                                        const MPI_Comm,
+                                                        std::vector<std::string> &);
+  template std::unique_ptr<Triangulation<2>> build_mesh(const Domain<2> &,
+                                                        const Cracks<2> &,
+                                                        const MPI_Comm,
+                                                        std::vector<std::string> &);
+  template std::unique_ptr<Triangulation<3>> build_mesh(const Domain<3> &,
+                                                        const Cracks<3> &,
+                                                        const MPI_Comm,
+                                                        std::vector<std::string> &);
+} // namespace PeriDeal

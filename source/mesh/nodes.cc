@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/mesh/mesh_builder.h>
+#include <perideal/mesh/nodes.h>
+#include <perideal/scene/crack_geometry.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    bool is_vertex_element(const DoFHandler<dim> &dofs)
+    {
+      return dofs.get_fe().n_dofs_per_vertex() > 0;
+    }
+
+
+    template <int dim>
+    std::optional<Lattice<dim>> lattice_of(const Domain<dim> &domain, const bool at_centers)
+    {
+      if (domain.shape == Shape::mesh_file)
+        return {};
+      Lattice<dim> lattice;
+      lattice.lower      = domain.lower;
+      lattice.upper      = domain.upper;
+      lattice.spacing    = domain.spacing();
+      lattice.at_centers = at_centers;
+      for (unsigned int d = 0; d < dim; ++d)
+        lattice.n_sites[d] = static_cast<int>(domain.cells[d]) + (at_centers ? 0 : 1);
+      return lattice;
+    }
+
+
+    /** Call f(local node, cell, corner number) for each owned dof of each cell this process knows; corner is 0 for cell centres. */
+    template <int dim, typename Visit>
+    void for_each_owned_dof(const DoFHandler<dim> &dofs, const Visit &visit)
+    {
+      const bool                           vertices = is_vertex_element(dofs);
+      const IndexSet                      &owned    = dofs.locally_owned_dofs();
+      const types::global_dof_index        first = owned.is_empty() ? 0 : owned.nth_index_in_set(0);
+      const types::global_dof_index        end   = first + owned.n_elements();
+      std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (!cell->is_artificial() && (vertices || cell->is_locally_owned()))
+          {
+            cell->get_dof_indices(indices);
+            for (unsigned int v = 0; v < indices.size(); ++v)
+              if (indices[v] >= first && indices[v] < end)
+                visit(static_cast<unsigned int>(indices[v] - first), cell, v);
+          }
+    }
+
+
+    template <int dim>
+    std::array<double, dim> to_array(const Point<dim> &p)
+    {
+      std::array<double, dim> a;
+      for (unsigned int d = 0; d < dim; ++d)
+        a[d] = p[d];
+      return a;
+    }
+
+    template <int dim>
+    Point<dim> to_point(const std::array<double, dim> &a)
+    {
+      Point<dim> p;
+      for (unsigned int d = 0; d < dim; ++d)
+        p[d] = a[d];
+      return p;
+    }
+  } // namespace
+
+
+  template <int dim>
+  Nodes<dim>::Nodes(const DoFHandler<dim> &dof_handler,
+                    const Domain<dim>     &domain,
+                    const Cracks<dim>     &cracks,
+                    const NodalVolume      nodal_volume)
+    : dofs(&dof_handler)
+    , first(dof_handler.locally_owned_dofs().is_empty() ?
+              0 :
+              dof_handler.locally_owned_dofs().nth_index_in_set(0))
+    , owned_count(dof_handler.locally_owned_dofs().n_elements())
+    , regular(lattice_of(domain, !is_vertex_element(dof_handler)))
+  {
+    find_positions(domain);
+    find_volumes(nodal_volume);
+    find_boundary_shares();
+    if (cracks.mesh == CrackMesh::faces)
+      find_crack_points(cracks);
+    doubled = Utilities::MPI::max(crack_points.empty() ? 0 : 1, communicator()) > 0;
+  }
+
+
+  template <int dim>
+  void Nodes<dim>::find_positions(const Domain<dim> &)
+  {
+    positions.resize(owned_count);
+    const bool vertices = is_vertex_element(*dofs);
+    double     edge     = std::numeric_limits<double>::max();
+    for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &cell, const unsigned int v) {
+      const Point<dim> p = vertices ? cell->vertex(v) : cell->center();
+      positions[node]    = regular ? regular->position(regular->index(p)) : p;
+      if (!regular)
+        edge = std::min(edge, cell->minimum_vertex_distance());
+    });
+    if (regular)
+      for (unsigned int d = 0; d < dim; ++d)
+        edge = std::min(edge, regular->spacing[d]);
+    shortest_edge = Utilities::MPI::min(edge, communicator());
+  }
+
+
+  template <int dim>
+  void Nodes<dim>::find_volumes(const NodalVolume nodal_volume)
+  {
+    volumes.assign(owned_count, 0.);
+    const unsigned int n_corners = is_vertex_element(*dofs) ? (1u << dim) : 1;
+    if (regular)
+      {
+        const double share = regular->cell_volume() / n_corners;
+        for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &, const unsigned int) {
+          volumes[node] += share;
+        });
+        if (nodal_volume == NodalVolume::full)
+          std::fill(volumes.begin(), volumes.end(), regular->cell_volume());
+        return;
+      }
+    AssertThrow(
+      nodal_volume == NodalVolume::partial,
+      UserError("'Nodal volume = full' in section 'Peridynamics' needs a lattice of equal cells "
+                "(Shape = box or plate with hole); use 'partial' with a mesh file."));
+    FEValues<dim> values(dofs->get_fe(), QGauss<dim>(2), update_values | update_JxW_values);
+    typename DoFHandler<dim>::active_cell_iterator current;
+    for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &cell, const unsigned int v) {
+      if (current != cell)
+        {
+          values.reinit(cell);
+          current = cell;
+        }
+      for (const unsigned int q : values.quadrature_point_indices())
+        volumes[node] += values.shape_value(v, q) * values.JxW(q);
+    });
+  }
+
+
+  template <int dim>
+  void Nodes<dim>::find_boundary_shares()
+  {
+    for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &cell, const unsigned int v) {
+      for (const unsigned int f : cell->face_indices())
+        if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != crack_boundary_id)
+          {
+            const auto face    = cell->face(f);
+            bool       touches = !is_vertex_element(*dofs);
+            for (unsigned int w = 0; w < face->n_vertices(); ++w)
+              touches = touches || face->vertex_index(w) == cell->vertex_index(v);
+            double measure = 1.;
+            if constexpr (dim > 1)
+              measure = face->measure();
+            if (touches)
+              shares.push_back({node,
+                                face->boundary_id(),
+                                is_vertex_element(*dofs) ? measure / face->n_vertices() : measure});
+          }
+    });
+    // One share per node and side.
+    std::stable_sort(shares.begin(),
+                     shares.end(),
+                     [](const BoundaryShare &a, const BoundaryShare &b) {
+                       return std::pair(a.node, a.id) < std::pair(b.node, b.id);
+                     });
+    std::vector<BoundaryShare> joined;
+    for (const BoundaryShare &share : shares)
+      if (!joined.empty() && joined.back().node == share.node && joined.back().id == share.id)
+        joined.back().area += share.area;
+      else
+        joined.push_back(share);
+    shares.swap(joined);
+  }
+
+
+  template <int dim>
+  void Nodes<dim>::find_crack_points(const Cracks<dim> &cracks)
+  {
+    if (!is_vertex_element(*dofs))
+      return;
+    std::vector<CrackGeometry<dim>> geometries;
+    for (const auto &corners : cracks.cracks)
+      geometries.emplace_back(corners);
+    std::unordered_map<unsigned int, std::pair<Point<dim>, unsigned int>> middle;
+    for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &cell, const unsigned int) {
+      for (const CrackGeometry<dim> &crack : geometries)
+        if (crack.contains(positions[node]))
+          {
+            auto &[sum, n] = middle[node];
+            sum += cell->center() - Point<dim>();
+            ++n;
+            break;
+          }
+    });
+    constexpr double nudge = 1e-6; // of the way to the middle of the node's own cells
+    for (const auto &[node, sum] : middle)
+      crack_points[node] = positions[node] + nudge * (sum.first / sum.second - positions[node]);
+  }
+
+
+  template <int dim>
+  unsigned int Nodes<dim>::n_owned() const
+  {
+    return owned_count;
+  }
+
+  template <int dim>
+  unsigned int Nodes<dim>::n_local() const
+  {
+    return static_cast<unsigned int>(positions.size());
+  }
+
+  template <int dim>
+  types::global_dof_index Nodes<dim>::first_owned() const
+  {
+    return first;
+  }
+
+  template <int dim>
+  types::global_dof_index Nodes<dim>::n_global() const
+  {
+    return dofs->n_dofs();
+  }
+
+  template <int dim>
+  const Point<dim> &Nodes<dim>::position(const unsigned int node) const
+  {
+    AssertIndexRange(node, positions.size());
+    return positions[node];
+  }
+
+  template <int dim>
+  double Nodes<dim>::volume(const unsigned int node) const
+  {
+    AssertIndexRange(node, volumes.size());
+    return volumes[node];
+  }
+
+  template <int dim>
+  Point<dim> Nodes<dim>::crack_point(const unsigned int node) const
+  {
+    const auto entry = crack_points.find(node);
+    return entry == crack_points.end() ? positions[node] : entry->second;
+  }
+
+  template <int dim>
+  const std::vector<BoundaryShare> &Nodes<dim>::boundary_shares() const
+  {
+    return shares;
+  }
+
+  template <int dim>
+  const std::optional<Lattice<dim>> &Nodes<dim>::lattice() const
+  {
+    return regular;
+  }
+
+  template <int dim>
+  bool Nodes<dim>::has_doubled_nodes() const
+  {
+    return doubled;
+  }
+
+  template <int dim>
+  double Nodes<dim>::smallest_spacing() const
+  {
+    return shortest_edge;
+  }
+
+  template <int dim>
+  const DoFHandler<dim> &Nodes<dim>::dof_handler() const
+  {
+    return *dofs;
+  }
+
+  template <int dim>
+  MPI_Comm Nodes<dim>::communicator() const
+  {
+    return dofs->get_communicator();
+  }
+
+
+  template <int dim>
+  NodeRecord<dim> Nodes<dim>::record(const unsigned int node) const
+  {
+    NodeRecord<dim> record;
+    record.global_index = first + node;
+    record.volume       = volumes[node];
+    record.position     = to_array(positions[node]);
+    record.crack_point  = to_array(crack_point(node));
+    return record;
+  }
+
+
+  template <int dim>
+  void Nodes<dim>::set_ghosts(std::vector<NodeRecord<dim>> ghosts)
+  {
+    Assert(positions.size() == owned_count, ExcMessage("The halo has been set before."));
+    std::sort(ghosts.begin(), ghosts.end(), [](const auto &a, const auto &b) {
+      return a.global_index < b.global_index;
+    });
+    IndexSet ghost_indices(n_global());
+    for (const NodeRecord<dim> &ghost : ghosts)
+      {
+        ghost_indices.add_index(ghost.global_index);
+        const Point<dim> p = to_point<dim>(ghost.position), side = to_point<dim>(ghost.crack_point);
+        if (p != side)
+          crack_points[positions.size()] = side;
+        positions.push_back(p);
+        volumes.push_back(ghost.volume);
+      }
+    ghost_indices.compress();
+    layout = std::make_shared<Utilities::MPI::Partitioner>(dofs->locally_owned_dofs(),
+                                                           ghost_indices,
+                                                           communicator());
+  }
+
+
+  template <int dim>
+  const std::shared_ptr<const Utilities::MPI::Partitioner> &Nodes<dim>::partitioner() const
+  {
+    Assert(layout, ExcMessage("The halo has not been set."));
+    return layout;
+  }
+
+
+  template <int dim>
+  std::size_t Nodes<dim>::memory_consumption() const
+  {
+    return positions.capacity() * sizeof(Point<dim>) + volumes.capacity() * sizeof(double) +
+           shares.capacity() * sizeof(BoundaryShare);
+  }
+
+
+  template <int dim>
+  void number_along_lattice(DoFHandler<dim> &dof_handler, const Domain<dim> &domain)
+  {
+    const std::optional<Lattice<dim>> lattice = lattice_of(domain, !is_vertex_element(dof_handler));
+    const unsigned int                n_owned = dof_handler.locally_owned_dofs().n_elements();
+    std::vector<std::size_t>          site(n_owned);
+    const bool                        vertices = is_vertex_element(dof_handler);
+    for_each_owned_dof(dof_handler,
+                       [&](const unsigned int node, const auto &cell, const unsigned int v) {
+                         const auto index =
+                           lattice->index(vertices ? cell->vertex(v) : cell->center());
+                         std::size_t key = 0;
+                         for (unsigned int d = dim; d-- > 0;)
+                           key = key * lattice->n_sites[d] + index[d];
+                         site[node] = key;
+                       });
+    std::vector<unsigned int> order(n_owned);
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](const unsigned int a, const unsigned int b) {
+      return site[a] < site[b];
+    });
+    const types::global_dof_index first =
+      n_owned > 0 ? dof_handler.locally_owned_dofs().nth_index_in_set(0) : 0;
+    std::vector<types::global_dof_index> numbers(n_owned);
+    for (unsigned int i = 0; i < n_owned; ++i)
+      numbers[order[i]] = first + i;
+    dof_handler.renumber_dofs(numbers);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim) \
+  template class Nodes<dim>;      \
+  template void number_along_lattice(DoFHandler<dim> &, const Domain<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

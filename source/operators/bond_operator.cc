@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/operators/bond_operator.h>
+#include <perideal/operators/spectrum.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  BondOperator<dim>::BondOperator(Nodes<dim> &nodes, const Scene<dim> &scene)
+    : scene(scene)
+    , bonds(nodes, scene)
+    , constraints(bonds, scene)
+  {
+    initialize_vector(scratch);
+    find_capacity();
+    find_side_loads();
+    if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling)
+      scale_crack_sides();
+    choose_form(scene.peridynamics.form);
+    find_diagonal();
+    outside_values.resize(bonds.fictitious().size());
+    outside_signs_only.resize(bonds.fictitious().size());
+    loads_vary = scene.initial_and_source.source.depends_on_time() ||
+                 scene.boundary_conditions.depends_on_time();
+    if (!loads_vary)
+      {
+        Vector loads;
+        initialize_vector(loads);
+        add_loads_now(loads, 0.);
+        constant_loads.swap(loads);
+      }
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::choose_form(const OperatorForm wanted)
+  {
+    std::string reason;
+    const bool  suits = lattice_form_suits(bonds, reason);
+    AssertThrow(
+      wanted != OperatorForm::lattice || suits,
+      UserError("'Operator form = lattice' in section 'Peridynamics' is not possible here: " +
+                reason + ". Use 'auto' or 'stored'."));
+    const bool lattice = wanted == OperatorForm::lattice ||
+                         (wanted == OperatorForm::automatic && suits);
+    form = lattice ? make_lattice_form(bonds) : make_stored_form(bonds);
+    note = lattice ? "lattice stencil, no stored bonds but corrections" :
+           suits   ? "stored bonds, as asked" :
+                     "stored bonds, because " + reason;
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::find_capacity()
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    initialize_vector(capacity);
+    std::string message;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const double storage = scene.material.storage(nodes.position(i));
+        if (!(storage > 0.) && message.empty())
+          message = "'Density' times 'Heat capacity' in section 'Material' is " +
+                    std::to_string(storage) +
+                    " at a node; it must be positive everywhere in the body.";
+        capacity.local_element(i) = storage * nodes.volume(i);
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::find_side_loads()
+  {
+    const bool  natural    = scene.peridynamics.flux_treatment == FluxTreatment::natural;
+    const auto &conditions = scene.boundary_conditions;
+    for (const BoundaryShare &share : bonds.nodes().boundary_shares())
+      {
+        if (constraints.kind(share.node) != NodeConstraints<dim>::free)
+          continue;
+        const auto *flux       = BoundaryConditions<dim>::find(conditions.flux, share.id);
+        const auto *convection = BoundaryConditions<dim>::find(conditions.convection, share.id);
+        if (flux != nullptr && natural)
+          fluxes.push_back({share.node, share.area, flux});
+        if (convection != nullptr)
+          {
+            convections.push_back({share.node, share.area, convection});
+            convection_diagonal.emplace_back(
+              share.node,
+              share.area * convection->coefficient.value(bonds.nodes().position(share.node)));
+          }
+      }
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::scale_crack_sides()
+  {
+    // DESIGN 1, crack-side scaling: the trace of a full interior family is 2 d kappa, what the cut family lacks is made up for.
+    const Nodes<dim> &nodes = bonds.nodes();
+    Vector            factors;
+    initialize_vector(factors);
+    std::vector<typename Families<dim>::Bond> family;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        factors.local_element(i) = 1.;
+        if (!bonds.near_crack(i))
+          continue;
+        bonds.bonds_of(i, family);
+        double trace = 0.;
+        bool   cut   = false;
+        for (const auto &bond : family)
+          {
+            trace += 0.5 * bond.weight * bonds.bond_vector(i, bond.neighbor).norm_square();
+            cut = cut || bond.cut;
+          }
+        if (cut && trace > 0.)
+          factors.local_element(i) =
+            std::clamp(dim * bonds.conductivity(i) * nodes.volume(i) / trace, 0.5, 4.);
+      }
+    factors.update_ghost_values();
+    std::vector<double> local(nodes.n_local());
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      local[i] = factors.local_element(i);
+    bonds.set_node_factors(std::move(local));
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::find_diagonal()
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    initialize_vector(bond_diagonal);
+    std::vector<typename Families<dim>::Bond> family;
+    std::string                               message;
+    double                                    n_directed = 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        bonds.bonds_of(i, family);
+        double sum = 0.;
+        for (const auto &bond : family)
+          {
+            sum += bond.weight;
+            if (bond.weight > 0.)
+              n_directed += bond.neighbor < nodes.n_local() ? 0.5 : 1.;
+          }
+        if (!(sum > 0.) && message.empty() && constraints.kind(i) == NodeConstraints<dim>::free)
+          {
+            std::ostringstream where;
+            where << "(" << nodes.position(i) << ")";
+            message =
+              "The node at " + where.str() +
+              " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section "
+              "'Cracks', which may cut all bonds of a node (a crack in 'Horizon ratio' close to 1).";
+          }
+        bond_diagonal.local_element(i) = sum;
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+    for (const auto &[node, h] : convection_diagonal)
+      bond_diagonal.local_element(node) += h;
+    double bound = 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      if (constraints.kind(i) == NodeConstraints<dim>::free)
+        bound = std::max(bound, 2. * bond_diagonal.local_element(i) / capacity.local_element(i));
+    gershgorin = Utilities::MPI::max(bound, nodes.communicator());
+    n_bonds    = static_cast<unsigned long long>(
+      std::llround(Utilities::MPI::sum(n_directed, nodes.communicator())));
+    n_nonzeros = Utilities::MPI::sum(form->n_stored(), nodes.communicator());
+    constraints.mask(bond_diagonal, 1.);
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::initialize_vector(Vector &vector) const
+  {
+    vector.reinit(bonds.nodes().partitioner());
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::sum_bonds(Vector &y, const Vector &x, const double *outside) const
+  {
+    form->apply(y.begin(), x.begin(), outside);
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::fictitious_values(const Vector        &u,
+                                            const double         t,
+                                            std::vector<double> &values) const
+  {
+    const auto &fictitious = bonds.fictitious();
+    values.resize(fictitious.size());
+    for (std::size_t f = 0; f < fictitious.size(); ++f)
+      values[f] =
+        fictitious[f].sign * u.local_element(fictitious[f].mirror) + fictitious[f].constant(t);
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::apply(Vector &y, const Vector &x) const
+  {
+    ++applications;
+    const Vector *input = &x;
+    if (constraints.any_slave())
+      {
+        scratch = x;
+        constraints.distribute_homogeneous(scratch);
+        input = &scratch;
+      }
+    input->update_ghost_values();
+    const auto &fictitious = bonds.fictitious();
+    for (std::size_t f = 0; f < fictitious.size(); ++f)
+      outside_signs_only[f] = fictitious[f].sign * input->local_element(fictitious[f].mirror);
+    sum_bonds(y, *input, outside_signs_only.data());
+    for (const auto &[node, h] : convection_diagonal)
+      y.local_element(node) += h * input->local_element(node);
+    constraints.mask(y);
+    input->set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
+  {
+    ++applications;
+    u.update_ghost_values();
+    fictitious_values(u, t, outside_values);
+    sum_bonds(r, u, outside_values.data());
+    for (const auto &[node, h] : convection_diagonal)
+      r.local_element(node) += h * u.local_element(node);
+    r *= -1.;
+    add_loads(r, t);
+    constraints.mask(r);
+    u.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::add_loads(Vector &r, const double t) const
+  {
+    if (loads_vary)
+      add_loads_now(r, t);
+    else
+      r += constant_loads;
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::add_loads_now(Vector &r, const double t) const
+  {
+    const Nodes<dim> &nodes  = bonds.nodes();
+    const Expression &source = scene.initial_and_source.source;
+    if (!source.is_constant() || source.value(Point<dim>()) != 0.)
+      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        r.local_element(i) += nodes.volume(i) * source.value(nodes.position(i), t);
+    for (const SideLoad &load : fluxes)
+      r.local_element(load.node) +=
+        load.area * load.condition->value.value(nodes.position(load.node), t);
+    for (std::size_t k = 0; k < convections.size(); ++k)
+      r.local_element(convections[k].node) +=
+        convection_diagonal[k].second *
+        convections[k].condition->value.value(nodes.position(convections[k].node), t);
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::distribute(Vector &u, const double t) const
+  {
+    constraints.distribute(u, t);
+  }
+
+  template <int dim>
+  void BondOperator<dim>::distribute_homogeneous(Vector &x) const
+  {
+    constraints.distribute_homogeneous(x);
+  }
+
+  template <int dim>
+  void BondOperator<dim>::clear_constrained(Vector &y) const
+  {
+    constraints.mask(y);
+  }
+
+  template <int dim>
+  const Vector &BondOperator<dim>::lumped_capacity() const
+  {
+    return capacity;
+  }
+
+  template <int dim>
+  bool BondOperator<dim>::capacity_is_diagonal() const
+  {
+    return true;
+  }
+
+  template <int dim>
+  void BondOperator<dim>::apply_capacity(Vector &y, const Vector &x) const
+  {
+    y = x;
+    y.scale(capacity);
+  }
+
+  template <int dim>
+  const Vector &BondOperator<dim>::diagonal() const
+  {
+    return bond_diagonal;
+  }
+
+  template <int dim>
+  Spectrum BondOperator<dim>::spectrum() const
+  {
+    if (bounds.safe == 0.)
+      {
+        bounds.sharp = sharp_bound(*this, gershgorin, [&](Vector &vector) {
+          for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+            vector.local_element(i) = position_noise(bonds.nodes().position(i));
+        });
+        bounds.safe  = gershgorin;
+      }
+    return bounds;
+  }
+
+  template <int dim>
+  bool BondOperator<dim>::symmetric() const
+  {
+    return bonds.symmetric() && !constraints.any_slave();
+  }
+
+  template <int dim>
+  bool BondOperator<dim>::depends_on_time() const
+  {
+    return loads_vary;
+  }
+
+  template <int dim>
+  bool BondOperator<dim>::has_steady_state() const
+  {
+    return constraints.any_prescribed() || !scene.boundary_conditions.convection.empty() ||
+           !scene.boundary_conditions.dirichlet.empty();
+  }
+
+  template <int dim>
+  bool BondOperator<dim>::surrogate_is_exact() const
+  {
+    return false;
+  }
+
+  template <int dim>
+  const Families<dim> &BondOperator<dim>::families() const
+  {
+    return bonds;
+  }
+
+  template <int dim>
+  const std::string &BondOperator<dim>::form_note() const
+  {
+    return note;
+  }
+
+  template <int dim>
+  OperatorSize BondOperator<dim>::size() const
+  {
+    OperatorSize size;
+    size.unknowns = bonds.nodes().n_global();
+    size.bonds    = n_bonds;
+    size.nonzeros = n_nonzeros;
+    size.memory   = bonds.memory_consumption() + bonds.nodes().memory_consumption() +
+                  form->memory_consumption() + capacity.memory_consumption() +
+                  bond_diagonal.memory_consumption() + constant_loads.memory_consumption() +
+                  scratch.memory_consumption();
+    size.form = form->name();
+    return size;
+  }
+
+  template class BondOperator<1>;
+  template class BondOperator<2>;
+  template class BondOperator<3>;
+} // namespace PeriDeal

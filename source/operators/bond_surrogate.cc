@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <perideal/operators/bond_operator.h>
+
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Conductance of a bond between nearest neighbours as a 5 or 7 point scheme has it; zero for longer bonds and cut ones. */
+    template <int dim>
+    double neighbor_conductance(const Families<dim>                &families,
+                                const unsigned int                  node,
+                                const typename Families<dim>::Bond &bond)
+    {
+      const Nodes<dim> &nodes = families.nodes();
+      if (bond.neighbor >= nodes.n_local() || bond.intact == 0.)
+        return 0.;
+      const Tensor<1, dim> xi     = families.bond_vector(node, bond.neighbor);
+      const double         volume = std::sqrt(nodes.volume(node) * nodes.volume(bond.neighbor));
+      const double         kept   = bond.weight / bond.intact;
+      const double         kappa  = bond.intact > 0. ? families.conductivity(node) : 0.;
+      if (nodes.lattice())
+        {
+          unsigned int n_steps = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            n_steps += std::abs(std::lround(xi[d] / nodes.lattice()->spacing[d]));
+          return n_steps == 1 ? kept * kappa * volume / xi.norm_square() : 0.;
+        }
+      const double size =
+        std::pow(std::max(nodes.volume(node), nodes.volume(bond.neighbor)), 1. / dim);
+      return xi.norm() <= 1.5 * size ? 0.5 * kept * kappa * volume / xi.norm_square() : 0.;
+    }
+  } // namespace
+
+
+  template <int dim>
+  void BondOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    const IndexSet   &owned = nodes.dof_handler().locally_owned_dofs();
+
+    // Which columns are free has to be known of ghosts too.
+    Vector free_nodes;
+    initialize_vector(free_nodes);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      free_nodes.local_element(i) = constraints.kind(i) == NodeConstraints<dim>::free ? 1. : 0.;
+    free_nodes.update_ghost_values();
+
+    std::vector<typename Families<dim>::Bond>    family;
+    std::vector<unsigned int>                    starts{0};
+    std::vector<std::pair<unsigned int, double>> entries;
+    TrilinosWrappers::SparsityPattern            pattern(owned,
+                                              nodes.communicator(),
+                                              nodes.lattice() ? 2 * dim + 1 : 12);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const auto row = nodes.partitioner()->local_to_global(i);
+        pattern.add(row, row);
+        if (free_nodes.local_element(i) > 0.)
+          {
+            bonds.bonds_of(i, family);
+            for (const auto &bond : family)
+              if (const double c = neighbor_conductance(bonds, i, bond); c > 0.)
+                {
+                  entries.emplace_back(bond.neighbor, c);
+                  pattern.add(row, nodes.partitioner()->local_to_global(bond.neighbor));
+                }
+          }
+        starts.push_back(static_cast<unsigned int>(entries.size()));
+      }
+    pattern.compress();
+    matrix.reinit(pattern);
+    std::vector<double> convection(nodes.n_owned(), 0.);
+    for (const auto &[node, h] : convection_diagonal)
+      convection[node] += h;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const auto row  = nodes.partitioner()->local_to_global(i);
+        double     diag = convection[i];
+        for (unsigned int k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            const auto [j, c] = entries[k];
+            diag += c;
+            matrix.set(row,
+                       nodes.partitioner()->local_to_global(j),
+                       free_nodes.local_element(j) > 0. ? -c : 0.);
+          }
+        // A node without near neighbours keeps its own diagonal, so that the matrix stays regular.
+        matrix.set(row, row, diag > 0. ? diag : bond_diagonal.local_element(i));
+      }
+    matrix.compress(VectorOperation::insert);
+  }
+
+  template void BondOperator<1>::surrogate(TrilinosWrappers::SparseMatrix &) const;
+  template void BondOperator<2>::surrogate(TrilinosWrappers::SparseMatrix &) const;
+  template void BondOperator<3>::surrogate(TrilinosWrappers::SparseMatrix &) const;
+} // namespace PeriDeal

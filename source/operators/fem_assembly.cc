@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/laws/crack_conductance.h>
+#include <perideal/operators/fem_operator.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  /** Scratch memory of the cell loops. */
+  template <int dim>
+  struct FEMOperator<dim>::CellData
+  {
+    explicit CellData(const FiniteElement<dim> &fe)
+      : values(fe,
+               QGauss<dim>(fe.degree + 1),
+               update_values | update_gradients | update_quadrature_points | update_JxW_values)
+      , face_values(fe,
+                    QGauss<dim - 1>(fe.degree + 1),
+                    update_values | update_quadrature_points | update_JxW_values)
+      , stiffness(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
+      , mass(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
+      , convection(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
+      , indices(fe.n_dofs_per_cell())
+    {}
+
+    FEValues<dim>                        values;
+    FEFaceValues<dim>                    face_values;
+    FullMatrix<double>                   stiffness, mass, convection;
+    std::vector<types::global_dof_index> indices;
+  };
+
+
+  template <int dim>
+  void FEMOperator<dim>::find_cut_cells()
+  {
+    cut.assign(dofs.get_triangulation().n_active_cells(), false);
+    if (scene.cracks.mesh == CrackMesh::faces)
+      return;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        for (const CrackGeometry<dim> &crack : cracks)
+          {
+            if (!crack.is_near(cell->center(), cell->diameter()))
+              continue;
+            for (const unsigned int a : cell->vertex_indices())
+              for (unsigned int b = 0; b < a; ++b)
+                if (crack.separates(cell->vertex(a), cell->vertex(b)))
+                  cut[cell->active_cell_index()] = true;
+          }
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::check_material() const
+  {
+    std::string   message;
+    FEValues<dim> values(dofs.get_fe(),
+                         QGauss<dim>(dofs.get_fe().degree + 1),
+                         update_quadrature_points);
+    if (!scene.material.conductivity.is_constant() || !scene.material.density.is_constant() ||
+        !scene.material.heat_capacity.is_constant())
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned() && message.empty())
+          {
+            values.reinit(cell);
+            for (const Point<dim> &p : values.get_quadrature_points())
+              {
+                std::ostringstream where;
+                where << " at (" << p << "); it must be positive everywhere in the body.";
+                if (!(scene.material.conductivity.value(p) > 0.))
+                  message = "'Conductivity' in section 'Material' is not positive" + where.str();
+                else if (!(scene.material.storage(p) > 0.))
+                  message =
+                    "'Density' times 'Heat capacity' in section 'Material' is not positive" +
+                    where.str();
+              }
+          }
+    throw_on_all_if_any(dofs.get_communicator(), message);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::keep_unseparated_pairs(
+    const typename DoFHandler<dim>::active_cell_iterator &cell,
+    CellData                                             &data) const
+  {
+    const double       t        = scene.cracks.transmission;
+    const bool         contact  = scene.cracks.contact_conductance >= 0.;
+    FullMatrix<double> original = data.stiffness;
+    data.stiffness              = 0.;
+    for (const unsigned int a : cell->vertex_indices())
+      for (unsigned int b = 0; b < a; ++b)
+        {
+          double               w     = std::max(0., -original(a, b));
+          const Tensor<1, dim> xi    = cell->vertex(b) - cell->vertex(a);
+          const double         kappa = scene.material.conductivity.value(cell->center());
+          for (const CrackGeometry<dim> &crack : cracks)
+            if (crack.separates(cell->vertex(a), cell->vertex(b)))
+              {
+                const double across = std::abs(xi * crack.normal());
+                if (!contact && t >= 1.)
+                  continue;
+                const double H = contact ? scene.cracks.contact_conductance :
+                                           contact_conductance_of_transmission(
+                                             t,
+                                             kappa,
+                                             scene.horizon(),
+                                             scene.horizon() / cell->minimum_vertex_distance());
+                w *= contact_fraction(H, across, kappa);
+              }
+          data.stiffness(a, b) -= w;
+          data.stiffness(b, a) -= w;
+          data.stiffness(a, a) += w;
+          data.stiffness(b, b) += w;
+        }
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::assemble_cell(const typename DoFHandler<dim>::active_cell_iterator &cell,
+                                       CellData &data) const
+  {
+    data.values.reinit(cell);
+    data.stiffness       = 0.;
+    data.mass            = 0.;
+    data.convection      = 0.;
+    const unsigned int n = data.indices.size();
+    for (const unsigned int q : data.values.quadrature_point_indices())
+      {
+        const Point<dim> &p       = data.values.quadrature_point(q);
+        const double      kappa   = scene.material.conductivity.value(p) * data.values.JxW(q);
+        const double      storage = scene.material.storage(p) * data.values.JxW(q);
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < n; ++j)
+            {
+              data.stiffness(i, j) +=
+                kappa * (data.values.shape_grad(i, q) * data.values.shape_grad(j, q));
+              data.mass(i, j) +=
+                storage * data.values.shape_value(i, q) * data.values.shape_value(j, q);
+            }
+      }
+    if (cut[cell->active_cell_index()])
+      {
+        if (scene.cracks.mesh == CrackMesh::removed)
+          data.stiffness = 0.;
+        else
+          keep_unseparated_pairs(cell, data);
+      }
+    for (const unsigned int f : cell->face_indices())
+      if (cell->face(f)->at_boundary())
+        if (const auto *condition =
+              BoundaryConditions<dim>::find(scene.boundary_conditions.convection,
+                                            cell->face(f)->boundary_id()))
+          {
+            data.face_values.reinit(cell, f);
+            for (const unsigned int q : data.face_values.quadrature_point_indices())
+              {
+                const double h =
+                  condition->coefficient.value(data.face_values.quadrature_point(q)) *
+                  data.face_values.JxW(q);
+                for (unsigned int i = 0; i < n; ++i)
+                  for (unsigned int j = 0; j < n; ++j)
+                    data.convection(i, j) +=
+                      h * data.face_values.shape_value(i, q) * data.face_values.shape_value(j, q);
+              }
+          }
+    cell->get_dof_indices(data.indices);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::find_crack_factors(CellData &data)
+  {
+    // DESIGN 1, crack-side scaling: g_i = d kappa V_i / (-(1/2) sum_j K_ij r_ij^2) on the vertices of cut cells.
+    Vector marked, trace, expected;
+    for (Vector *v : {&marked, &trace, &expected})
+      initialize_vector(*v);
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && cut[cell->active_cell_index()])
+        {
+          cell->get_dof_indices(data.indices);
+          for (const auto i : data.indices)
+            marked(i) = 1.;
+        }
+    marked.compress(VectorOperation::max);
+    marked.update_ghost_values();
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cell->get_dof_indices(data.indices);
+          if (std::none_of(data.indices.begin(), data.indices.end(), [&](const auto i) {
+                return marked(i) > 0.;
+              }))
+            continue;
+          assemble_cell(cell, data);
+          const double share = dim * scene.material.conductivity.value(cell->center()) *
+                               cell->measure() / data.indices.size();
+          for (unsigned int a = 0; a < data.indices.size(); ++a)
+            {
+              expected(data.indices[a]) += share;
+              for (unsigned int b = 0; b < data.indices.size(); ++b)
+                trace(data.indices[a]) -=
+                  0.5 * data.stiffness(a, b) * (cell->vertex(b) - cell->vertex(a)).norm_square();
+            }
+        }
+    trace.compress(VectorOperation::add);
+    expected.compress(VectorOperation::add);
+    initialize_vector(crack_factors);
+    for (unsigned int i = 0; i < crack_factors.locally_owned_size(); ++i)
+      crack_factors.local_element(i) =
+        marked.local_element(i) > 0. && trace.local_element(i) > 0. ?
+          std::clamp(expected.local_element(i) / trace.local_element(i), 0.5, 4.) :
+          1.;
+    crack_factors.update_ghost_values();
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::assemble()
+  {
+    const IndexSet &owned = dofs.locally_owned_dofs();
+    IndexSet        relevant;
+    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
+    DoFTools::make_sparsity_pattern(dofs, pattern);
+    pattern.compress();
+    stiffness.reinit(pattern);
+    if (scene.finite_elements.consistent_capacity)
+      mass.reinit(pattern);
+    initialize_vector(capacity);
+
+    CellData data(dofs.get_fe());
+    if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling &&
+        scene.cracks.mesh == CrackMesh::pairs && !cracks.empty())
+      find_crack_factors(data);
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          assemble_cell(cell, data);
+          if (crack_factors.size() > 0)
+            {
+              double mean = 0.;
+              for (const auto i : data.indices)
+                mean += crack_factors(i) / data.indices.size();
+              data.stiffness *= mean;
+            }
+          data.stiffness.add(1., data.convection);
+          stiffness.add(data.indices, data.stiffness);
+          if (scene.finite_elements.consistent_capacity)
+            mass.add(data.indices, data.mass);
+          for (unsigned int a = 0; a < data.indices.size(); ++a)
+            for (unsigned int b = 0; b < data.indices.size(); ++b)
+              capacity(data.indices[a]) += data.mass(a, b);
+        }
+    stiffness.compress(VectorOperation::add);
+    if (scene.finite_elements.consistent_capacity)
+      mass.compress(VectorOperation::add);
+    capacity.compress(VectorOperation::add);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::assemble_loads(Vector &loads, const double t) const
+  {
+    const Expression &source     = scene.initial_and_source.source;
+    const bool        any_source = !source.is_constant() || source.value(Point<dim>()) != 0.;
+    CellData          data(dofs.get_fe());
+    loads = 0.;
+    for (const auto &cell : dofs.active_cell_iterators())
+      {
+        if (!cell->is_locally_owned() || !(any_source || cell->at_boundary()))
+          continue;
+        cell->get_dof_indices(data.indices);
+        if (any_source)
+          {
+            data.values.reinit(cell);
+            for (const unsigned int q : data.values.quadrature_point_indices())
+              for (unsigned int i = 0; i < data.indices.size(); ++i)
+                loads(data.indices[i]) += source.value(data.values.quadrature_point(q), t) *
+                                          data.values.shape_value(i, q) * data.values.JxW(q);
+          }
+        for (const unsigned int f : cell->face_indices())
+          {
+            if (!cell->face(f)->at_boundary())
+              continue;
+            const auto  id   = cell->face(f)->boundary_id();
+            const auto *flux = BoundaryConditions<dim>::find(scene.boundary_conditions.flux, id);
+            const auto *convection =
+              BoundaryConditions<dim>::find(scene.boundary_conditions.convection, id);
+            if (flux == nullptr && convection == nullptr)
+              continue;
+            data.face_values.reinit(cell, f);
+            for (const unsigned int q : data.face_values.quadrature_point_indices())
+              {
+                const Point<dim> &p        = data.face_values.quadrature_point(q);
+                double            entering = flux != nullptr ? flux->value.value(p, t) : 0.;
+                if (convection != nullptr)
+                  entering += convection->coefficient.value(p) * convection->value.value(p, t);
+                for (unsigned int i = 0; i < data.indices.size(); ++i)
+                  loads(data.indices[i]) +=
+                    entering * data.face_values.shape_value(i, q) * data.face_values.JxW(q);
+              }
+          }
+      }
+    loads.compress(VectorOperation::add);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::add_side_and_source_heat(const Vector &u,
+                                                  const double  t,
+                                                  Balance      &balance) const
+  {
+    const Expression   &source     = scene.initial_and_source.source;
+    const bool          any_source = !source.is_constant() || source.value(Point<dim>()) != 0.;
+    CellData            data(dofs.get_fe());
+    std::vector<double> temperature(data.face_values.n_quadrature_points);
+    u.update_ghost_values();
+    for (const auto &cell : dofs.active_cell_iterators())
+      {
+        if (!cell->is_locally_owned() || !(any_source || cell->at_boundary()))
+          continue;
+        if (any_source)
+          {
+            data.values.reinit(cell);
+            for (const unsigned int q : data.values.quadrature_point_indices())
+              balance.sources +=
+                source.value(data.values.quadrature_point(q), t) * data.values.JxW(q);
+          }
+        for (const unsigned int f : cell->face_indices())
+          {
+            if (!cell->face(f)->at_boundary())
+              continue;
+            const auto  id   = cell->face(f)->boundary_id();
+            const auto *flux = BoundaryConditions<dim>::find(scene.boundary_conditions.flux, id);
+            const auto *convection =
+              BoundaryConditions<dim>::find(scene.boundary_conditions.convection, id);
+            if (flux == nullptr && convection == nullptr)
+              continue;
+            data.face_values.reinit(cell, f);
+            data.face_values.get_function_values(u, temperature);
+            for (const unsigned int q : data.face_values.quadrature_point_indices())
+              {
+                const Point<dim> &p = data.face_values.quadrature_point(q);
+                if (flux != nullptr)
+                  balance.sides[flux->name] += flux->value.value(p, t) * data.face_values.JxW(q);
+                if (convection != nullptr)
+                  balance.sides[convection->name] +=
+                    convection->coefficient.value(p) *
+                    (convection->value.value(p, t) - temperature[q]) * data.face_values.JxW(q);
+              }
+          }
+      }
+    u.set_ghost_state(false);
+  }
+
+#define PERIDEAL_INSTANTIATE(dim)                                            \
+  template void FEMOperator<dim>::add_side_and_source_heat(const Vector &,   \
+                                                           const double,     \
+                                                           Balance &) const; \
+  template struct FEMOperator<dim>::CellData;                                \
+  template void FEMOperator<dim>::find_cut_cells();                          \
+  template void FEMOperator<dim>::check_material() const;                    \
+  template void FEMOperator<dim>::assemble();                                \
+  template void FEMOperator<dim>::assemble_loads(Vector &, const double) const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

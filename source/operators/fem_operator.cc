@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/mapping_q1.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/operators/fem_operator.h>
+#include <perideal/operators/spectrum.h>
+
+#include <algorithm>
+#include <map>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  FEMOperator<dim>::FEMOperator(const DoFHandler<dim> &dof_handler, const Scene<dim> &scene)
+    : dofs(dof_handler)
+    , scene(scene)
+  {
+    for (const auto &corners : scene.cracks.cracks)
+      cracks.emplace_back(corners);
+    check_material();
+    find_cut_cells();
+    find_prescribed();
+    assemble();
+    initialize_vector(stiffness_diagonal);
+    for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
+      stiffness_diagonal.local_element(i) =
+        stiffness.diag_element(stiffness_diagonal.get_partitioner()->local_to_global(i));
+    find_gershgorin();
+    loads_vary = scene.initial_and_source.source.depends_on_time() ||
+                 scene.boundary_conditions.depends_on_time();
+    initialize_vector(scratch);
+    initialize_vector(constant_loads);
+    if (!loads_vary)
+      assemble_loads(constant_loads, 0.);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::find_prescribed()
+  {
+    Vector layout;
+    initialize_vector(layout);
+    const auto                          &fe = dofs.get_fe();
+    std::vector<types::global_dof_index> indices(fe.n_dofs_per_cell());
+    // For each dof the place in the list of the condition that holds: the one named first.
+    std::map<unsigned int, std::pair<unsigned int, Point<dim>>> found;
+    const auto &dirichlet = scene.boundary_conditions.dirichlet;
+    for (const auto &cell : dofs.active_cell_iterators())
+      {
+        if (cell->is_artificial() || !cell->at_boundary())
+          continue;
+        cell->get_dof_indices(indices);
+        for (const unsigned int f : cell->face_indices())
+          for (unsigned int k = 0; k < dirichlet.size(); ++k)
+            if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() == dirichlet[k].id)
+              for (unsigned int i = 0; i < indices.size(); ++i)
+                if (fe.has_support_on_face(i, f) && layout.in_local_range(indices[i]))
+                  {
+                    const Point<dim> p =
+                      MappingQ1<dim>().transform_unit_to_real_cell(cell, fe.unit_support_point(i));
+                    const auto [entry, is_new] =
+                      found.try_emplace(layout.get_partitioner()->global_to_local(indices[i]),
+                                        k,
+                                        p);
+                    entry->second.first = std::min(entry->second.first, k);
+                  }
+      }
+    for (const auto &[dof, entry] : found)
+      prescribed.push_back({dof, entry.second, &dirichlet[entry.first]});
+    any_prescribed = Utilities::MPI::max(prescribed.empty() ? 0 : 1, dofs.get_communicator()) > 0;
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::find_gershgorin()
+  {
+    std::string message;
+    double      bound = 0.;
+    for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
+      {
+        const auto row = stiffness_diagonal.get_partitioner()->local_to_global(i);
+        double     sum = 0.;
+        for (auto entry = stiffness.begin(row); entry != stiffness.end(row); ++entry)
+          sum += std::abs(entry->value());
+        if (!(stiffness_diagonal.local_element(i) > 0.))
+          message =
+            "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
+            "conducting cell. Use 'pairs' or a finer mesh.";
+        bound = std::max(bound, sum / capacity.local_element(i));
+      }
+    throw_on_all_if_any(dofs.get_communicator(), message);
+    gershgorin = Utilities::MPI::max(bound, dofs.get_communicator());
+    mask(stiffness_diagonal, 1.);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::initialize_vector(Vector &vector) const
+  {
+    IndexSet relevant;
+    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    vector.reinit(dofs.locally_owned_dofs(), relevant, dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::mask(Vector &y, const double value) const
+  {
+    for (const Prescribed &entry : prescribed)
+      y.local_element(entry.dof) = value;
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::apply(Vector &y, const Vector &x) const
+  {
+    ++applications;
+    stiffness.vmult(y, x);
+    mask(y);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
+  {
+    ++applications;
+    stiffness.vmult(r, u);
+    if (loads_vary)
+      assemble_loads(scratch, t);
+    const Vector &loads = loads_vary ? scratch : constant_loads;
+    r.sadd(-1., 1., loads);
+    mask(r);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::distribute(Vector &u, const double t) const
+  {
+    for (const Prescribed &entry : prescribed)
+      u.local_element(entry.dof) = entry.condition->value.value(entry.position, t);
+  }
+
+  template <int dim>
+  void FEMOperator<dim>::distribute_homogeneous(Vector &x) const
+  {
+    mask(x);
+  }
+
+  template <int dim>
+  void FEMOperator<dim>::clear_constrained(Vector &y) const
+  {
+    mask(y);
+  }
+
+  template <int dim>
+  const Vector &FEMOperator<dim>::lumped_capacity() const
+  {
+    return capacity;
+  }
+
+  template <int dim>
+  bool FEMOperator<dim>::capacity_is_diagonal() const
+  {
+    return !scene.finite_elements.consistent_capacity;
+  }
+
+  template <int dim>
+  void FEMOperator<dim>::apply_capacity(Vector &y, const Vector &x) const
+  {
+    if (capacity_is_diagonal())
+      {
+        y = x;
+        y.scale(capacity);
+      }
+    else
+      mass.vmult(y, x);
+  }
+
+  template <int dim>
+  const Vector &FEMOperator<dim>::diagonal() const
+  {
+    return stiffness_diagonal;
+  }
+
+  template <int dim>
+  Spectrum FEMOperator<dim>::spectrum() const
+  {
+    if (bounds.safe == 0.)
+      {
+        const auto fill = [&](Vector &vector) {
+          std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
+          for (const auto &cell : dofs.active_cell_iterators())
+            if (!cell->is_artificial())
+              {
+                cell->get_dof_indices(indices);
+                for (unsigned int i = 0; i < indices.size(); ++i)
+                  if (vector.in_local_range(indices[i]))
+                    vector(indices[i]) =
+                      position_noise(MappingQ1<dim>().transform_unit_to_real_cell(
+                        cell,
+                        dofs.get_fe().unit_support_point(i)));
+              }
+        };
+        bounds.sharp = sharp_bound(*this, gershgorin, fill);
+        bounds.safe  = gershgorin;
+      }
+    return bounds;
+  }
+
+  template <int dim>
+  bool FEMOperator<dim>::symmetric() const
+  {
+    return true;
+  }
+
+  template <int dim>
+  bool FEMOperator<dim>::depends_on_time() const
+  {
+    return loads_vary;
+  }
+
+  template <int dim>
+  bool FEMOperator<dim>::has_steady_state() const
+  {
+    return any_prescribed || !scene.boundary_conditions.convection.empty();
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    matrix.copy_from(stiffness);
+    Vector held;
+    initialize_vector(held);
+    mask(held, 1.);
+    held.update_ghost_values();
+    for (unsigned int i = 0; i < held.locally_owned_size(); ++i)
+      {
+        const auto row = held.get_partitioner()->local_to_global(i);
+        for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
+          if (entry->column() == row)
+            {
+              if (held.local_element(i) > 0.)
+                entry->value() = 1.;
+            }
+          else if (held.local_element(i) > 0. || held(entry->column()) > 0.)
+            entry->value() = 0.;
+      }
+    matrix.compress(VectorOperation::insert);
+  }
+
+  template <int dim>
+  bool FEMOperator<dim>::surrogate_is_exact() const
+  {
+    return true;
+  }
+
+
+  template <int dim>
+  Balance FEMOperator<dim>::balance(const Vector &u, const double t, const bool steady) const
+  {
+    Vector heat, loads;
+    initialize_vector(heat);
+    initialize_vector(loads);
+    assemble_loads(loads, t);
+    stiffness.vmult(heat, u);
+    heat -=
+      loads; // what leaves each unknown through the body; in a prescribed one it must come from outside
+    Balance     balance;
+    const auto &conditions = scene.boundary_conditions;
+    for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})
+      for (const SideCondition &condition : *list)
+        balance.sides[condition.name];
+    for (const Prescribed &entry : prescribed)
+      balance.sides[entry.condition->name] += heat.local_element(entry.dof);
+    add_side_and_source_heat(u, t, balance);
+    for (unsigned int i = 0; i < heat.locally_owned_size(); ++i)
+      balance.content += capacity.local_element(i) * u.local_element(i);
+    mask(heat);
+    if (!steady)
+      for (unsigned int i = 0; i < heat.locally_owned_size(); ++i)
+        balance.stored -= heat.local_element(i);
+    for (auto &[name, value] : balance.sides)
+      value = Utilities::MPI::sum(value, dofs.get_communicator());
+    for (double *value : {&balance.sources, &balance.stored, &balance.content})
+      *value = Utilities::MPI::sum(*value, dofs.get_communicator());
+    return balance;
+  }
+
+
+  template <int dim>
+  OperatorSize FEMOperator<dim>::size() const
+  {
+    OperatorSize size;
+    size.unknowns = dofs.n_dofs();
+    size.nonzeros = stiffness.n_nonzero_elements();
+    size.memory   = stiffness.memory_consumption() + mass.memory_consumption() +
+                  capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
+                  constant_loads.memory_consumption() + scratch.memory_consumption();
+    size.form = "matrix";
+    return size;
+  }
+
+  template <int dim>
+  const DoFHandler<dim> &FEMOperator<dim>::dof_handler() const
+  {
+    return dofs;
+  }
+
+  template <int dim>
+  const std::vector<bool> &FEMOperator<dim>::cut_cells() const
+  {
+    return cut;
+  }
+
+  template class FEMOperator<1>;
+  template class FEMOperator<2>;
+  template class FEMOperator<3>;
+} // namespace PeriDeal

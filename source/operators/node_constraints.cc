@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/operators/node_constraints.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  NodeConstraints<dim>::NodeConstraints(const Families<dim> &families, const Scene<dim> &scene)
+    : nodes(families.nodes())
+    , kinds(nodes.n_local(), free)
+  {
+    find_prescribed(families, scene);
+    find_slaves(families, scene);
+    prescribed_exist = Utilities::MPI::max(prescribed_list.empty() ? 0 : 1, nodes.communicator()) >
+                       0;
+    slaves_exist = Utilities::MPI::max(slaves.empty() ? 0 : 1, nodes.communicator()) > 0;
+    if (slaves_exist)
+      couple_slaves(nodes);
+  }
+
+
+  namespace
+  {
+    /** Of the listed sides, the first in the list on which each owned node lies. */
+    template <int dim>
+    std::map<unsigned int, const SideCondition *> first_sides(
+      const Nodes<dim>                 &nodes,
+      const std::vector<SideCondition> &list)
+    {
+      std::map<unsigned int, const SideCondition *> first;
+      for (const SideCondition &condition : list)
+        for (const BoundaryShare &share : nodes.boundary_shares())
+          if (share.id == condition.id)
+            first.try_emplace(share.node, &condition);
+      return first;
+    }
+  } // namespace
+
+
+  template <int dim>
+  void NodeConstraints<dim>::find_prescribed(const Families<dim> &families, const Scene<dim> &scene)
+  {
+    const BoundaryTreatment treatment  = scene.peridynamics.treatment;
+    const auto             &dirichlet  = scene.boundary_conditions.dirichlet;
+    const bool              fictitious = treatment == BoundaryTreatment::fictitious_mirror ||
+                            treatment == BoundaryTreatment::fictitious_constant;
+    if (treatment == BoundaryTreatment::layer)
+      {
+        AssertThrow(
+          nodes.lattice(),
+          UserError(
+            "'Boundary treatment = layer' in section 'Peridynamics' needs the lattice of a box."));
+        const Lattice<dim> &lattice = *nodes.lattice();
+        for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+          {
+            const auto site = lattice.index(nodes.position(i));
+            for (const SideCondition &condition : dirichlet)
+              {
+                const unsigned int d     = condition.id / 2;
+                const int          depth = condition.id % 2 == 0 ? site[d] :
+                                                                   lattice.n_sites[d] - 1 - site[d];
+                if (d < dim && depth < static_cast<int>(scene.peridynamics.layer_rows))
+                  {
+                    prescribed_list.push_back({i, &condition});
+                    break;
+                  }
+              }
+          }
+      }
+    else if (!fictitious || !nodes.lattice() || !nodes.lattice()->at_centers)
+      for (const auto &[node, condition] : first_sides(nodes, dirichlet))
+        prescribed_list.push_back({node, condition});
+    for (const Prescribed &entry : prescribed_list)
+      kinds[entry.node] = prescribed;
+    (void)families;
+  }
+
+
+  template <int dim>
+  void NodeConstraints<dim>::find_slaves(const Families<dim> &families, const Scene<dim> &scene)
+  {
+    const FluxTreatment treatment = scene.peridynamics.flux_treatment;
+    if (treatment == FluxTreatment::natural)
+      return;
+    AssertThrow(
+      scene.domain.shape == Shape::box && families.has_unique_sites(),
+      UserError(
+        "'Flux treatment' in section 'Peridynamics' must be 'natural' unless the body is a box "
+        "without doubled nodes."));
+    if (treatment == FluxTreatment::layer_extrapolation)
+      for (const SideCondition &condition : scene.boundary_conditions.flux)
+        extrapolate_layer(families, condition.id, scene);
+    else
+      for (const auto &[node, condition] : first_sides(nodes, scene.boundary_conditions.flux))
+        if (kinds[node] == free)
+          {
+            Slave slave;
+            slave.node      = node;
+            slave.condition = condition;
+            extrapolate(families, condition->id, slave);
+            slaves.push_back(slave);
+          }
+    for (const Slave &entry : slaves)
+      kinds[entry.node] = slave;
+  }
+
+
+  template <int dim>
+  void NodeConstraints<dim>::extrapolate(const Families<dim> &families,
+                                         const unsigned int   side,
+                                         Slave               &slave) const
+  {
+    std::vector<typename Families<dim>::Bond> bonds;
+    families.bonds_of(slave.node, bonds, false);
+    double sum = 0.;
+    for (const auto &bond : bonds)
+      {
+        const double inward =
+          (side % 2 == 0 ? 1. : -1.) * families.bond_vector(slave.node, bond.neighbor)[side / 2];
+        if (bond.neighbor >= nodes.n_local() || inward <= 1e-9 * nodes.smallest_spacing() ||
+            bond.weight == 0.)
+          continue;
+        const double weight = bond.weight / nodes.volume(slave.node) * inward;
+        slave.masters.emplace_back(bond.neighbor, weight);
+        sum += weight;
+      }
+    AssertThrow(sum > 0., ExcMessage("A node on a flux side has no bond into the body."));
+    for (auto &[neighbor, weight] : slave.masters)
+      weight /= sum;
+    slave.flux_coefficient = 1. / sum;
+  }
+
+
+  template <int dim>
+  void NodeConstraints<dim>::extrapolate_layer(const Families<dim> &families,
+                                               const unsigned int   side,
+                                               const Scene<dim>    &scene)
+  {
+    const Lattice<dim>  &lattice = *nodes.lattice();
+    const int            rows = static_cast<int>(std::lround(scene.horizon() / lattice.spacing[0]));
+    const SideCondition *flux = BoundaryConditions<dim>::find(scene.boundary_conditions.flux, side);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        auto      site  = lattice.index(nodes.position(i));
+        const int depth = side == 0 ? site[0] : lattice.n_sites[0] - 1 - site[0];
+        if (depth >= rows || kinds[i] != free)
+          continue;
+        site[0]                   = side == 0 ? rows : lattice.n_sites[0] - 1 - rows;
+        const unsigned int master = families.node_at(site);
+        AssertThrow(
+          master != numbers::invalid_unsigned_int,
+          UserError(
+            "'Flux treatment = layer extrapolation' in section 'Peridynamics' needs a bar longer than the horizon."));
+        Slave slave;
+        slave.node             = i;
+        slave.condition        = flux;
+        slave.masters          = {{master, 1.}};
+        slave.flux_coefficient = (rows - depth) * lattice.spacing[0] / families.conductivity(i);
+        slaves.push_back(slave);
+      }
+  }
+
+
+  template <int dim>
+  void NodeConstraints<dim>::couple_slaves(const Nodes<dim> &nodes)
+  {
+    const MPI_Comm communicator = nodes.communicator();
+    Vector         flags(nodes.partitioner());
+    for (const Slave &entry : slaves)
+      flags.local_element(entry.node) = 1.;
+    flags.update_ghost_values();
+    for (unsigned int i = nodes.n_owned(); i < nodes.n_local(); ++i)
+      if (flags.local_element(i) > 0.5)
+        kinds[i] = slave;
+
+    // Rows (slave, master, coefficient) of all slaves that hang on other slaves, known to everybody.
+    std::vector<std::array<double, 3>> rows;
+    for (const Slave &entry : slaves)
+      for (const auto &[master, coefficient] : entry.masters)
+        if (kinds[master] == slave)
+          rows.push_back({static_cast<double>(nodes.partitioner()->local_to_global(entry.node)),
+                          static_cast<double>(nodes.partitioner()->local_to_global(master)),
+                          coefficient});
+    std::map<types::global_dof_index, int> number;
+    const auto all_rows = Utilities::MPI::all_gather(communicator, rows);
+    for (const auto &part : all_rows)
+      for (const auto &row : part)
+        for (const unsigned int k : {0, 1})
+          number.try_emplace(static_cast<types::global_dof_index>(row[k]), 0);
+    for (auto &[index, k] : number)
+      k = static_cast<int>(n_coupled++);
+    if (n_coupled == 0)
+      return;
+
+    std::vector<Eigen::Triplet<double>> entries;
+    for (unsigned int k = 0; k < n_coupled; ++k)
+      entries.emplace_back(k, k, 1.);
+    for (const auto &part : all_rows)
+      for (const auto &row : part)
+        entries.emplace_back(number.at(static_cast<types::global_dof_index>(row[0])),
+                             number.at(static_cast<types::global_dof_index>(row[1])),
+                             -row[2]);
+    Eigen::SparseMatrix<double> matrix(n_coupled, n_coupled);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    coupling.compute(matrix);
+    Assert(coupling.info() == Eigen::Success, ExcInternalError());
+
+    for (Slave &entry : slaves)
+      {
+        const auto found = number.find(nodes.partitioner()->local_to_global(entry.node));
+        if (found != number.end())
+          entry.coupled = found->second;
+        auto &masters = entry.masters;
+        masters.erase(std::remove_if(masters.begin(),
+                                     masters.end(),
+                                     [&](const auto &m) { return kinds[m.first] == slave; }),
+                      masters.end());
+      }
+  }
+
+
+  template <int dim>
+  void NodeConstraints<dim>::set_slaves(Vector &u, const double t, const bool homogeneous) const
+  {
+    if (!slaves_exist)
+      return;
+    u.update_ghost_values();
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(n_coupled);
+    for (const Slave &entry : slaves)
+      {
+        double value = homogeneous ? 0. :
+                                     entry.flux_coefficient *
+                                       entry.condition->value.value(nodes.position(entry.node), t);
+        for (const auto &[master, coefficient] : entry.masters)
+          value += coefficient * u.local_element(master);
+        if (entry.coupled >= 0)
+          load[entry.coupled] = value;
+        else
+          u.local_element(entry.node) = value;
+      }
+    if (n_coupled > 0)
+      {
+        // Each entry has one owner, the others add zero: exact in any order.
+        Utilities::MPI::sum(ArrayView<const double>(load.data(), n_coupled),
+                            nodes.communicator(),
+                            ArrayView<double>(load.data(), n_coupled));
+        const Eigen::VectorXd value = coupling.solve(load);
+        for (const Slave &entry : slaves)
+          if (entry.coupled >= 0)
+            u.local_element(entry.node) = value[entry.coupled];
+      }
+    u.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  typename NodeConstraints<dim>::Kind NodeConstraints<dim>::kind(const unsigned int node) const
+  {
+    return kinds[node];
+  }
+
+  template <int dim>
+  const std::vector<typename NodeConstraints<dim>::Prescribed>
+    &NodeConstraints<dim>::prescribed_nodes() const
+  {
+    return prescribed_list;
+  }
+
+  template <int dim>
+  bool NodeConstraints<dim>::any_slave() const
+  {
+    return slaves_exist;
+  }
+
+  template <int dim>
+  bool NodeConstraints<dim>::any_prescribed() const
+  {
+    return prescribed_exist;
+  }
+
+
+  template <int dim>
+  void NodeConstraints<dim>::distribute(Vector &u, const double t) const
+  {
+    for (const Prescribed &entry : prescribed_list)
+      u.local_element(entry.node) = entry.condition->value.value(nodes.position(entry.node), t);
+    set_slaves(u, t, false);
+  }
+
+
+  template <int dim>
+  void NodeConstraints<dim>::distribute_homogeneous(Vector &x) const
+  {
+    for (const Prescribed &entry : prescribed_list)
+      x.local_element(entry.node) = 0.;
+    set_slaves(x, 0., true);
+  }
+
+
+  template <int dim>
+  void NodeConstraints<dim>::mask(Vector &y, const double value) const
+  {
+    for (const Prescribed &entry : prescribed_list)
+      y.local_element(entry.node) = value;
+    for (const Slave &entry : slaves)
+      y.local_element(entry.node) = value;
+  }
+
+
+  template class NodeConstraints<1>;
+  template class NodeConstraints<2>;
+  template class NodeConstraints<3>;
+} // namespace PeriDeal

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    constexpr unsigned int hole_id = 6;
+
+    bool any_depends_on_time(const std::vector<SideCondition> &list)
+    {
+      return std::any_of(list.begin(), list.end(), [](const SideCondition &condition) {
+        return condition.value.depends_on_time() || condition.coefficient.depends_on_time();
+      });
+    }
+  } // namespace
+
+
+  const std::vector<std::string> &box_side_names()
+  {
+    static const std::vector<std::string> names =
+      {"left", "right", "bottom", "top", "back", "front"};
+    return names;
+  }
+
+
+  template <int dim>
+  BoundaryConditions<dim>::BoundaryConditions()
+    : SceneSection("Boundary conditions")
+  {
+    const std::string sides =
+      " Sides: left, right (x), bottom, top (y), back, front (z), hole, or the boundary ids of a "
+      "mesh file.";
+    declare(
+      "Dirichlet",
+      EntryType::list,
+      "",
+      "temperature",
+      "Given temperatures: `side: formula of x, y, z, t`, several separated by `;`. Where two "
+      "sides meet, the one named first holds." +
+        sides);
+    declare("Flux",
+            EntryType::list,
+            "",
+            "power/area",
+            "Given heat fluxes, positive into the body: `side: formula of x, y, z, t`, several "
+            "separated by `;`. A side named nowhere is insulated.");
+    declare("Convection",
+            EntryType::list,
+            "",
+            "power/(area temperature), temperature",
+            "`side: coefficient, ambient temperature`, several separated by `;`: the flux "
+            "coefficient x (ambient - T) enters. Adds to a Flux on the same side.");
+    declare("Symmetry",
+            EntryType::list,
+            "",
+            "",
+            "Sides that are symmetry planes, separated by `;` or `,`. Fictitious nodes beyond them "
+            "mirror the "
+            "temperature.");
+  }
+
+
+  template <int dim>
+  const SideCondition *BoundaryConditions<dim>::find(const std::vector<SideCondition> &list,
+                                                     const dealii::types::boundary_id  id)
+  {
+    for (const SideCondition &condition : list)
+      if (condition.id == id)
+        return &condition;
+    return nullptr;
+  }
+
+
+  template <int dim>
+  bool BoundaryConditions<dim>::depends_on_time() const
+  {
+    return any_depends_on_time(dirichlet) || any_depends_on_time(flux) ||
+           any_depends_on_time(convection);
+  }
+
+
+  template <int dim>
+  dealii::types::boundary_id BoundaryConditions<dim>::side_id(const std::string &name,
+                                                              const std::string &entry,
+                                                              const bool         box_sides,
+                                                              const bool         hole) const
+  {
+    if (!box_sides)
+      {
+        if (name.find_first_not_of("0123456789") != std::string::npos)
+          error(entry,
+                "unknown side '" + name +
+                  "': the sides of a mesh file are its boundary ids (numbers).");
+        return parse_whole_number(name, where(entry));
+      }
+    std::vector<std::string> sides(box_side_names().begin(), box_side_names().begin() + 2 * dim);
+    if (hole)
+      sides.emplace_back("hole");
+    const auto found = std::find(sides.begin(), sides.end(), name);
+    if (found == sides.end())
+      error(entry,
+            "unknown side '" + name + "'; the sides are: " + join_names(sides) + "." +
+              did_you_mean(name, sides));
+    return *found == "hole" ? hole_id : static_cast<unsigned int>(found - sides.begin());
+  }
+
+
+  template <int dim>
+  std::vector<SideCondition> BoundaryConditions<dim>::parse_list(const std::string &entry,
+                                                                 const bool         box_sides,
+                                                                 const bool         hole) const
+  {
+    std::vector<SideCondition> list;
+    for (const std::string &piece : split_list(text(entry), ';'))
+      {
+        const auto    name_value = name_and_value(piece, where(entry));
+        SideCondition condition;
+        condition.name       = name_value.first;
+        condition.id         = side_id(condition.name, entry, box_sides, hole);
+        const std::string at = where(entry) + ", side '" + condition.name + "'";
+        if (find(list, condition.id) != nullptr)
+          error(entry, "the side '" + condition.name + "' is named twice.");
+        const std::vector<std::string> formulas = split_list(name_value.second, ',');
+        const unsigned int             n_values = entry == "Convection" ? 2 : 1;
+        if (formulas.size() != n_values)
+          entry_error(
+            at,
+            "found '" + name_value.second + "', needs " +
+              (n_values == 2 ? "two formulas: coefficient, ambient value." : "one formula."));
+        condition.value = Expression(formulas.back(), at);
+        if (n_values == 2)
+          {
+            condition.coefficient = Expression(formulas.front(), at);
+            if (condition.coefficient.is_constant() &&
+                condition.coefficient.value(dealii::Point<dim>()) < 0.)
+              entry_error(at, "the coefficient " + formulas.front() + " is negative.");
+          }
+        list.push_back(condition);
+      }
+    return list;
+  }
+
+
+  template <int dim>
+  void BoundaryConditions<dim>::refuse_both(const std::string                &entry,
+                                            const std::vector<SideCondition> &list,
+                                            const std::string                &other_entry,
+                                            const dealii::types::boundary_id  id) const
+  {
+    if (const SideCondition *const condition = find(list, id))
+      error(entry,
+            "the side '" + condition->name + "' is also named in '" + other_entry +
+              "', which contradicts it.");
+  }
+
+
+  template <int dim>
+  void BoundaryConditions<dim>::parse(const bool box_sides, const bool hole)
+  {
+    dirichlet  = parse_list("Dirichlet", box_sides, hole);
+    flux       = parse_list("Flux", box_sides, hole);
+    convection = parse_list("Convection", box_sides, hole);
+    symmetry.clear();
+    std::string names = text("Symmetry");
+    std::replace(names.begin(), names.end(), ';', ',');
+    for (const std::string &name : split_list(names, ','))
+      {
+        const dealii::types::boundary_id id = side_id(name, "Symmetry", box_sides, hole);
+        if (std::find(symmetry.begin(), symmetry.end(), id) != symmetry.end())
+          error("Symmetry", "the side '" + name + "' is named twice.");
+        symmetry.push_back(id);
+      }
+
+    for (const SideCondition &condition : dirichlet)
+      {
+        refuse_both("Flux", flux, "Dirichlet", condition.id);
+        refuse_both("Convection", convection, "Dirichlet", condition.id);
+      }
+    for (const dealii::types::boundary_id id : symmetry)
+      {
+        refuse_both("Dirichlet", dirichlet, "Symmetry", id);
+        refuse_both("Convection", convection, "Symmetry", id);
+        const SideCondition *const given = find(flux, id);
+        if (given != nullptr &&
+            !(given->value.is_constant() && given->value.value(dealii::Point<dim>()) == 0.))
+          refuse_both("Flux", flux, "Symmetry", id);
+      }
+  }
+
+
+  template class BoundaryConditions<1>;
+  template class BoundaryConditions<2>;
+  template class BoundaryConditions<3>;
+} // namespace PeriDeal

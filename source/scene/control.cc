@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/control.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    constexpr double       time_slack   = 1e-12;
+    constexpr unsigned int max_n_writes = 100000;
+    constexpr unsigned int max_n_points = 10000000;
+  } // namespace
+
+
+  TimeControl::TimeControl()
+    : SceneSection("Time")
+  {
+    declare("End time", EntryType::number, "1", "time", "The run goes from time 0 to this time.");
+    declare("Steady",
+            EntryType::boolean,
+            "false",
+            "",
+            "Solve for the steady state; all other entries of this section are ignored then.");
+    declare("Stepper",
+            EntryType::choice,
+            "auto",
+            "",
+            "Time integration.",
+            {"auto", "euler", "rk4", "rkc2", "chebyshev", "crank nicolson", "bdf2", "sdirk2"});
+    declare("Time step",
+            EntryType::text,
+            "auto",
+            "time",
+            "`auto` or a number; euler takes that very step. A step above the stability limit is "
+            "refused.");
+    declare("Tolerance",
+            EntryType::number,
+            "1e-4",
+            "1",
+            "Relative accuracy in time of adaptive steppers, between 0 and 1.");
+  }
+
+
+  void TimeControl::parse()
+  {
+    steady    = boolean("Steady");
+    end_time  = positive_number("End time");
+    stepper   = choice_name("Stepper");
+    time_step = -1.;
+    if (text("Time step") != "auto")
+      {
+        if (text("Time step").find_first_of("0123456789") == std::string::npos)
+          error("Time step", "found '" + text("Time step") + "', needs 'auto' or a number.");
+        time_step = parse_number(text("Time step"), where("Time step"));
+        if (!(time_step > 0.))
+          error("Time step",
+                "found " + text("Time step") + ", needs 'auto' or a number greater than 0.");
+      }
+    tolerance = fraction("Tolerance");
+  }
+
+
+  SolverControlParameters::SolverControlParameters()
+    : SceneSection("Solver")
+  {
+    declare("Tolerance",
+            EntryType::number,
+            "1e-10",
+            "1",
+            "Relative residual at which linear solvers stop, between 0 and 1.");
+    declare("Maximum iterations",
+            EntryType::whole_number,
+            "1000",
+            "1",
+            "A linear solver that needs more iterations ends the run with an error.");
+  }
+
+
+  void SolverControlParameters::parse()
+  {
+    tolerance      = fraction("Tolerance");
+    max_iterations = whole_number("Maximum iterations");
+    if (max_iterations == 0)
+      error("Maximum iterations", "found 0, needs 1 or more.");
+  }
+
+
+  template <int dim>
+  OutputControl<dim>::OutputControl()
+    : SceneSection("Output")
+  {
+    declare("Fields",
+            EntryType::choices,
+            "vtu, hdf5",
+            "",
+            "File formats of the fields; `none` writes no fields.",
+            {"vtu", "hdf5", "none"});
+    declare(
+      "Write at",
+      EntryType::list,
+      "",
+      "time",
+      "Times of output, separated by commas; steps land on them. The end time is always written.");
+    declare("Write every",
+            EntryType::text,
+            "",
+            "time",
+            "Time between two outputs, instead of Write at.");
+    declare("Probes",
+            EntryType::list,
+            "",
+            "length",
+            "Points whose values go to probes.csv, separated by `;`.");
+    declare("Line",
+            EntryType::list,
+            "",
+            "length, length, 1",
+            "`start ; end ; number of points`: evenly spaced points whose values go to line.csv.");
+  }
+
+
+  template <int dim>
+  void OutputControl<dim>::parse_write_times(const double end_time, const bool steady)
+  {
+    write_times.clear();
+    const std::string &at = text("Write at"), &every = text("Write every");
+    if (!at.empty() && !every.empty())
+      error("Write every", "'Write at' is given, too: give one of the two.");
+    if (steady && !(at.empty() && every.empty()))
+      error(at.empty() ? "Write every" : "Write at",
+            "is given, but 'Steady' in section 'Time' is true: there are no times to write at.");
+    for (const std::string &piece : split_list(at, ','))
+      {
+        const double time = parse_number(piece, where("Write at"));
+        if (time < 0.)
+          error("Write at", "the time " + piece + " is negative.");
+        if (time > end_time * (1. + time_slack))
+          error("Write at",
+                "the time " + piece + " is beyond 'End time' in section 'Time', which is " +
+                  number_text(end_time) + ".");
+        write_times.push_back(std::min(time, end_time));
+      }
+    if (!every.empty())
+      {
+        const double step = parse_number(every, where("Write every"));
+        if (!(step > 0.))
+          error("Write every", "found " + every + ", needs a number greater than 0.");
+        if (end_time / step > max_n_writes)
+          error("Write every",
+                "found " + every + ", which gives more than " + std::to_string(max_n_writes) +
+                  " outputs until 'End time' (" + number_text(end_time) + ").");
+        // the end time itself is written anyway
+        for (unsigned int k = 1; k * step < end_time * (1. - 1e-9); ++k)
+          write_times.push_back(k * step);
+      }
+    std::sort(write_times.begin(), write_times.end());
+    write_times.erase(std::unique(write_times.begin(), write_times.end()), write_times.end());
+  }
+
+
+  template <int dim>
+  void OutputControl<dim>::parse_points_of_output()
+  {
+    const auto coordinates = [](const dealii::Point<dim> &p) {
+      std::vector<double> x(dim);
+      for (unsigned int d = 0; d < dim; ++d)
+        x[d] = p[d];
+      return x;
+    };
+
+    probes.clear();
+    for (const dealii::Point<dim> &p : parse_points<dim>(text("Probes"), where("Probes")))
+      probes.push_back(coordinates(p));
+
+    line.clear();
+    const std::vector<std::string> pieces = split_list(text("Line"), ';');
+    if (pieces.empty())
+      return;
+    if (pieces.size() != 3)
+      error("Line", "found '" + text("Line") + "', needs 'start ; end ; number of points'.");
+    const dealii::Point<dim> start = parse_point<dim>(pieces[0], where("Line"));
+    const dealii::Point<dim> end   = parse_point<dim>(pieces[1], where("Line"));
+    const unsigned int       n     = parse_whole_number(pieces[2], where("Line"), max_n_points);
+    if (n < 2)
+      error("Line", "found " + pieces[2] + " points, needs 2 or more.");
+    if (start == end)
+      error("Line", "start and end are the same point.");
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        // the ends exactly as given
+        dealii::Point<dim> p;
+        for (unsigned int d = 0; d < dim; ++d)
+          p[d] = i + 1 == n ? end[d] : start[d] + (end[d] - start[d]) * i / (n - 1.);
+        line.push_back(coordinates(p));
+      }
+  }
+
+
+  template <int dim>
+  void OutputControl<dim>::parse(const double end_time, const bool steady)
+  {
+    const std::vector<unsigned int> formats = choice_indices("Fields");
+    vtu                                     = false;
+    hdf5                                    = false;
+    for (const unsigned int format : formats)
+      {
+        vtu  = vtu || format == 0;
+        hdf5 = hdf5 || format == 1;
+        if (format == 2 && formats.size() > 1)
+          error("Fields", "'none' stands alone.");
+      }
+    parse_write_times(end_time, steady);
+    parse_points_of_output();
+  }
+
+
+  Reference::Reference()
+    : SceneSection("Reference")
+  {
+    declare(
+      "Solution",
+      EntryType::text,
+      "",
+      "temperature",
+      "Exact solution to compare with: a formula of x, y, z, t or the name of an exact solution.");
+  }
+
+
+  void Reference::parse()
+  {
+    solution = text("Solution");
+  }
+
+
+  Units::Units()
+    : SceneSection("Units")
+  {
+    const std::string label =
+      " Labels for reports only: values are in any consistent set of units.";
+    declare("Length", EntryType::text, "m", "", "Name of the unit of length." + label);
+    declare("Time", EntryType::text, "s", "", "Name of the unit of time." + label);
+    declare("Temperature", EntryType::text, "K", "", "Name of the unit of temperature." + label);
+  }
+
+
+  void Units::parse()
+  {
+    length      = text("Length");
+    time        = text("Time");
+    temperature = text("Temperature");
+  }
+
+
+  template class OutputControl<1>;
+  template class OutputControl<2>;
+  template class OutputControl<3>;
+} // namespace PeriDeal

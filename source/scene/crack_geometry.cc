@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/crack_geometry.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Fraction of a crack's size within which a point counts as lying on it. */
+    constexpr double on_crack = 1e-10;
+
+    /** Fraction of a crack's size by which its edge is extended, so that round-off never opens it. */
+    constexpr double edge = 1e-12;
+
+    /** Newell's vector: twice the area of a planar polygon times its right-hand normal. */
+    template <int dim>
+    Tensor<1, dim> doubled_area_vector(const std::vector<Point<dim>> &corners)
+    {
+      Tensor<1, dim> sum;
+      if constexpr (dim == 3)
+        for (std::size_t i = 0; i < corners.size(); ++i)
+          sum += cross_product_3d(corners[i] - corners[0],
+                                  corners[(i + 1) % corners.size()] - corners[0]);
+      return sum;
+    }
+  } // namespace
+
+
+  template <int dim>
+  CrackGeometry<dim>::CrackGeometry(const std::vector<Point<dim>> &corners)
+    : corner_points(corners)
+    , lowest(corners.front())
+    , highest(corners.front())
+  {
+    for (const Point<dim> &p : corners)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          lowest[d]  = std::min(lowest[d], p[d]);
+          highest[d] = std::max(highest[d], p[d]);
+        }
+    size       = lowest.distance(highest);
+    tolerance  = on_crack * size;
+    first_axis = corners[1] - corners[0];
+    first_axis /= first_axis.norm();
+    if constexpr (dim == 2)
+      {
+        content        = corners[0].distance(corners[1]);
+        unit_normal[0] = -first_axis[1];
+        unit_normal[1] = first_axis[0];
+      }
+    else if constexpr (dim == 3)
+      {
+        unit_normal = doubled_area_vector(corners);
+        content     = 0.5 * unit_normal.norm();
+        unit_normal /= unit_normal.norm();
+        second_axis = cross_product_3d(unit_normal, first_axis);
+      }
+  }
+
+
+  template <int dim>
+  double CrackGeometry<dim>::signed_distance(const Point<dim> &p) const
+  {
+    const double distance = (p - corner_points[0]) * unit_normal;
+    return std::abs(distance) <= tolerance ? tolerance : distance;
+  }
+
+
+  template <int dim>
+  bool CrackGeometry<dim>::plane_point_inside(const Point<dim> &p) const
+  {
+    const Tensor<1, dim> from_start = p - corner_points[0];
+    const double         margin     = edge * size;
+    if constexpr (dim == 2)
+      {
+        const double along = from_start * first_axis;
+        return along >= -margin && along <= content + margin;
+      }
+    else if constexpr (dim == 3)
+      {
+        // Crossing number of a ray along the first axis; points within the margin of an edge are inside.
+        const double x = from_start * first_axis, y = from_start * second_axis;
+        bool         inside = false;
+        for (std::size_t i = 0; i < corner_points.size(); ++i)
+          {
+            const Tensor<1, dim> a = corner_points[i] - corner_points[0],
+                                 b =
+                                   corner_points[(i + 1) % corner_points.size()] - corner_points[0];
+            const double ax = a * first_axis, ay = a * second_axis, bx = b * first_axis,
+                         by = b * second_axis, ex = bx - ax, ey = by - ay;
+            const double length_square = ex * ex + ey * ey;
+            const double along =
+              std::clamp(((x - ax) * ex + (y - ay) * ey) / length_square, 0., 1.);
+            if (std::hypot(ax + along * ex - x, ay + along * ey - y) <= margin)
+              return true;
+            if ((ay > y) != (by > y) && x < ax + (y - ay) / ey * ex)
+              inside = !inside;
+          }
+        return inside;
+      }
+    else
+      return false;
+  }
+
+
+  template <int dim>
+  bool CrackGeometry<dim>::separates(const Point<dim> &a, const Point<dim> &b) const
+  {
+    const double at_a = signed_distance(a), at_b = signed_distance(b);
+    if ((at_a > 0.) == (at_b > 0.))
+      return false;
+    // Always computed from the positive end, so that both ends of a bond come to the same answer.
+    const bool        from_a = at_a > 0.;
+    const Point<dim> &start = from_a ? a : b, &end = from_a ? b : a;
+    const double      at_start = from_a ? at_a : at_b, at_end = from_a ? at_b : at_a;
+    const Point<dim>  crossing = start + at_start / (at_start - at_end) * (end - start);
+    return plane_point_inside(crossing);
+  }
+
+
+  template <int dim>
+  bool CrackGeometry<dim>::contains(const Point<dim> &p) const
+  {
+    const double distance = (p - corner_points[0]) * unit_normal;
+    return std::abs(distance) <= tolerance && plane_point_inside(p);
+  }
+
+
+  template <int dim>
+  bool CrackGeometry<dim>::is_near(const Point<dim> &p, const double radius) const
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      if (p[d] < lowest[d] - radius || p[d] > highest[d] + radius)
+        return false;
+    return true;
+  }
+
+
+  template <int dim>
+  const Tensor<1, dim> &CrackGeometry<dim>::normal() const
+  {
+    return unit_normal;
+  }
+
+
+  template <int dim>
+  double CrackGeometry<dim>::measure() const
+  {
+    return content;
+  }
+
+
+  template <int dim>
+  const std::vector<Point<dim>> &CrackGeometry<dim>::corners() const
+  {
+    return corner_points;
+  }
+
+  template class CrackGeometry<1>;
+  template class CrackGeometry<2>;
+  template class CrackGeometry<3>;
+} // namespace PeriDeal

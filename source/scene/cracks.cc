@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/tensor.h>
+
+#include <perideal/scene/cracks.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** "crack 2 (0,0 ; 1,0)" */
+    template <int dim>
+    std::string crack_name(const unsigned int index, const std::vector<Point<dim>> &crack)
+    {
+      std::string name = "crack " + std::to_string(index + 1) + " (";
+      for (unsigned int i = 0; i < crack.size(); ++i)
+        for (unsigned int d = 0; d < dim; ++d)
+          name += (d > 0 ? "," : i > 0 ? " ; " : "") + number_text(crack[i][d]);
+      return name + ")";
+    }
+
+
+    /** The part of a polygon (or of a segment: two corners) in the half space sign * x_d <= sign *
+     * bound. */
+    template <int dim>
+    std::vector<Point<dim>> clipped(const std::vector<Point<dim>> &polygon,
+                                    const unsigned int             d,
+                                    const double                   bound,
+                                    const double                   sign)
+    {
+      std::vector<Point<dim>> result;
+      for (unsigned int i = 0; i < polygon.size(); ++i)
+        {
+          const Point<dim> &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+          const double      depth_a = sign * (bound - a[d]), depth_b = sign * (bound - b[d]);
+          if (depth_a >= 0.)
+            result.push_back(a);
+          if ((depth_a > 0. && depth_b < 0.) || (depth_a < 0. && depth_b > 0.))
+            result.push_back(a + depth_a / (depth_a - depth_b) * (b - a));
+        }
+      return result;
+    }
+
+
+    /** What is wrong with the shape of a polygon, or nothing. */
+    std::string polygon_fault(const std::vector<Point<3>> &corners)
+    {
+      double size = 0.;
+      for (unsigned int i = 0; i < corners.size(); ++i)
+        for (unsigned int j = 0; j < i; ++j)
+          {
+            size = std::max(size, corners[i].distance(corners[j]));
+            if (corners[i] == corners[j])
+              return "has the same corner twice";
+          }
+      Tensor<1, 3> normal; // twice the vector area
+      for (unsigned int i = 1; i + 1 < corners.size(); ++i)
+        normal += cross_product_3d(corners[i] - corners[0], corners[i + 1] - corners[0]);
+      if (normal.norm() <= 1e-12 * size * size)
+        return "has no area";
+      normal /= normal.norm();
+      for (const Point<3> &corner : corners)
+        if (std::abs((corner - corners[0]) * normal) > 1e-9 * size)
+          return "is not planar";
+      return "";
+    }
+  } // namespace
+
+
+  template <int dim>
+  Cracks<dim>::Cracks()
+    : SceneSection("Cracks")
+  {
+    declare("Segments",
+            EntryType::list,
+            "",
+            "length",
+            "2D: `start ; end ; start ; end ; ...`, two points a crack.");
+    declare("Polygons",
+            EntryType::list,
+            "",
+            "length",
+            "3D: `corner ; corner ; corner ...`, the next polygon after `|`. Each must be planar.");
+    declare(
+      "Mesh",
+      EntryType::choice,
+      "pairs",
+      "",
+      "What finite elements and the mesh do with a crack: in cut cells the conductances of the "
+      "node "
+      "pairs that the crack does not separate; the crack lies on cell faces, which are doubled; "
+      "or cut cells conduct nothing.",
+      {"pairs", "faces", "removed"});
+    declare("Transmission",
+            EntryType::number,
+            "0",
+            "1",
+            "Fraction that a cut bond still conducts, from 0 (insulated) to 1 (intact). A contact "
+            "conductance H corresponds to t/(1-t) = H delta/(C kappa), C about 1.9 (horizon ratio "
+            "2) to 2.4 "
+            "(horizon ratio 3).");
+    declare("Contact conductance",
+            EntryType::text,
+            "",
+            "power/(area temperature)",
+            "Heat flux through the crack per difference of temperature, instead of Transmission.");
+  }
+
+
+  template <int dim>
+  void Cracks<dim>::parse_segments()
+  {
+    if (text("Segments").empty())
+      return;
+    if (dim != 2)
+      error("Segments",
+            dim == 1 ? "cracks need 'Dimension' 2 or 3." :
+                       "segments are cracks of 2D bodies; in 3D give 'Polygons'.");
+    const std::vector<Point<dim>> points = parse_points<dim>(text("Segments"), where("Segments"));
+    if (points.size() % 2 != 0)
+      error("Segments",
+            "each crack needs two points (start ; end), found " + std::to_string(points.size()) +
+              " points.");
+    for (unsigned int i = 0; i < points.size(); i += 2)
+      {
+        cracks.push_back({points[i], points[i + 1]});
+        if (points[i] == points[i + 1])
+          error("Segments", crack_name(i / 2, cracks.back()) + " has no length.");
+      }
+  }
+
+
+  template <int dim>
+  void Cracks<dim>::parse_polygons()
+  {
+    if (text("Polygons").empty())
+      return;
+    if (dim != 3)
+      error("Polygons",
+            dim == 1 ? "cracks need 'Dimension' 2 or 3." :
+                       "polygons are cracks of 3D bodies; in 2D give 'Segments'.");
+    for (const std::string &piece : split_list(text("Polygons"), '|'))
+      {
+        const std::vector<Point<dim>> corners = parse_points<dim>(piece, where("Polygons"));
+        const std::string name = crack_name(static_cast<unsigned int>(cracks.size()), corners);
+        if (corners.size() < 3)
+          error("Polygons",
+                name + " needs three or more corners, found " + std::to_string(corners.size()) +
+                  ".");
+        if constexpr (dim == 3)
+          {
+            const std::string fault = polygon_fault(corners);
+            if (!fault.empty())
+              error("Polygons", name + " " + fault + ".");
+          }
+        cracks.push_back(corners);
+      }
+  }
+
+
+  template <int dim>
+  void Cracks<dim>::parse()
+  {
+    cracks.clear();
+    parse_segments();
+    parse_polygons();
+    mesh         = choice<CrackMesh>("Mesh");
+    transmission = number("Transmission");
+    if (transmission < 0. || transmission > 1.)
+      error("Transmission", "found " + text("Transmission") + ", needs a number from 0 to 1.");
+    contact_conductance = -1.;
+    if (!text("Contact conductance").empty())
+      {
+        if (transmission != 0.)
+          error("Contact conductance", "'Transmission' is given, too: give one of the two.");
+        contact_conductance =
+          parse_number(text("Contact conductance"), where("Contact conductance"));
+        if (contact_conductance < 0.)
+          error("Contact conductance",
+                "found " + text("Contact conductance") + ", needs a number of 0 or more.");
+      }
+    if (mesh == CrackMesh::faces && (transmission > 0. || contact_conductance > 0.))
+      error("Mesh",
+            "'faces' cuts the body along the crack, which then conducts nothing; with '" +
+              std::string(transmission > 0. ? "Transmission" : "Contact conductance") +
+              "' greater than 0 use 'pairs'.");
+  }
+
+
+  template <int dim>
+  void Cracks<dim>::check_inside(const Point<dim> &lower, const Point<dim> &upper) const
+  {
+    for (unsigned int i = 0; i < cracks.size(); ++i)
+      {
+        std::vector<Point<dim>> inside = cracks[i];
+        for (unsigned int d = 0; d < dim; ++d)
+          inside = clipped<dim>(clipped<dim>(inside, d, upper[d], 1.), d, lower[d], -1.);
+        if (inside.empty())
+          error(dim == 2 ? "Segments" : "Polygons",
+                crack_name(i, cracks[i]) + " lies outside the body.");
+      }
+  }
+
+
+  template class Cracks<1>;
+  template class Cracks<2>;
+  template class Cracks<3>;
+} // namespace PeriDeal

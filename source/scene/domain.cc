@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/domain.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** "0.5, 0.5": the same number for each direction. */
+    template <int dim>
+    std::string repeated(const std::string &number)
+    {
+      std::string text = number;
+      for (unsigned int d = 1; d < dim; ++d)
+        text += ", " + number;
+      return text;
+    }
+
+
+    /** Spacing nearest to the wanted one that divides all edges, or 0 if there is none with nearly
+     * as many cells. */
+    template <int dim>
+    double nearest_fitting_spacing(const Tensor<1, dim> &edges, const double wanted)
+    {
+      double       best     = 0.;
+      const double n_wanted = std::round(edges[0] / wanted);
+      for (double n = std::max(1., n_wanted - 500.); n <= n_wanted + 500.; ++n)
+        {
+          const double spacing = edges[0] / n;
+          bool         fits    = true;
+          for (unsigned int d = 1; d < dim; ++d)
+            {
+              const double m = std::round(edges[d] / spacing);
+              fits           = fits && m >= 1. && std::abs(edges[d] / spacing - m) < 1e-9 * m;
+            }
+          if (fits && std::abs(spacing - wanted) < std::abs(best - wanted))
+            best = spacing;
+        }
+      return best;
+    }
+  } // namespace
+
+
+  template <int dim>
+  Domain<dim>::Domain()
+    : SceneSection("Domain")
+  {
+    declare("Shape",
+            EntryType::choice,
+            "box",
+            "",
+            "The body: a box of equal cells, such a box with a hole, or a mesh read from a file.",
+            {"box", "plate with hole", "mesh file"});
+    declare("Lower corner",
+            EntryType::list,
+            repeated<dim>("0"),
+            "length",
+            "The corner of the box with the smallest coordinates, one number per direction.");
+    declare("Upper corner",
+            EntryType::list,
+            repeated<dim>("1"),
+            "length",
+            "The corner of the box with the largest coordinates, one number per direction.");
+    declare("Cells",
+            EntryType::list,
+            repeated<dim>("20"),
+            "1",
+            "Number of cells of the box, one number per direction.");
+    declare("Node spacing",
+            EntryType::text,
+            "",
+            "length",
+            "Edge length of the cells, instead of Cells. It must divide every edge of the box.");
+    declare("Nodes",
+            EntryType::choice,
+            "vertices",
+            "",
+            "Where the peridynamic nodes sit.",
+            {"vertices", "cell centers"});
+    declare(
+      "Hole center",
+      EntryType::list,
+      repeated<dim>("0.5"),
+      "length",
+      "Plate with a hole: its centre. Lattice cells whose centre is nearer than the radius do "
+      "not exist. In 3D the hole is a bore along z.");
+    declare("Hole radius",
+            EntryType::number,
+            "0.25",
+            "length",
+            "Radius of a circular hole, half the edge of a square one.");
+    declare("Hole shape",
+            EntryType::choice,
+            "circle",
+            "",
+            "Shape of the hole.",
+            {"circle", "square"});
+    declare("Hole angle",
+            EntryType::number,
+            "0",
+            "degrees",
+            "A square hole is turned by this angle, counterclockwise.");
+    declare(
+      "Mesh file",
+      EntryType::text,
+      "",
+      "",
+      "File of the mesh, relative to the working directory. Its boundary ids name the sides.");
+    parse();
+  }
+
+
+  template <int dim>
+  Tensor<1, dim> Domain<dim>::spacing() const
+  {
+    Tensor<1, dim> h;
+    for (unsigned int d = 0; d < dim; ++d)
+      h[d] = (upper[d] - lower[d]) / cells[d];
+    return h;
+  }
+
+
+  template <int dim>
+  bool Domain<dim>::contains(const Point<dim> &p) const
+  {
+    bool inside = true;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double slack = 1e-9 * (upper[d] - lower[d]);
+        inside             = inside && p[d] >= lower[d] - slack && p[d] <= upper[d] + slack;
+      }
+    return inside;
+  }
+
+
+  template <int dim>
+  void Domain<dim>::parse_cells()
+  {
+    if (text("Node spacing").empty())
+      {
+        const std::vector<std::string> pieces = split_list(text("Cells"), ',');
+        if (pieces.size() != dim)
+          error("Cells",
+                "needs " + std::to_string(dim) + " numbers, found " +
+                  std::to_string(pieces.size()) + ".");
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            cells[d] = parse_whole_number(pieces[d], where("Cells"), 1000000000u);
+            if (cells[d] == 0)
+              error("Cells", "found 0, needs at least one cell in each direction.");
+          }
+        return;
+      }
+    if (is_given("Cells"))
+      error("Node spacing", "'Cells' is given, too: give one of the two.");
+    const double wanted = parse_number(text("Node spacing"), where("Node spacing"));
+    if (!(wanted > 0.))
+      error("Node spacing",
+            "found " + text("Node spacing") + ", needs a length greater than 0 (or nothing).");
+    bool fits = true;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double n = (upper[d] - lower[d]) / wanted, n_cells = std::max(1., std::round(n));
+        if (n_cells > 1e9)
+          error("Node spacing",
+                "found " + text("Node spacing") + ", more than 1e9 cells in a row.");
+        fits     = fits && std::abs(n - n_cells) <= 1e-6 * n_cells;
+        cells[d] = static_cast<unsigned int>(n_cells);
+      }
+    if (fits)
+      return;
+    const double nearest = nearest_fitting_spacing<dim>(upper - lower, wanted);
+    error("Node spacing",
+          text("Node spacing") + " does not divide the edges of the box; " +
+            (nearest > 0. ? "the nearest spacing that does is " + number_text(nearest) + "." :
+                            "no spacing near it does, give 'Cells' instead."));
+  }
+
+
+  template <int dim>
+  void Domain<dim>::parse_hole()
+  {
+    hole_center = parse_point<dim>(text("Hole center"), where("Hole center"));
+    hole_radius = number("Hole radius");
+    hole_shape  = choice<HoleShape>("Hole shape");
+    hole_angle  = number("Hole angle");
+    if (shape != Shape::plate_with_hole)
+      return;
+    if (dim == 1)
+      error("Shape", "a plate with a hole needs 'Dimension' 2 or 3.");
+    positive_number("Hole radius");
+    if (!contains(hole_center))
+      error("Hole center", "(" + text("Hole center") + ") lies outside the body.");
+  }
+
+
+  template <int dim>
+  void Domain<dim>::parse()
+  {
+    shape = choice<Shape>("Shape");
+    nodes = choice<NodePlacement>("Nodes");
+    lower = parse_point<dim>(text("Lower corner"), where("Lower corner"));
+    upper = parse_point<dim>(text("Upper corner"), where("Upper corner"));
+    for (unsigned int d = 0; d < dim; ++d)
+      if (!(lower[d] < upper[d]))
+        error("Upper corner",
+              "its coordinate " + std::to_string(d + 1) + " (" + number_text(upper[d]) +
+                ") must be greater than that of 'Lower corner' (" + number_text(lower[d]) + ").");
+    parse_cells();
+    parse_hole();
+    mesh_file = text("Mesh file");
+    if (shape == Shape::mesh_file && mesh_file.empty())
+      error("Mesh file", "is empty, but 'Shape' is 'mesh file'.");
+    if (shape != Shape::mesh_file && !mesh_file.empty())
+      error("Mesh file", "is given, but 'Shape' is '" + text("Shape") + "', not 'mesh file'.");
+  }
+
+
+  template class Domain<1>;
+  template class Domain<2>;
+  template class Domain<3>;
+} // namespace PeriDeal

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/expression.h>
+#include <perideal/scene/lists.h>
+
+#include <muParser.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace PeriDeal
+{
+  /** The byte code and the variables it reads. */
+  struct Expression::Compiled
+  {
+    mu::Parser parser;
+    double     x = 0., y = 0., z = 0., t = 0.;
+    bool       uses_time = false, uses_position = false;
+  };
+
+
+  namespace
+  {
+    // What users of deal.II's FunctionParser find beyond muparser's own functions, with the same
+    // meaning
+    double if_then_else(const double condition, const double a, const double b)
+    {
+      return std::rint(condition) != 0. ? a : b;
+    }
+
+    double bar_or(const double a, const double b)
+    {
+      return std::rint(a) != 0. || std::rint(b) != 0.;
+    }
+
+    double bar_and(const double a, const double b)
+    {
+      return std::rint(a) != 0. && std::rint(b) != 0.;
+    }
+
+
+    void define_names(mu::Parser &parser)
+    {
+      parser.ClearConst();
+      parser.DefineConst("pi", 3.14159265358979323846);
+      parser.DefineConst("Pi", 3.14159265358979323846);
+      parser.DefineConst("E", 2.71828182845904523536);
+      parser.DefineFun("if", if_then_else);
+      parser.DefineOprt("|", bar_or, 1);
+      parser.DefineOprt("&", bar_and, 2);
+      parser.DefineFun("int", static_cast<mu::fun_type1>([](double v) { return std::trunc(v); }));
+      parser.DefineFun("ceil", static_cast<mu::fun_type1>([](double v) { return std::ceil(v); }));
+      parser.DefineFun("floor", static_cast<mu::fun_type1>([](double v) { return std::floor(v); }));
+      parser.DefineFun("sec",
+                       static_cast<mu::fun_type1>([](double v) { return 1. / std::cos(v); }));
+      parser.DefineFun("csc",
+                       static_cast<mu::fun_type1>([](double v) { return 1. / std::sin(v); }));
+      parser.DefineFun("cot",
+                       static_cast<mu::fun_type1>([](double v) { return 1. / std::tan(v); }));
+      parser.DefineFun("erf", static_cast<mu::fun_type1>([](double v) { return std::erf(v); }));
+      parser.DefineFun("erfc", static_cast<mu::fun_type1>([](double v) { return std::erfc(v); }));
+      parser.DefineFun("pow", static_cast<mu::fun_type2>([](double a, double b) {
+                         return std::pow(a, b);
+                       }));
+    }
+
+
+    bool is_name_start(const char c)
+    {
+      return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
+    }
+
+
+    /** Why muparser could not make sense of the text that starts with @p token. */
+    std::string unknown_token(const mu::Parser &parser, const std::string &token)
+    {
+      if (token.empty())
+        return "the formula ends too early";
+      if (std::isdigit(static_cast<unsigned char>(token[0])) || token[0] == '.')
+        return "'" + token + "' is not a number";
+      if (!is_name_start(token[0]))
+        return "unexpected character '" + token.substr(0, 1) + "'";
+      if (parser.GetFunDef().count(token) > 0)
+        return "the function '" + token + "' needs its arguments in parentheses";
+      if (token == "T")
+        return "'T': the temperature is not available in formulas; known variables: x, y, z, t";
+      if (token == "rand" || token == "rand_seed")
+        return "'" + token + "': random numbers are not available, since a run must be repeatable";
+      if (token == "and" || token == "or")
+        return "unknown name '" + token + "'; write " + (token == "and" ? "&&" : "||");
+      std::vector<std::string> known = {"x", "y", "z", "t"};
+      for (const auto &constant : parser.GetConst())
+        known.push_back(constant.first);
+      for (const auto &function : parser.GetFunDef())
+        known.push_back(function.first);
+      const std::string nearest = token.size() > 1 ? nearest_name(token, known) : "";
+      return "unknown name '" + token + "'" +
+             (nearest.empty() ? "; known variables: x, y, z, t" :
+                                "; did you mean '" + nearest + "'?");
+    }
+
+
+    /** muparser's error in plain words. */
+    std::string reason(const mu::Parser &parser, const mu::ParserError &error)
+    {
+      const std::string token = trimmed(error.GetToken());
+      switch (error.GetCode())
+        {
+          case mu::ecUNASSIGNABLE_TOKEN:
+            return unknown_token(parser, token);
+          case mu::ecUNEXPECTED_EOF:
+            return "the formula ends too early";
+          case mu::ecUNEXPECTED_OPERATOR:
+            return "unexpected operator '" + token + "'" +
+                   (token == "*" ? " (powers are written x^2)" : "");
+          case mu::ecUNEXPECTED_VAL:
+          case mu::ecUNEXPECTED_VAR:
+          case mu::ecUNEXPECTED_FUN:
+            return "an operator is missing before '" + token + "'";
+          case mu::ecUNEXPECTED_ARG_SEP:
+            return "unexpected comma";
+          case mu::ecUNEXPECTED_PARENS:
+            return "unexpected parenthesis '" + token + "'";
+          case mu::ecMISSING_PARENS:
+            return "a closing parenthesis is missing";
+          case mu::ecTOO_MANY_PARAMS:
+            return "the function '" + token + "' has too many arguments";
+          case mu::ecTOO_FEW_PARAMS:
+            return "the function '" + token + "' has too few arguments";
+          case mu::ecMISSING_ELSE_CLAUSE:
+            return "'?' without ':'";
+          case mu::ecMISPLACED_COLON:
+            return "unexpected ':'";
+          case mu::ecEXPRESSION_TOO_LONG:
+            return "the formula is longer than muparser allows";
+          default:
+            return error.GetMsg();
+        }
+    }
+
+
+    /** Of a long formula only what surrounds the column. */
+    std::string excerpt(const std::string &formula, const long column)
+    {
+      const std::size_t width = 60, at = static_cast<std::size_t>(column);
+      const std::size_t begin = at > width ? at - width : 0;
+      return (begin > 0 ? "..." : "") + formula.substr(begin, 2 * width) +
+             (begin + 2 * width < formula.size() ? "..." : "");
+    }
+
+
+    [[noreturn]] void formula_error(const std::string &where,
+                                    const std::string &formula,
+                                    const long         position,
+                                    const std::string &why)
+    {
+      const long  last   = static_cast<long>(formula.size());
+      const long  column = std::max(1L, std::min(position + 1, last));
+      const char *end    = why.back() == '?' ? "" : ".";
+      entry_error(where,
+                  "in the formula '" + excerpt(formula, column) + "' at column " +
+                    std::to_string(column) + ": " + why + end);
+    }
+
+
+    /** muparser would let `x = 3` change the variable: refuse all `=` that are no comparison. */
+    void refuse_assignment(const std::string &formula, const std::string &where)
+    {
+      for (std::size_t i = 0; i < formula.size(); ++i)
+        {
+          if (formula[i] != '=')
+            continue;
+          if (i + 1 < formula.size() && formula[i + 1] == '=')
+            ++i;
+          else if (i == 0 || std::string("<>!").find(formula[i - 1]) == std::string::npos)
+            formula_error(where, formula, static_cast<long>(i), "'=' is no comparison, write '=='");
+        }
+    }
+  } // namespace
+
+
+  Expression::Expression()
+    : Expression(0.)
+  {}
+
+
+  Expression::Expression(const double constant)
+    : formula(number_text(constant))
+    , constant(constant)
+  {}
+
+
+  Expression::Expression(const std::string &text, const std::string &where)
+    : compiled(std::make_shared<Compiled>())
+    , formula(trimmed(text))
+    , where(where)
+    , constant(0.)
+  {
+    if (formula.empty())
+      entry_error(where, "is empty, needs a number or a formula of x, y, z and t.");
+    refuse_assignment(formula, where);
+
+    mu::Parser &parser = compiled->parser;
+    define_names(parser);
+    parser.DefineVar("x", &compiled->x);
+    parser.DefineVar("y", &compiled->y);
+    parser.DefineVar("z", &compiled->z);
+    parser.DefineVar("t", &compiled->t);
+    int n_results = 0;
+    try
+      {
+        parser.SetExpr(formula);
+        // before GetUsedVar(), which takes unknown names for variables
+        constant  = parser.Eval();
+        n_results = parser.GetNumResults();
+        for (const auto &variable : parser.GetUsedVar())
+          {
+            compiled->uses_time     = compiled->uses_time || variable.first == "t";
+            compiled->uses_position = compiled->uses_position || variable.first != "t";
+          }
+      }
+    catch (const mu::ParserError &error)
+      {
+        formula_error(where, formula, error.GetPos(), reason(parser, error));
+      }
+    if (n_results != 1)
+      entry_error(where,
+                  "the formula '" + formula + "' gives " + std::to_string(n_results) +
+                    " values, needs one (is a comma outside parentheses?).");
+    if (!compiled->uses_time && !compiled->uses_position)
+      {
+        compiled.reset();
+        if (!std::isfinite(constant))
+          entry_error(where, "the value of '" + formula + "' is not finite.");
+      }
+  }
+
+
+  template <int dim>
+  double Expression::value(const dealii::Point<dim> &p, const double t) const
+  {
+    if (compiled == nullptr)
+      return constant;
+    compiled->x        = p[0];
+    compiled->y        = dim > 1 ? p[dim > 1 ? 1 : 0] : 0.;
+    compiled->z        = dim > 2 ? p[dim > 2 ? 2 : 0] : 0.;
+    compiled->t        = t;
+    const double value = compiled->parser.Eval();
+    if (!std::isfinite(value))
+      {
+        std::string point;
+        for (unsigned int d = 0; d < dim; ++d)
+          point += (d == 0 ? "" : ", ") + number_text(p[d]);
+        entry_error(where,
+                    "the value of '" + formula + "' is not finite at (" + point +
+                      "), t = " + number_text(t) + ".");
+      }
+    return value;
+  }
+
+
+  bool Expression::is_constant() const
+  {
+    return compiled == nullptr;
+  }
+
+
+  bool Expression::depends_on_time() const
+  {
+    return compiled != nullptr && compiled->uses_time;
+  }
+
+
+  bool Expression::depends_on_position() const
+  {
+    return compiled != nullptr && compiled->uses_position;
+  }
+
+
+  const std::string &Expression::text() const
+  {
+    return formula;
+  }
+
+
+  template double Expression::value<1>(const dealii::Point<1> &, const double) const;
+  template double Expression::value<2>(const dealii::Point<2> &, const double) const;
+  template double Expression::value<3>(const dealii::Point<3> &, const double) const;
+} // namespace PeriDeal

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/lists.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <iomanip>
+#include <sstream>
+
+namespace PeriDeal
+{
+  void entry_error(const std::string &where, const std::string &what)
+  {
+    AssertThrow(false, UserError("Entry " + where + ": " + what));
+    std::abort(); // never reached: AssertThrow throws
+  }
+
+
+  std::string trimmed(const std::string &text)
+  {
+    const char *const blanks = " \t\r\n\v\f";
+    const std::size_t first  = text.find_first_not_of(blanks);
+    if (first == std::string::npos)
+      return "";
+    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  }
+
+
+  std::vector<std::string> split_list(const std::string &text, const char separator)
+  {
+    std::vector<std::string> pieces;
+    if (trimmed(text).empty())
+      return pieces;
+    int         depth = 0;
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < text.size(); ++i)
+      {
+        if (text[i] == '(')
+          ++depth;
+        else if (text[i] == ')')
+          --depth;
+        else if (text[i] == separator && depth <= 0)
+          {
+            pieces.push_back(trimmed(text.substr(begin, i - begin)));
+            begin = i + 1;
+          }
+      }
+    pieces.push_back(trimmed(text.substr(begin)));
+    if (pieces.size() > 1 && pieces.back().empty())
+      pieces.pop_back();
+    return pieces;
+  }
+
+
+  std::pair<std::string, std::string> name_and_value(const std::string &text,
+                                                     const std::string &where)
+  {
+    const std::size_t colon = text.find(':');
+    const std::string name  = trimmed(text.substr(0, colon));
+    const std::string value = colon == std::string::npos ? "" : trimmed(text.substr(colon + 1));
+    if (name.empty() || value.empty())
+      entry_error(where, "found '" + text + "', needs 'name: value' (several separated by ';').");
+    return {name, value};
+  }
+
+
+  double parse_number(const std::string &text, const std::string &where)
+  {
+    const std::string word  = trimmed(text);
+    char             *end   = nullptr;
+    const double      value = std::strtod(word.c_str(), &end);
+    // strtod also takes hexadecimal numbers, inf and nan, which a scene does not
+    if (word.empty() || *end != '\0' ||
+        word.find_first_not_of("0123456789+-.eE") != std::string::npos)
+      entry_error(where, word.empty() ? "a number is missing." : "'" + word + "' is not a number.");
+    if (!std::isfinite(value))
+      entry_error(where, "'" + word + "' is too large for a number.");
+    return value;
+  }
+
+
+  unsigned int parse_whole_number(const std::string &text,
+                                  const std::string &where,
+                                  const unsigned int maximum)
+  {
+    const double value = parse_number(text, where);
+    if (value < 0 || value > maximum || value != std::floor(value))
+      entry_error(where,
+                  "found '" + trimmed(text) + "', needs a whole number from 0 to " +
+                    std::to_string(maximum) + ".");
+    return static_cast<unsigned int>(value);
+  }
+
+
+  std::vector<double> parse_numbers(const std::string &text,
+                                    const unsigned int n,
+                                    const std::string &what,
+                                    const std::string &where)
+  {
+    const std::vector<std::string> pieces = split_list(text, ',');
+    if (pieces.size() != n)
+      entry_error(where,
+                  "'" + trimmed(text) + "' needs " + std::to_string(n) + " " + what + ", found " +
+                    std::to_string(pieces.size()) + ".");
+    std::vector<double> values;
+    for (const std::string &piece : pieces)
+      values.push_back(parse_number(piece, where));
+    return values;
+  }
+
+
+  template <int dim>
+  dealii::Point<dim> parse_point(const std::string &text, const std::string &where)
+  {
+    const std::vector<double> x =
+      parse_numbers(text, dim, dim == 1 ? "coordinate" : "coordinates", where);
+    dealii::Point<dim> p;
+    for (unsigned int d = 0; d < dim; ++d)
+      p[d] = x[d];
+    return p;
+  }
+
+
+  template <int dim>
+  std::vector<dealii::Point<dim>> parse_points(const std::string &text, const std::string &where)
+  {
+    std::vector<dealii::Point<dim>> points;
+    for (const std::string &piece : split_list(text, ';'))
+      points.push_back(parse_point<dim>(piece, where));
+    return points;
+  }
+
+
+  unsigned int choice_of(const std::string              &text,
+                         const std::vector<std::string> &names,
+                         const std::string              &where)
+  {
+    for (unsigned int i = 0; i < names.size(); ++i)
+      if (text == names[i])
+        return i;
+    const std::string found = text.empty() ? "is empty" : "unknown name '" + text + "'";
+    if (names.size() == 1)
+      entry_error(where, found + "; this version knows '" + names.front() + "' only.");
+    entry_error(where,
+                found + "; known: " + join_names(names) + "." +
+                  (text.empty() ? "" : did_you_mean(text, names)));
+  }
+
+
+  std::string did_you_mean(const std::string &name, const std::vector<std::string> &known)
+  {
+    const std::string nearest = nearest_name(name, known);
+    return nearest.empty() ? "" : " Did you mean '" + nearest + "'?";
+  }
+
+
+  std::string number_text(const double value)
+  {
+    for (int digits = 6; digits <= 12; ++digits)
+      {
+        std::ostringstream out;
+        out << std::setprecision(digits) << value;
+        if (digits >= 12 || std::strtod(out.str().c_str(), nullptr) == value)
+          return out.str();
+      }
+    return "";
+  }
+
+
+  template dealii::Point<1>              parse_point<1>(const std::string &, const std::string &);
+  template dealii::Point<2>              parse_point<2>(const std::string &, const std::string &);
+  template dealii::Point<3>              parse_point<3>(const std::string &, const std::string &);
+  template std::vector<dealii::Point<1>> parse_points<1>(const std::string &, const std::string &);
+  template std::vector<dealii::Point<2>> parse_points<2>(const std::string &, const std::string &);
+  template std::vector<dealii::Point<3>> parse_points<3>(const std::string &, const std::string &);
+} // namespace PeriDeal

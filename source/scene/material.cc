@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/lists.h>
+#include <perideal/scene/material.h>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    void refuse_time(const Expression &expression, const std::string &where)
+    {
+      if (expression.depends_on_time())
+        entry_error(where,
+                    "'" + expression.text() + "' depends on t; known variables here: x, y, z.");
+    }
+  } // namespace
+
+
+  Material::Material()
+    : SceneSection("Material")
+  {
+    declare("Conductivity",
+            EntryType::formula,
+            "1",
+            "power/(length temperature)",
+            "Thermal conductivity, a number or a formula of x, y, z.");
+    declare("Density", EntryType::formula, "1", "mass/length^3", "Ignored when steady.");
+    declare("Heat capacity",
+            EntryType::formula,
+            "1",
+            "energy/(mass temperature)",
+            "Per mass; the body stores Density x Heat capacity. Ignored when steady.");
+    declare("Interface rule",
+            EntryType::choice,
+            "arithmetic",
+            "",
+            "Conductivity of a bond between unequal nodes: the smaller value, the mean, or the "
+            "harmonic mean by the length of the bond in each phase.",
+            {"minimum", "arithmetic", "harmonic"});
+    parse();
+  }
+
+
+  bool Material::uniform_conductivity() const
+  {
+    return conductivity.is_constant();
+  }
+
+
+  template <int dim>
+  double Material::storage(const dealii::Point<dim> &p) const
+  {
+    return density.value(p) * heat_capacity.value(p);
+  }
+
+
+  void Material::parse()
+  {
+    const auto read = [this](const std::string &entry, Expression &value) {
+      value = Expression(text(entry), where(entry));
+      refuse_time(value, where(entry));
+      if (value.is_constant() && !(value.value(dealii::Point<1>()) > 0.))
+        error(entry, "found " + text(entry) + ", needs a value greater than 0.");
+    };
+    read("Conductivity", conductivity);
+    read("Density", density);
+    read("Heat capacity", heat_capacity);
+    interface_rule = choice<InterfaceRule>("Interface rule");
+  }
+
+
+  InitialAndSource::InitialAndSource()
+    : SceneSection("Initial and source")
+  {
+    declare("Initial value",
+            EntryType::formula,
+            "0",
+            "temperature",
+            "Temperature at time 0, a number or a formula of x, y, z (t is 0).");
+    declare("Source",
+            EntryType::formula,
+            "0",
+            "power/length^3",
+            "Heat produced in the body, a number or a formula of x, y, z, t.");
+    parse();
+  }
+
+
+  void InitialAndSource::parse()
+  {
+    initial_value = Expression(text("Initial value"), where("Initial value"));
+    source        = Expression(text("Source"), where("Source"));
+  }
+
+
+  template double Material::storage<1>(const dealii::Point<1> &) const;
+  template double Material::storage<2>(const dealii::Point<2> &) const;
+  template double Material::storage<3>(const dealii::Point<3> &) const;
+} // namespace PeriDeal

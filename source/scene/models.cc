@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/lists.h>
+#include <perideal/scene/models.h>
+
+namespace PeriDeal
+{
+  Peridynamics::Peridynamics()
+    : SceneSection("Peridynamics")
+  {
+    declare_quadrature();
+    declare_boundary();
+    parse();
+  }
+
+
+  void Peridynamics::declare_quadrature()
+  {
+    declare("Horizon ratio",
+            EntryType::number,
+            "3",
+            "1",
+            "m, the horizon divided by the (smallest) node spacing; at least 1.");
+    declare("Horizon", EntryType::text, "", "length", "The horizon, instead of Horizon ratio.");
+    declare("Kernel",
+            EntryType::choice,
+            "conical",
+            "",
+            "Shape k(r) of the micro-conductivity within the horizon delta: 1, 1 - r/delta, or "
+            "exp(-(2 r/delta)^2).",
+            {"constant", "conical", "gaussian"});
+    declare("Kernel exponent",
+            EntryType::whole_number,
+            "2",
+            "1",
+            "n of the pair law k(r)/r^n: 0, 1 or 2.");
+    declare("Volume fraction",
+            EntryType::choice,
+            "linear",
+            "",
+            "Share of a node's volume that lies within the horizon: 1 for r <= delta; the linear "
+            "ramp over "
+            "one spacing; or the exact area of the lattice cell within the horizon.",
+            {"none", "linear", "exact"});
+    declare("Calibration",
+            EntryType::choice,
+            "discrete",
+            "",
+            "The micro-conductivity from the sum over a full family of the lattice, or from the "
+            "integral.",
+            {"discrete", "analytic"});
+    declare("Self term",
+            EntryType::choice,
+            "none",
+            "",
+            "The term of a node with itself as published by Bobaru and Duangpanya; inflates the "
+            "conductivity.",
+            {"none", "paper"});
+    declare("Nodal volume",
+            EntryType::choice,
+            "partial",
+            "",
+            "Volume of nodes on the boundary: half a cell on an edge, a quarter at a corner, or "
+            "full cells.",
+            {"partial", "full"});
+    declare("Operator form",
+            EntryType::choice,
+            "auto",
+            "",
+            "How bonds are kept: computed from the lattice, stored one by one, or whichever suits.",
+            {"auto", "lattice", "stored"});
+  }
+
+
+  void Peridynamics::declare_boundary()
+  {
+    declare("Boundary treatment",
+            EntryType::choice,
+            "none",
+            "",
+            "How Dirichlet values act: on the nodes of the side; on layers of nodes inside; or on "
+            "fictitious nodes outside the body, mirrored (2 T* - T) or constant (T*).",
+            {"none", "layer", "fictitious mirror", "fictitious constant"});
+    declare("Layer rows",
+            EntryType::whole_number,
+            "1",
+            "1",
+            "With 'layer': rows of nodes nearest to the side that carry the value.");
+    declare(
+      "Flux treatment",
+      EntryType::choice,
+      "natural",
+      "",
+      "Fluxes as sources in the outermost row; boundary nodes extrapolated from their family; or "
+      "(1D) the whole horizon layer extrapolated.",
+      {"natural", "extrapolation", "layer extrapolation"});
+    declare("Surface correction",
+            EntryType::choice,
+            "none",
+            "",
+            "Correction of bonds whose families are cut: none, or scaling beside cracks.",
+            {"none", "crack scaling"});
+  }
+
+
+  void Peridynamics::parse()
+  {
+    horizon_ratio = number("Horizon ratio");
+    if (horizon_ratio < 1.)
+      error("Horizon ratio", "found " + text("Horizon ratio") + ", needs 1 or more.");
+    horizon = -1.;
+    if (!text("Horizon").empty())
+      {
+        if (is_given("Horizon ratio"))
+          error("Horizon", "'Horizon ratio' is given, too: give one of the two.");
+        horizon = parse_number(text("Horizon"), where("Horizon"));
+        if (!(horizon > 0.))
+          error("Horizon",
+                "found " + text("Horizon") + ", needs a length greater than 0 (or nothing).");
+      }
+    kernel          = choice<KernelShape>("Kernel");
+    kernel_exponent = whole_number("Kernel exponent");
+    if (kernel_exponent > 2)
+      error("Kernel exponent", "found " + text("Kernel exponent") + ", needs 0, 1 or 2.");
+    volume_fraction = choice<VolumeFraction>("Volume fraction");
+    calibration     = choice<Calibration>("Calibration");
+    self_term       = choice<SelfTerm>("Self term");
+    nodal_volume    = choice<NodalVolume>("Nodal volume");
+    treatment       = choice<BoundaryTreatment>("Boundary treatment");
+    layer_rows      = whole_number("Layer rows");
+    if (layer_rows == 0)
+      error("Layer rows", "found 0, needs 1 or more.");
+    flux_treatment     = choice<FluxTreatment>("Flux treatment");
+    surface_correction = choice<SurfaceCorrection>("Surface correction");
+    form               = choice<OperatorForm>("Operator form");
+  }
+
+
+  FiniteElements::FiniteElements()
+    : SceneSection("Finite elements")
+  {
+    declare("Degree",
+            EntryType::whole_number,
+            "1",
+            "1",
+            "Polynomial degree of the elements: 1, 2 or 3.");
+    declare("Capacity",
+            EntryType::choice,
+            "lumped",
+            "",
+            "Capacity matrix: diagonal by row sums, or as integrated.",
+            {"lumped", "consistent"});
+    parse();
+  }
+
+
+  void FiniteElements::parse()
+  {
+    degree = whole_number("Degree");
+    if (degree < 1 || degree > 3)
+      error("Degree", "found " + text("Degree") + ", needs 1, 2 or 3.");
+    consistent_capacity = choice<int>("Capacity") == 1;
+  }
+} // namespace PeriDeal

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/lists.h>
+#include <perideal/scene/scene.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  std::string to_string(const Model model)
+  {
+    return model == Model::finite_elements ? "finite elements" : "peridynamics";
+  }
+
+
+  General::General()
+    : SceneSection("")
+  {
+    declare("Title", EntryType::text, "", "", "Headline of reports.");
+    declare("Dimension", EntryType::whole_number, "2", "1", "Number of dimensions: 1, 2 or 3.");
+    declare("Physics",
+            EntryType::choice,
+            "heat",
+            "",
+            "What diffuses; this version knows heat only.",
+            {"heat"});
+    declare("Models",
+            EntryType::choices,
+            "finite elements, peridynamics",
+            "",
+            "The models that are run one after the other and compared.",
+            {"finite elements", "peridynamics"});
+    declare("Output directory",
+            EntryType::text,
+            "output",
+            "",
+            "Directory of all files a run writes, relative to the working directory.");
+    parse();
+  }
+
+
+  void General::parse()
+  {
+    title            = text("Title");
+    output_directory = text("Output directory");
+    if (output_directory.empty())
+      error("Output directory", "is empty, needs the name of a directory.");
+    dimension = whole_number("Dimension");
+    if (dimension < 1 || dimension > 3)
+      error("Dimension", "found " + text("Dimension") + ", needs 1, 2 or 3.");
+    choice_name("Physics");
+    models.clear();
+    for (const unsigned int index : choice_indices("Models"))
+      models.push_back(static_cast<Model>(index));
+  }
+
+
+  namespace
+  {
+    template <int dim>
+    bool runs(const Scene<dim> &scene, const Model model)
+    {
+      const std::vector<Model> &models = scene.general.models;
+      return std::find(models.begin(), models.end(), model) != models.end();
+    }
+
+
+    /** What a choice needs of the shape of the body. */
+    template <int dim>
+    void check_shape_for_peridynamics(const Scene<dim> &scene)
+    {
+      const Peridynamics &pd    = scene.peridynamics;
+      const Shape         shape = scene.domain.shape;
+      const auto require = [&](const bool ok, const std::string &entry, const std::string &what) {
+        if (!ok)
+          entry_error(pd.where(entry), what);
+      };
+      const std::string needs_lattice = " needs a lattice of cells ('Shape' in section 'Domain' = "
+                                        "box or plate with hole), not a mesh file.";
+
+      require(shape == Shape::box || (pd.treatment != BoundaryTreatment::fictitious_mirror &&
+                                      pd.treatment != BoundaryTreatment::fictitious_constant),
+              "Boundary treatment",
+              "fictitious nodes need the sides of a box ('Shape' in section 'Domain' = box).");
+      require(dim == 1 || pd.flux_treatment != FluxTreatment::layer_extrapolation,
+              "Flux treatment",
+              "'layer extrapolation' is for 'Dimension' 1 only; use 'extrapolation'.");
+      require(dim < 3 || pd.self_term != SelfTerm::paper,
+              "Self term",
+              "'paper' is defined for 'Dimension' 1 and 2 only.");
+      if (shape != Shape::mesh_file)
+        return;
+      require(pd.treatment != BoundaryTreatment::layer,
+              "Boundary treatment",
+              "'layer'" + needs_lattice);
+      require(pd.volume_fraction != VolumeFraction::exact,
+              "Volume fraction",
+              "'exact'" + needs_lattice);
+      require(pd.self_term != SelfTerm::paper, "Self term", "'paper'" + needs_lattice);
+      require(pd.form != OperatorForm::lattice, "Operator form", "'lattice'" + needs_lattice);
+      require(pd.horizon > 0.,
+              "Horizon",
+              "is empty; a mesh file has no node spacing that 'Horizon ratio' could refer to: give "
+              "a length.");
+    }
+
+
+    template <int dim>
+    void check_horizon(const Scene<dim> &scene)
+    {
+      if (scene.domain.shape == Shape::mesh_file)
+        return;
+      const Tensor<1, dim> h       = scene.domain.spacing();
+      const double         horizon = scene.horizon();
+      for (unsigned int d = 0; d < dim; ++d)
+        if (horizon < h[d] * (1. - 1e-9))
+          entry_error(
+            scene.peridynamics.where(scene.peridynamics.horizon > 0. ? "Horizon" : "Horizon ratio"),
+            "the horizon, " + number_text(horizon) + ", is shorter than the node spacing in " +
+              std::string(1, "xyz"[d]) + ", " + number_text(h[d]) +
+              ": nodes have no neighbours there.");
+    }
+
+
+    /** A steady state needs conditions that do not change in time and that fix the level of the
+     * temperature. */
+    template <int dim>
+    void check_steady(const Scene<dim> &scene)
+    {
+      const BoundaryConditions<dim> &bc = scene.boundary_conditions;
+      if (!scene.time.steady)
+        return;
+      const auto refuse_time = [](const Expression &expression, const std::string &where) {
+        if (expression.depends_on_time())
+          entry_error(where,
+                      "'" + expression.text() +
+                        "' depends on t, but 'Steady' in section 'Time' is true.");
+      };
+      refuse_time(scene.initial_and_source.source, scene.initial_and_source.where("Source"));
+      for (const SideCondition &condition : bc.dirichlet)
+        refuse_time(condition.value, bc.where("Dirichlet"));
+      for (const SideCondition &condition : bc.flux)
+        refuse_time(condition.value, bc.where("Flux"));
+      for (const SideCondition &condition : bc.convection)
+        {
+          refuse_time(condition.value, bc.where("Convection"));
+          refuse_time(condition.coefficient, bc.where("Convection"));
+        }
+      if (bc.dirichlet.empty() && bc.convection.empty())
+        entry_error(scene.time.where("Steady"),
+                    "without a side in 'Dirichlet' or 'Convection' (section 'Boundary conditions') "
+                    "the steady temperature is not determined.");
+    }
+
+
+    template <int dim>
+    void check_points_of_output(const Scene<dim> &scene)
+    {
+      if (scene.domain.shape == Shape::mesh_file)
+        return;
+      const auto check = [&](const std::vector<double> &x, const std::string &entry) {
+        Point<dim>  p;
+        std::string coordinates;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            p[d] = x[d];
+            coordinates += (d > 0 ? ", " : "") + number_text(x[d]);
+          }
+        if (!scene.domain.contains(p))
+          entry_error(scene.output.where(entry),
+                      "the point (" + coordinates + ") lies outside the body.");
+      };
+      for (const std::vector<double> &probe : scene.output.probes)
+        check(probe, "Probes");
+      if (!scene.output.line.empty())
+        {
+          check(scene.output.line.front(), "Line");
+          check(scene.output.line.back(), "Line");
+        }
+    }
+  } // namespace
+
+
+  template <int dim>
+  double Scene<dim>::horizon() const
+  {
+    if (peridynamics.horizon > 0.)
+      return peridynamics.horizon;
+    if (domain.shape == Shape::mesh_file)
+      entry_error(peridynamics.where("Horizon"), "is empty, but a mesh file needs it.");
+    const Tensor<1, dim> h        = domain.spacing();
+    double               smallest = h[0];
+    for (unsigned int d = 1; d < dim; ++d)
+      smallest = std::min(smallest, h[d]);
+    return peridynamics.horizon_ratio * smallest;
+  }
+
+
+  template <int dim>
+  std::vector<SceneSection *> Scene<dim>::sections()
+  {
+    return {&general,
+            &domain,
+            &material,
+            &initial_and_source,
+            &boundary_conditions,
+            &cracks,
+            &peridynamics,
+            &finite_elements,
+            &time,
+            &solver,
+            &output,
+            &reference,
+            &units};
+  }
+
+
+  template <int dim>
+  void Scene<dim>::parse_and_validate()
+  {
+    general.parse();
+    general.dimension = dim;
+    domain.parse();
+    material.parse();
+    initial_and_source.parse();
+    boundary_conditions.parse(domain.shape != Shape::mesh_file,
+                              domain.shape == Shape::plate_with_hole);
+    cracks.parse();
+    peridynamics.parse();
+    finite_elements.parse();
+    time.parse();
+    solver.parse();
+    output.parse(time.end_time, time.steady);
+    reference.parse();
+    units.parse();
+
+    if (domain.shape != Shape::mesh_file)
+      cracks.check_inside(domain.lower, domain.upper);
+    if (runs(*this, Model::finite_elements) && finite_elements.degree > 1 &&
+        !cracks.cracks.empty() && cracks.mesh == CrackMesh::pairs)
+      entry_error(finite_elements.where("Degree"),
+                  "found " + std::to_string(finite_elements.degree) +
+                    "; cracks with 'Mesh' in section 'Cracks' = pairs need degree 1.");
+    if (runs(*this, Model::peridynamics))
+      {
+        check_shape_for_peridynamics(*this);
+        check_horizon(*this);
+      }
+    check_steady(*this);
+    check_points_of_output(*this);
+  }
+
+
+  template struct Scene<1>;
+  template struct Scene<2>;
+  template struct Scene<3>;
+} // namespace PeriDeal

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <perideal/scene/lists.h>
+#include <perideal/scene/scene.h>
+#include <perideal/scene/scene_lines.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** The entries of each section, by its path. */
+    using DeclaredNames = std::map<std::string, std::vector<std::string>>;
+
+
+    std::string in_section(const std::string &section)
+    {
+      return section.empty() ? "outside all sections" : "in section '" + section + "'";
+    }
+
+
+    /** All that is declared at present: the scene alive, and the sections that the calling program
+     * has added to ParameterAcceptor. */
+    DeclaredNames declared_names()
+    {
+      ParameterAcceptor::declare_all_parameters();
+      std::ostringstream out;
+      ParameterAcceptor::prm.print_parameters(out, ParameterHandler::ShortPRM);
+      const SceneLines lines = scan_lines(out.str(), "declared entries");
+      DeclaredNames    names;
+      for (const auto &section : lines.sections)
+        names[section.first];
+      for (const SceneLine &line : lines.entries)
+        names[line.section].push_back(line.entry);
+      return names;
+    }
+
+
+    void check_section(const std::string   &section,
+                       const std::string   &at,
+                       const DeclaredNames &declared)
+    {
+      if (declared.count(section) > 0)
+        return;
+      std::vector<std::string> known;
+      for (const auto &entry : declared)
+        if (!entry.first.empty())
+          known.push_back(entry.first);
+      const std::string message = at + ": unknown section '" + section +
+                                  "'; known: " + join_names(known) + "." +
+                                  did_you_mean(section, known);
+      AssertThrow(false, UserError(message));
+    }
+
+
+    void check_name(const SceneLine &line, const std::string &at, const DeclaredNames &declared)
+    {
+      check_section(line.section, at, declared);
+      const std::vector<std::string> &known = declared.at(line.section);
+      if (std::find(known.begin(), known.end(), line.entry) != known.end())
+        return;
+      std::string message =
+        at + ": unknown entry '" + line.entry + "' " + in_section(line.section) + ".";
+      std::string elsewhere;
+      for (const auto &section : declared)
+        if (std::find(section.second.begin(), section.second.end(), line.entry) !=
+            section.second.end())
+          elsewhere += (elsewhere.empty() ? "" : ", ") + in_section(section.first);
+      if (!elsewhere.empty())
+        message += " There is one " + elsewhere + ".";
+      else
+        message += did_you_mean(line.entry, known);
+      AssertThrow(false, UserError(message));
+    }
+
+
+    /** Unknown names, entries given twice, and plain values (numbers, choices) of the wrong type.
+     */
+    void check_lines(const SceneText                   &text,
+                     const std::vector<SceneSection *> &sections,
+                     const DeclaredNames               &declared)
+    {
+      const SceneLines lines = scan_lines(text.text, text.file_name);
+      for (const auto &section : lines.sections)
+        if (std::none_of(lines.entries.begin(), lines.entries.end(), [&](const SceneLine &line) {
+              return line.section == section.first;
+            }))
+          check_section(section.first,
+                        text.file_name + ":" + std::to_string(section.second),
+                        declared);
+
+      std::map<std::pair<std::string, std::string>, const SceneLine *> seen;
+      for (const SceneLine &line : lines.entries)
+        {
+          const std::string at = location(text.file_name, line);
+          check_name(line, at, declared);
+          const auto inserted = seen.insert({{line.section, line.entry}, &line});
+          AssertThrow(inserted.second,
+                      UserError(at + ": the entry '" + line.entry + "' " +
+                                in_section(line.section) + " is given twice, first in line " +
+                                std::to_string(inserted.first->second->line) + ", again in line " +
+                                std::to_string(line.line) + "."));
+          for (const SceneSection *const section : sections)
+            if (section->name() == line.section)
+              for (const Entry &entry : section->entries())
+                if (entry.name == line.entry)
+                  check_plain_value(entry, line.value, section->where(entry.name));
+        }
+    }
+
+
+    /** Do something, and put file and line of the entry that a UserError names in front of its
+     * message. */
+    template <typename Action>
+    void with_location(const SceneText &text, const Action &action)
+    {
+      std::string message;
+      try
+        {
+          action();
+          return;
+        }
+      catch (const UserError &error)
+        {
+          message = error.message();
+        }
+      // messages of the scan begin with their location already
+      if (message.compare(0, 6, "Entry ") == 0)
+        {
+          std::string at    = text.file_name;
+          std::size_t first = std::string::npos;
+          for (const SceneLine &line : scan_lines(text.text, text.file_name).entries)
+            {
+              const std::size_t position =
+                message.find("'" + line.entry + "' " + in_section(line.section));
+              if (position < first)
+                {
+                  first = position;
+                  at    = location(text.file_name, line);
+                }
+            }
+          message = at + ": " + message;
+        }
+      AssertThrow(false, UserError(message));
+    }
+
+
+    template <int dim>
+    void check_text(const SceneText &text)
+    {
+      Scene<dim> scene;
+      with_location(text, [&] { check_lines(text, scene.sections(), declared_names()); });
+    }
+
+
+    /** The text of a file, read on rank 0. Collective. */
+    std::string read_on_root(const std::string &file_name, const MPI_Comm communicator)
+    {
+      int rank = 0;
+      MPI_Comm_rank(communicator, &rank);
+      std::string text, message;
+      if (rank == 0)
+        {
+          std::ifstream      in(file_name);
+          std::ostringstream all;
+          if (in && in.peek() != std::ifstream::traits_type::eof())
+            all << in.rdbuf();
+          text = all.str();
+          if (!in)
+            message = "The scene file '" + file_name + "' cannot be read.";
+          else if (trimmed(text).empty())
+            message = "The scene file '" + file_name + "' is empty.";
+          else if (text.find('\0') != std::string::npos)
+            message = "The scene file '" + file_name + "' is no text file.";
+        }
+      throw_on_all_if_any(communicator, message);
+
+      unsigned long long size = text.size();
+      MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, communicator);
+      text.resize(size);
+      MPI_Bcast(&text[0], static_cast<int>(size), MPI_CHAR, 0, communicator);
+      // the mark that some editors put at the beginning of a UTF-8 file
+      if (text.compare(0, 3, "\xEF\xBB\xBF") == 0)
+        text.erase(0, 3);
+      return text;
+    }
+  } // namespace
+
+
+  SceneText read_scene(const std::string              &file_name,
+                       const std::vector<std::string> &overrides,
+                       const MPI_Comm                  communicator)
+  {
+    SceneText scene_text;
+    scene_text.file_name = file_name;
+    scene_text.text = apply_overrides(read_on_root(file_name, communicator), file_name, overrides);
+    switch (dimension_of(scene_text))
+      {
+        case 1:
+          check_text<1>(scene_text);
+          break;
+        case 2:
+          check_text<2>(scene_text);
+          break;
+        default:
+          check_text<3>(scene_text);
+      }
+    return scene_text;
+  }
+
+
+  unsigned int dimension_of(const SceneText &text)
+  {
+    for (const SceneLine &line : scan_lines(text.text, text.file_name).entries)
+      if (line.section.empty() && line.entry == "Dimension")
+        {
+          AssertThrow(line.value == "1" || line.value == "2" || line.value == "3",
+                      UserError(location(text.file_name, line) +
+                                ": Entry 'Dimension' outside all sections: found '" + line.value +
+                                "', needs 1, 2 or 3."));
+          return static_cast<unsigned int>(line.value[0] - '0');
+        }
+    return General().dimension;
+  }
+
+
+  template <int dim>
+  void parse_scene(const SceneText &text, Scene<dim> &scene)
+  {
+    AssertThrow(dimension_of(text) == dim,
+                ExcMessage("A scene of another dimension cannot be parsed into a Scene<dim>."));
+    with_location(text, [&] {
+      check_lines(text, scene.sections(), declared_names());
+      try
+        {
+          ParameterAcceptor::prm.parse_input_from_string(text.text);
+          ParameterAcceptor::parse_all_parameters();
+        }
+      catch (const UserError &)
+        {
+          throw;
+        }
+      catch (const ExceptionBase &error)
+        {
+          // an entry that the calling program has added to ParameterAcceptor
+          std::ostringstream out;
+          error.print_info(out);
+          const std::string message = text.file_name + ": " + trimmed(out.str());
+          AssertThrow(false, UserError(message));
+        }
+      scene.parse_and_validate();
+    });
+  }
+
+
+  template void parse_scene<1>(const SceneText &, Scene<1> &);
+  template void parse_scene<2>(const SceneText &, Scene<2> &);
+  template void parse_scene<3>(const SceneText &, Scene<3> &);
+} // namespace PeriDeal

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_dgq.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <perideal/analysis/heat_flux.h>
+#include <perideal/operators/bond_operator.h>
+#include <perideal/operators/fem_operator.h>
+#include <perideal/simulation/model_run.h>
+
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    std::string to_text(const double x)
+    {
+      std::ostringstream out;
+      out << x;
+      return out.str();
+    }
+
+
+    template <int dim>
+    OutputField vector_field(const std::string &name, VectorField<dim> &components)
+    {
+      OutputField field;
+      field.name = name;
+      for (Vector &component : components)
+        {
+          component.update_ghost_values();
+          field.components.push_back(std::move(component));
+        }
+      return field;
+    }
+
+
+    template <int dim>
+    class FEMRun : public ModelRun<dim>
+    {
+    public:
+      FEMRun(const Triangulation<dim> &mesh, const Scene<dim> &scene)
+        : scene(scene)
+        , element(scene.finite_elements.degree)
+        , handler(mesh)
+      {
+        {
+          Timings::Scope scope(this->timings, "unknowns");
+          handler.distribute_dofs(element);
+          if (scene.domain.shape != Shape::mesh_file && element.degree == 1)
+            number_along_lattice(handler, scene.domain);
+        }
+        Timings::Scope scope(this->timings, "operator");
+        fem = std::make_unique<FEMOperator<dim>>(handler, scene);
+      }
+
+      std::string name() const override
+      {
+        return to_string(Model::finite_elements);
+      }
+
+      const DoFHandler<dim> &dofs() const override
+      {
+        return handler;
+      }
+
+      const Nodes<dim> *nodes() const override
+      {
+        return nullptr;
+      }
+
+      const Operator &op() const override
+      {
+        return *fem;
+      }
+
+      void set_initial_value(Vector &u) const override
+      {
+        // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for higher degrees, which it would spoil.
+        const bool                           project = element.degree == 1;
+        FEValues<dim>                        values(element,
+                             project ? Quadrature<dim>(QGauss<dim>(2)) :
+                                                              Quadrature<dim>(element.get_unit_support_points()),
+                             update_values | update_quadrature_points | update_JxW_values);
+        Vector                               weight(u);
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        u      = 0.;
+        weight = 0.;
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              values.reinit(cell);
+              cell->get_dof_indices(indices);
+              for (const unsigned int q : values.quadrature_point_indices())
+                for (unsigned int i = 0; i < indices.size(); ++i)
+                  {
+                    const double share = project ? values.shape_value(i, q) * values.JxW(q) :
+                                                   (i == q ? 1. : 0.);
+                    if (share == 0.)
+                      continue;
+                    weight(indices[i]) += share;
+                    u(indices[i]) += share * scene.initial_and_source.initial_value.value(
+                                               values.quadrature_point(q));
+                  }
+            }
+        u.compress(VectorOperation::add);
+        weight.compress(VectorOperation::add);
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          u.local_element(i) /= weight.local_element(i);
+      }
+
+      std::vector<OutputField> derived_fields(const Vector &u, const double) const override
+      {
+        VectorField<dim> flux;
+        for (Vector &component : flux)
+          fem->initialize_vector(component);
+        element_heat_flux<dim>(handler, scene.material, u, flux);
+        std::vector<OutputField> fields;
+        fields.push_back(vector_field<dim>("heat_flux", flux));
+        return fields;
+      }
+
+      Difference error(const Vector                                    &u,
+                       const std::function<double(const Point<dim> &)> &exact) const override
+      {
+        return element_difference(handler, u, exact);
+      }
+
+      std::vector<std::pair<std::string, std::string>> settings() const override
+      {
+        std::vector<std::pair<std::string, std::string>> list{
+          {"element", "Q" + std::to_string(element.degree)},
+          {"capacity", scene.finite_elements.consistent_capacity ? "consistent" : "lumped"}};
+        if (!scene.cracks.cracks.empty())
+          list.emplace_back("cracks",
+                            scene.cracks.mesh == CrackMesh::pairs ? "pairs" :
+                            scene.cracks.mesh == CrackMesh::faces ? "faces" :
+                                                                    "removed");
+        return list;
+      }
+
+    private:
+      const Scene<dim>                 &scene;
+      FE_Q<dim>                         element;
+      DoFHandler<dim>                   handler;
+      std::unique_ptr<FEMOperator<dim>> fem;
+    };
+
+
+    template <int dim>
+    class BondRun : public ModelRun<dim>
+    {
+    public:
+      BondRun(const Triangulation<dim> &mesh, const Scene<dim> &scene)
+        : scene(scene)
+        , handler(mesh)
+      {
+        {
+          Timings::Scope scope(this->timings, "unknowns");
+          if (scene.domain.nodes == NodePlacement::vertices)
+            handler.distribute_dofs(FE_Q<dim>(1));
+          else
+            handler.distribute_dofs(FE_DGQ<dim>(0));
+          if (scene.domain.shape != Shape::mesh_file)
+            number_along_lattice(handler, scene.domain);
+          node_set = std::make_unique<Nodes<dim>>(handler,
+                                                  scene.domain,
+                                                  scene.cracks,
+                                                  scene.peridynamics.nodal_volume);
+        }
+        Timings::Scope scope(this->timings, "operator");
+        bonds = std::make_unique<BondOperator<dim>>(*node_set, scene);
+      }
+
+      std::string name() const override
+      {
+        return to_string(Model::peridynamics);
+      }
+
+      const DoFHandler<dim> &dofs() const override
+      {
+        return handler;
+      }
+
+      const Nodes<dim> *nodes() const override
+      {
+        return node_set.get();
+      }
+
+      const Operator &op() const override
+      {
+        return *bonds;
+      }
+
+      void set_initial_value(Vector &u) const override
+      {
+        for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+          u.local_element(i) = scene.initial_and_source.initial_value.value(node_set->position(i));
+      }
+
+      std::vector<OutputField> derived_fields(const Vector &u, const double t) const override
+      {
+        VectorField<dim>    two_sided, one_sided;
+        std::vector<double> outside;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            bonds->initialize_vector(two_sided[d]);
+            bonds->initialize_vector(one_sided[d]);
+          }
+        bonds->fictitious_values(u, t, outside);
+        bond_heat_flux<dim>(bonds->families(), u, outside, two_sided, one_sided);
+        std::array<Vector, 1> volume, cut;
+        bonds->initialize_vector(volume[0]);
+        bonds->initialize_vector(cut[0]);
+        for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+          volume[0].local_element(i) = node_set->volume(i);
+        cut_fraction(bonds->families(), cut[0]);
+        std::vector<OutputField> fields;
+        fields.push_back(vector_field<dim>("heat_flux", two_sided));
+        fields.push_back(vector_field<dim>("heat_flux_one_sided", one_sided));
+        fields.push_back(vector_field<1>("node_volume", volume));
+        fields.push_back(vector_field<1>("cut_fraction", cut));
+        return fields;
+      }
+
+      Difference error(const Vector                                    &u,
+                       const std::function<double(const Point<dim> &)> &exact) const override
+      {
+        Vector expected;
+        bonds->initialize_vector(expected);
+        for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+          expected.local_element(i) = exact(node_set->position(i));
+        return nodal_difference(u, expected, [&](const unsigned int i) {
+          return node_set->volume(i);
+        });
+      }
+
+      std::vector<std::pair<std::string, std::string>> settings() const override
+      {
+        static const char *const kernels[]    = {"constant", "conical", "gaussian"};
+        static const char *const fractions[]  = {"none", "linear", "exact"};
+        static const char *const treatments[] = {"none",
+                                                 "layer",
+                                                 "fictitious mirror",
+                                                 "fictitious constant"};
+        static const char *const fluxes[]     = {"natural", "extrapolation", "layer extrapolation"};
+        const Peridynamics      &p            = scene.peridynamics;
+        std::vector<std::pair<std::string, std::string>> list{
+          {"nodes", scene.domain.nodes == NodePlacement::vertices ? "vertices" : "cell centers"},
+          {"horizon", to_text(scene.horizon())},
+          {"m", to_text(scene.horizon() / node_set->smallest_spacing())},
+          {"kernel",
+           std::string(kernels[static_cast<int>(p.kernel)]) + ", exponent " +
+             std::to_string(p.kernel_exponent)},
+          {"volume fraction", fractions[static_cast<int>(p.volume_fraction)]},
+          {"calibration", p.calibration == Calibration::discrete ? "discrete" : "analytic"},
+          {"self term", p.self_term == SelfTerm::none ? "none" : "paper"},
+          {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
+          {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},
+          {"surface correction",
+           p.surface_correction == SurfaceCorrection::none ? "none" : "crack scaling"},
+          {"operator form", bonds->form_note()}};
+        return list;
+      }
+
+    private:
+      const Scene<dim>                  &scene;
+      DoFHandler<dim>                    handler;
+      std::unique_ptr<Nodes<dim>>        node_set;
+      std::unique_ptr<BondOperator<dim>> bonds;
+    };
+  } // namespace
+
+
+  template <int dim>
+  std::unique_ptr<ModelRun<dim>> make_model_run(const Model               model,
+                                                const Triangulation<dim> &mesh,
+                                                const Scene<dim>         &scene)
+  {
+    std::unique_ptr<ModelRun<dim>> run;
+    if (model == Model::finite_elements)
+      run = std::make_unique<FEMRun<dim>>(mesh, scene);
+    else
+      run = std::make_unique<BondRun<dim>>(mesh, scene);
+    run->op().initialize_vector(run->solution);
+    run->set_initial_value(run->solution);
+    run->op().distribute(run->solution, 0.);
+    return run;
+  }
+
+  template std::unique_ptr<ModelRun<1>> make_model_run(const Model,
+                                                       const Triangulation<1> &,
+                                                       const Scene<1> &);
+  template std::unique_ptr<ModelRun<2>> make_model_run(const Model,
+                                                       const Triangulation<2> &,
+                                                       const Scene<2> &);
+  template std::unique_ptr<ModelRun<3>> make_model_run(const Model,
+                                                       const Triangulation<3> &,
+                                                       const Scene<3> &);
+} // namespace PeriDeal

@@ -1,0 +1,448 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/mesh/mesh_builder.h>
+#include <perideal/operators/bond_operator.h>
+#include <perideal/simulation/simulation.h>
+#include <perideal/solvers/linear_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "result_record.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  Simulation<dim>::Simulation(const Scene<dim> &scene,
+                              const SceneText  &text,
+                              const MPI_Comm    communicator,
+                              const bool        quiet)
+    : scene(scene)
+    , text(text)
+    , communicator(communicator)
+    , progress(communicator, quiet)
+    , record(std::make_unique<ResultRecord>())
+  {}
+
+
+  template <int dim>
+  Simulation<dim>::~Simulation()
+  {}
+
+
+  template <int dim>
+  std::vector<double> Simulation<dim>::output_times() const
+  {
+    if (scene.time.steady)
+      return {0.};
+    std::vector<double> times = scene.output.write_times;
+    if (times.empty() || times.back() < scene.time.end_time)
+      times.push_back(scene.time.end_time);
+    return times;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::build()
+  {
+    const unsigned int n_proc = Utilities::MPI::n_mpi_processes(communicator);
+    progress.line(scene.general.title + "  (" + text.file_name + ", " + std::to_string(n_proc) +
+                  (n_proc == 1 ? " process)" : " processes)"));
+    {
+      Timings::Scope scope(timings, "mesh");
+      mesh = build_mesh(scene.domain, scene.cracks, communicator, record->notes);
+    }
+    progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
+    check_sides();
+    for (const Model model : scene.general.models)
+      {
+        models.push_back(make_model_run(model, *mesh, scene));
+        describe(*models.back());
+      }
+    make_reference();
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::check_sides() const
+  {
+    if (scene.domain.shape != Shape::mesh_file)
+      return;
+    std::vector<unsigned int> present(256, 0), all(256);
+    for (const auto &cell : mesh->active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() < 256)
+            present[cell->face(f)->boundary_id()] = 1;
+    Utilities::MPI::max(present, communicator, all);
+    std::vector<std::string> known;
+    for (unsigned int id = 0; id < all.size(); ++id)
+      if (all[id] > 0 && id != crack_boundary_id)
+        known.push_back(std::to_string(id));
+    const auto &conditions = scene.boundary_conditions;
+    for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})
+      for (const SideCondition &condition : *list)
+        AssertThrow(std::find(known.begin(), known.end(), condition.name) != known.end(),
+                    UserError("Section 'Boundary conditions' names the side '" + condition.name +
+                              "', which the mesh '" + scene.domain.mesh_file +
+                              "' does not have. Its boundary ids are: " + join_names(known) + "."));
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::describe(const ModelRun<dim> &model) const
+  {
+    const OperatorSize size = model.op().size();
+    std::string        line = model.name() + ": " + readable_count(size.unknowns) + " unknowns";
+    if (size.bonds > 0)
+      line += ", " + readable_count(size.bonds) + " bonds";
+    if (size.nonzeros > 0)
+      line += ", " + readable_count(size.nonzeros) +
+              (size.form == "lattice" ? " stored corrections" : " stored numbers");
+    const double memory = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
+    progress.line(line + ", " + readable_bytes(memory));
+    for (const auto &[name, value] : model.settings())
+      if (name == "operator form")
+        progress.line("  form: " + value);
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::make_reference()
+  {
+    if (scene.reference.solution.empty())
+      return;
+    ExactSolutionContext context;
+    context.dim = dim;
+    context.lower.resize(dim);
+    context.upper.resize(dim);
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        context.lower[d] = scene.domain.lower[d];
+        context.upper[d] = scene.domain.upper[d];
+      }
+    const Point<dim> middle = scene.domain.lower + 0.5 * (scene.domain.upper - scene.domain.lower);
+    context.conductivity    = scene.material.conductivity.value(middle);
+    context.storage         = scene.material.storage(middle);
+    context.horizon         = scene.horizon();
+    context.kernel          = scene.peridynamics.kernel;
+    context.exponent        = scene.peridynamics.kernel_exponent;
+    if (scene.domain.shape != Shape::mesh_file)
+      context.family = lattice_terms(lattice_family<dim>(scene.domain.spacing(),
+                                                         scene.horizon(),
+                                                         scene.peridynamics.kernel,
+                                                         scene.peridynamics.kernel_exponent,
+                                                         scene.peridynamics.volume_fraction,
+                                                         scene.peridynamics.calibration),
+                                     scene.domain.spacing(),
+                                     context.conductivity);
+    exact = make_exact_solution(scene.reference.solution, context);
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::make_steppers()
+  {
+    if (scene.time.steady)
+      return;
+    StepperOptions options;
+    options.time_step        = scene.time.time_step;
+    options.tolerance        = scene.time.tolerance;
+    options.solver_tolerance = scene.solver.tolerance;
+    options.max_iterations   = scene.solver.max_iterations;
+    for (auto &model : models)
+      {
+        Timings::Scope scope(model->timings, "stepper");
+        model->stepper = make_stepper(scene.time.stepper, model->op(), options);
+        std::ostringstream line;
+        line << model->name() << ": stepper " << model->stepper->name();
+        if (model->stepper->current_step() > 0.)
+          line << ", step " << model->stepper->current_step();
+        progress.line(line.str());
+      }
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::make_evaluators()
+  {
+    const auto make =
+      [&](const std::vector<std::vector<double>> &points, const std::string &entry, auto &readers) {
+        if (!points.empty())
+          for (const auto &model : models)
+            readers.push_back(std::make_unique<PointEvaluator<dim>>(model->dofs(),
+                                                                    model->nodes(),
+                                                                    scene.cracks,
+                                                                    points,
+                                                                    entry));
+      };
+    make(scene.output.probes, "Probes", probe_readers);
+    make(scene.output.line, "Line", line_readers);
+    probes = std::make_unique<PointTable>(scene.output.probes, dim);
+    line   = std::make_unique<PointTable>(scene.output.line, dim);
+    for (const auto &model : models)
+      {
+        std::string series = model->name();
+        std::replace(series.begin(), series.end(), ' ', '_');
+        writers.push_back(std::make_unique<FieldWriter<dim>>(model->dofs(),
+                                                             scene.general.output_directory,
+                                                             series));
+      }
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::advance_to(const double t)
+  {
+    for (auto &model : models)
+      {
+        Timings::Scope scope(model->timings, scene.time.steady ? "solve" : "time stepping");
+        if (scene.time.steady)
+          model->steady_iterations = solve_steady(model->op(),
+                                                  model->solution,
+                                                  0.,
+                                                  scene.solver.tolerance,
+                                                  scene.solver.max_iterations);
+        else if (t > now)
+          model->stepper->advance(model->solution, now, t);
+      }
+    now = t;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::run()
+  {
+    prepare_directory(scene.general.output_directory, communicator);
+    build();
+    make_steppers();
+    {
+      Timings::Scope scope(timings, "output");
+      make_evaluators();
+    }
+    const std::vector<double> times = output_times();
+    if (scene.time.steady)
+      progress.line("steady state");
+    progress.begin("time");
+    for (const double t : times)
+      {
+        advance_to(t);
+        progress.update(scene.time.steady ? 1. : t / scene.time.end_time);
+        Timings::Scope scope(timings, "output");
+        write_output(t);
+      }
+    progress.end();
+    for (const std::string &note : record->notes)
+      progress.note(note);
+    write_summary();
+    progress.line("Results: " + scene.general.output_directory);
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::write_output(const double t)
+  {
+    for (auto &model : models)
+      model->solution.update_ghost_values();
+    add_points(t);
+    add_errors(t);
+    compare_models(t);
+    write_fields(t);
+    for (auto &model : models)
+      {
+        model->solution.set_ghost_state(false);
+        add_totals(t, *model);
+      }
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::add_points(const double t)
+  {
+    const auto add =
+      [&](const std::vector<std::vector<double>> &points, const auto &readers, PointTable &table) {
+        for (std::size_t m = 0; m < readers.size(); ++m)
+          table.add(t, models[m]->name(), readers[m]->evaluate(models[m]->solution));
+        if (exact && !points.empty())
+          {
+            std::vector<double> values;
+            for (const auto &point : points)
+              values.push_back(exact->value(point.data(), t));
+            table.add(t, "exact", values);
+          }
+      };
+    add(scene.output.probes, probe_readers, *probes);
+    add(scene.output.line, line_readers, *line);
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::add_errors(const double t)
+  {
+    if (!exact)
+      return;
+    for (const auto &model : models)
+      {
+        const Difference error = model->error(model->solution, [&](const Point<dim> &p) {
+          double x[dim];
+          for (unsigned int d = 0; d < dim; ++d)
+            x[d] = p[d];
+          return exact->value(x, t);
+        });
+        record->errors[model->name()]["relative l2"].push_back({t, error.relative_l2});
+        record->errors[model->name()]["maximum"].push_back({t, error.maximum});
+      }
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::compare_models(const double t)
+  {
+    const ModelRun<dim> *fem = nullptr, *pd = nullptr;
+    for (const auto &model : models)
+      (model->nodes() == nullptr ? fem : pd) = model.get();
+    if (fem == nullptr || pd == nullptr)
+      return;
+    pd->op().initialize_vector(difference);
+    interpolate_to(fem->dofs(), fem->solution, pd->dofs(), difference);
+    const Difference size = nodal_difference(pd->solution, difference, [&](const unsigned int i) {
+      return pd->nodes()->volume(i);
+    });
+    record->comparison["relative l2"].push_back({t, size.relative_l2});
+    record->comparison["maximum"].push_back({t, size.maximum});
+    difference.sadd(-1., 1., pd->solution);
+    difference.update_ghost_values();
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::write_fields(const double t)
+  {
+    if (!scene.output.vtu && !scene.output.hdf5)
+      return;
+    nlohmann::ordered_json files = nlohmann::ordered_json::object();
+    for (std::size_t m = 0; m < models.size(); ++m)
+      {
+        std::vector<OutputField> fields{{"temperature", {models[m]->solution}}};
+        fields[0].components[0].update_ghost_values();
+        for (OutputField &field : models[m]->derived_fields(models[m]->solution, t))
+          fields.push_back(std::move(field));
+        if (models[m]->nodes() != nullptr && difference.size() > 0)
+          {
+            fields.push_back({"peridynamics_minus_finite_elements", {difference}});
+            fields.back().components[0].update_ghost_values();
+          }
+        const std::string name = writers[m]->write(fields, t, scene.output.vtu, scene.output.hdf5);
+        if (!name.empty())
+          files[models[m]->name()] = name;
+      }
+    record->fields.push_back({{"time", t}, {"files", files}});
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::add_totals(const double t, ModelRun<dim> &model)
+  {
+    const Balance balance = model.op().balance(model.solution, t, scene.time.steady);
+    const auto    row     = [&](const std::string &quantity, const double value) {
+      record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
+                        full_precision(value) + "\n";
+    };
+    row("heat content", balance.content);
+    for (const auto &[side, value] : balance.sides)
+      row("heat flow through " + side, value);
+    row("heat flow from sources", balance.sources);
+    row("rate of storage", balance.stored);
+    record->balances[model.name()] = {
+      {"boundary flux", balance.sides},
+      {"heat balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}}};
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::dry_run()
+  {
+    build();
+    make_steppers();
+    for (const auto &model : models)
+      {
+        std::ostringstream out;
+        out << model->name() << ":";
+        progress.line(out.str());
+        if (scene.time.steady)
+          {
+            progress.line("  steady: one linear solve, about 20 iterations");
+            continue;
+          }
+        const Spectrum spectrum = model->op().spectrum();
+        out.str("");
+        out << "  largest eigenvalue: sharp bound " << spectrum.sharp << ", safe bound "
+            << spectrum.safe << "\n"
+            << "  stable steps (sharp / safe): euler " << stable_step("euler", spectrum.sharp)
+            << " / " << stable_step("euler", spectrum.safe) << ", rk4 "
+            << stable_step("rk4", spectrum.sharp) << " / " << stable_step("rk4", spectrum.safe)
+            << "\n"
+            << "  stepper: " << model->stepper->name();
+        progress.line(out.str());
+        const double n = expected_applications(*model);
+        if (n > 0.)
+          progress.line("  estimated: " + readable_count(static_cast<unsigned long long>(n)) +
+                        " operator applications, " +
+                        readable_duration(n * time_of_application(*model)));
+      }
+    for (const std::string &note : record->notes)
+      progress.note(note);
+    progress.line("The scene is valid. Nothing was computed.");
+  }
+
+
+  template <int dim>
+  double Simulation<dim>::expected_applications(const ModelRun<dim> &model) const
+  {
+    double n = 0., t = 0.;
+    for (const double next : output_times())
+      {
+        n += next > t ? model.stepper->expected_applications(next - t) : 0.;
+        t = next;
+      }
+    return n;
+  }
+
+
+  template <int dim>
+  double Simulation<dim>::time_of_application(const ModelRun<dim> &model) const
+  {
+    Vector x, y;
+    model.op().initialize_vector(x);
+    model.op().initialize_vector(y);
+    Timings                trial;
+    constexpr unsigned int n_trials = 5;
+    model.op().apply(y, x);
+    for (unsigned int k = 0; k < n_trials; ++k)
+      {
+        Timings::Scope scope(trial, "apply");
+        model.op().apply(y, x);
+      }
+    return trial.total() / n_trials;
+  }
+
+#define PERIDEAL_INSTANTIATE(dim)                          \
+  template Simulation<dim>::Simulation(const Scene<dim> &, \
+                                       const SceneText &,  \
+                                       const MPI_Comm,     \
+                                       const bool);        \
+  template Simulation<dim>::~Simulation();                 \
+  template void Simulation<dim>::run();                    \
+  template void Simulation<dim>::dry_run();
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <perideal/simulation/simulation.h>
+
+#include <sstream>
+
+#include "result_record.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    using json = nlohmann::ordered_json;
+
+    /** The comment paragraphs at the top of a scene file, without the comment marks. */
+    std::string teaching_text(const std::string &text)
+    {
+      std::istringstream lines(text);
+      std::string        line, result;
+      while (std::getline(lines, line))
+        {
+          const std::size_t first = line.find_first_not_of(" \t");
+          if (first == std::string::npos)
+            {
+              if (!result.empty())
+                result += "\n";
+              continue;
+            }
+          if (line[first] != '#')
+            break;
+          const std::size_t begin = line.find_first_not_of("# \t", first);
+          const std::string words = begin == std::string::npos ? "" : line.substr(begin);
+          if (words.rfind("SPDX", 0) == 0 || words.rfind("Copyright", 0) == 0)
+            continue;
+          result += words + "\n";
+        }
+      while (!result.empty() && result.back() == '\n')
+        result.pop_back();
+      return result;
+    }
+
+
+    template <int dim>
+    std::vector<double> coordinates(const Point<dim> &p)
+    {
+      std::vector<double> list;
+      for (unsigned int d = 0; d < dim; ++d)
+        list.push_back(p[d]);
+      return list;
+    }
+
+
+    /** One sentence per side on what holds there. */
+    template <int dim>
+    json describe_sides(const Scene<dim> &scene)
+    {
+      const auto &conditions = scene.boundary_conditions;
+      json        sides      = json::object();
+      if (scene.domain.shape != Shape::mesh_file)
+        for (unsigned int k = 0; k < 2 * dim; ++k)
+          sides[box_side_names()[k]] = "insulated";
+      const auto add = [&](const std::string &name, const std::string &text) {
+        if (sides.contains(name) && sides[name] != "insulated")
+          sides[name] = sides[name].template get<std::string>() + ", " + text;
+        else
+          sides[name] = text;
+      };
+      for (const SideCondition &c : conditions.dirichlet)
+        add(c.name, "Dirichlet " + c.value.text());
+      for (const SideCondition &c : conditions.flux)
+        add(c.name,
+            c.value.is_constant() && c.value.value(Point<dim>()) == 0. ? "insulated" :
+                                                                         "flux " + c.value.text());
+      for (const SideCondition &c : conditions.convection)
+        add(c.name, "convection " + c.coefficient.text() + ", " + c.value.text());
+      for (const auto side : conditions.symmetry)
+        add(box_side_names()[side], "symmetry");
+      return sides;
+    }
+
+
+    template <int dim>
+    json describe_model(const ModelRun<dim> &model,
+                        const ResultRecord  &record,
+                        const MPI_Comm       communicator)
+    {
+      const OperatorSize size = model.op().size();
+      json               entry;
+      entry["unknowns"] = size.unknowns;
+      if (size.bonds > 0)
+        entry["bonds"] = size.bonds;
+      entry["nonzeros"] = size.nonzeros;
+      if (model.stepper)
+        {
+          entry["stepper"]        = model.stepper->name();
+          entry["steps"]          = model.stepper->cost().steps;
+          entry["rejected steps"] = model.stepper->cost().rejected;
+          entry["iterations"]     = model.stepper->cost().iterations;
+          if (model.stepper->current_step() > 0.)
+            entry["time step"] = model.stepper->current_step();
+          const Spectrum    spectrum = model.op().spectrum();
+          const std::string method   = model.stepper->name() == "rk4" ? "rk4" : "euler";
+          entry["stable step"]       = {{"sharp", stable_step(method, spectrum.sharp)},
+                                        {"safe", stable_step(method, spectrum.safe)},
+                                        {"method", method}};
+        }
+      else
+        {
+          entry["stepper"]    = "steady";
+          entry["steps"]      = 0;
+          entry["iterations"] = model.steady_iterations;
+        }
+      entry["operator applications"] = model.op().n_applications();
+      entry["operator form"]         = size.form;
+      json settings                  = json::object();
+      for (const auto &[name, value] : model.settings())
+        settings[name] = value;
+      entry["settings"]  = settings;
+      entry["wall time"] = model.timings.all();
+      entry["memory"]    = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
+      Utilities::System::MemoryStats stats;
+      Utilities::System::get_memory_stats(stats);
+      entry["peak memory"] =
+        1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
+      if (record.errors.contains(model.name()))
+        entry["errors"] = record.errors.at(model.name());
+      entry.update(record.balances.at(model.name()));
+      return entry;
+    }
+  } // namespace
+
+
+  template <int dim>
+  void Simulation<dim>::write_summary()
+  {
+    json summary;
+    summary["title"]                  = scene.general.title;
+    summary["text"]                   = teaching_text(text.text);
+    summary["scene file"]             = text.file_name;
+    summary["program"]                = std::string("PeriDeal ") + PERIDEAL_VERSION;
+    summary["dimension"]              = dim;
+    summary["processes"]              = Utilities::MPI::n_mpi_processes(communicator);
+    summary["units"]                  = {{"length", scene.units.length},
+                                         {"time", scene.units.time},
+                                         {"temperature", scene.units.temperature}};
+    static const char *const shapes[] = {"box", "plate with hole", "mesh file"};
+    summary["domain"]                 = {{"lower", coordinates(scene.domain.lower)},
+                                         {"upper", coordinates(scene.domain.upper)},
+                                         {"shape", shapes[static_cast<int>(scene.domain.shape)]}};
+    summary["cells"]                  = mesh->n_global_active_cells();
+    summary["cracks"]                 = json::array();
+    for (const auto &crack : scene.cracks.cracks)
+      {
+        json corners = json::array();
+        for (const auto &corner : crack)
+          corners.push_back(coordinates(corner));
+        summary["cracks"].push_back(corners);
+      }
+    summary["sides"]       = describe_sides(scene);
+    summary["steady"]      = scene.time.steady;
+    summary["end time"]    = scene.time.steady ? 0. : scene.time.end_time;
+    summary["write times"] = output_times();
+    summary["reference"]   = scene.reference.solution;
+    summary["notes"]       = record->notes;
+    summary["fields"]      = record->fields;
+    summary["wall time"]   = timings.all();
+    summary["memory of mesh"] =
+      Utilities::MPI::sum(static_cast<double>(mesh->memory_consumption()), communicator);
+    for (const auto &model : models)
+      summary["models"][model->name()] = describe_model(*model, *record, communicator);
+    if (!record->comparison.empty())
+      summary["comparison"] = record->comparison;
+
+    std::string message;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      {
+        const std::string directory = scene.general.output_directory + "/";
+        if (!scene.output.probes.empty())
+          write_file(directory + "probes.csv", probes->text());
+        if (!scene.output.line.empty())
+          write_file(directory + "line.csv", line->text());
+        write_file(directory + "totals.csv", record->totals);
+        write_file(directory + "scene.prm", scene_with_defaults());
+        write_file(directory + "summary.json", summary.dump(2) + "\n");
+      }
+  }
+
+  template void Simulation<1>::write_summary();
+  template void Simulation<2>::write_summary();
+  template void Simulation<3>::write_summary();
+} // namespace PeriDeal

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/solvers/linear_solver.h>
+#include <perideal/solvers/step_tools.h>
+#include <perideal/solvers/stepper.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    /** What the implicit methods share: the solve for a stage, and fixed or adaptive steps around a method's single step. */
+    class ImplicitStepper : public Stepper
+    {
+    public:
+      ImplicitStepper(const Operator &op, const StepperOptions &options, const std::string &method)
+        : op(op)
+        , method(method)
+        , fixed(options.time_step > 0.)
+        , dt(fixed ? options.time_step : 0.)
+        , tolerance(options.tolerance)
+        , solver(op, options.solver_tolerance, options.max_iterations)
+      {
+        for (Vector *v : {&next, &error, &residual, &change, &offset})
+          op.initialize_vector(*v);
+      }
+
+      std::string name() const override
+      {
+        return method;
+      }
+
+      double current_step() const override
+      {
+        return dt;
+      }
+
+      double expected_applications(const double time_span) const override
+      {
+        return fixed ? 15. * static_cast<double>(n_equal_steps(time_span, dt)) : 0.;
+      }
+
+      void advance(Vector &u, const double t_start, const double t_end) override
+      {
+        double                   t = t_start;
+        const unsigned long long n = fixed ? n_equal_steps(t_end - t, dt) : 0;
+        if (!fixed && dt == 0.)
+          dt = std::min(1e-3 * (t_end - t), 2. / op.spectrum().sharp);
+        for (unsigned long long k = 0; fixed ? k < n : t < t_end; ++k)
+          {
+            const bool   lands  = fixed ? k + 1 == n : t + dt * (1. + 1e-10) >= t_end;
+            const double h      = fixed ? (t_end - t_start) / static_cast<double>(n) :
+                                  lands ? t_end - t :
+                                          std::min(dt, 0.5 * (t_end - t) + 0.5 * dt);
+            const double t_new  = lands ? t_end : fixed ? t_start + (k + 1) * h : t + h;
+            const int    order  = step(u, t, h);
+            double       growth = 1.;
+            if (!fixed && order > 0)
+              {
+                const double level = std::max(capacity_norm(op, u), capacity_norm(op, next));
+                const double size  = level == 0. ? 0. :
+                                                   capacity_norm(op, error) / (tolerance * level);
+                AssertThrow(std::isfinite(size), UserError(unstable_message(t)));
+                growth = std::clamp(0.85 * std::pow(std::max(size, 1e-12), -1. / order), 0.2, 3.);
+                if (size > 1.)
+                  {
+                    ++spent.rejected;
+                    dt = h * std::min(growth, 0.9);
+                    continue;
+                  }
+              }
+            accept(u, h);
+            u = next;
+            t = t_new;
+            ++spent.steps;
+            if (!fixed)
+              dt = lands ? std::max(dt, h * growth) : h * growth;
+          }
+        op.distribute(u, t_end);
+        check_finite(u, method, t_end);
+      }
+
+    protected:
+      /** One step of size h from u at t into `next`; the local error estimate into `error`. Returns the order of the estimate in h, 0 if there is none yet. */
+      virtual int step(const Vector &u, const double t, const double h) = 0;
+
+      /** The step is good: keep what the next one needs. u is still the old value. */
+      virtual void accept(const Vector &, const double) {}
+
+      /** Solve C (U - w) = s (f(t) - K U): the start of the iteration is in U, w and s > 0 belong to the method. */
+      void solve_stage(const Vector &w, const double s, const double t, Vector &U)
+      {
+        op.distribute(U, t);
+        op.residual(residual, U, t);
+        for (unsigned int i = 0; i < w.locally_owned_size(); ++i)
+          offset.local_element(i) = w.local_element(i) - U.local_element(i);
+        op.apply_capacity(change, offset);
+        op.clear_constrained(change);
+        residual.sadd(s, 1., change);
+        change = 0.;
+        spent.iterations += solver.solve(1., s, change, residual);
+        U += change;
+        op.distribute(U, t);
+      }
+
+      /** SDIRK2 (gamma = 1 - 1/sqrt 2, L-stable) into `next`; the stage rates into k1, k2. */
+      void sdirk2(const Vector &u, const double t, const double h, Vector &k1, Vector &k2)
+      {
+        const double gamma = 1. - std::sqrt(0.5);
+        next               = u;
+        solve_stage(u, gamma * h, t + gamma * h, next);
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          {
+            k1.local_element(i) = (next.local_element(i) - u.local_element(i)) / (gamma * h);
+            offset_w(i, u, k1, (1. - gamma) * h);
+          }
+        solve_stage(base, gamma * h, t + h, next);
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          k2.local_element(i) = (next.local_element(i) - base.local_element(i)) / (gamma * h);
+      }
+
+      void prepare_base()
+      {
+        op.initialize_vector(base);
+      }
+
+      void offset_w(const unsigned int i, const Vector &u, const Vector &k, const double factor)
+      {
+        base.local_element(i) = u.local_element(i) + factor * k.local_element(i);
+      }
+
+      const Operator &op;
+      Vector          next, error, base;
+
+    private:
+      std::string unstable_message(const double t) const
+      {
+        std::ostringstream message;
+        message << "The run became unstable: stepper '" << method
+                << "' produced values that are not finite near t = " << t
+                << ". Check loads and boundary values in time.";
+        return message.str();
+      }
+
+      const std::string method;
+      const bool        fixed;
+      double            dt;
+      const double      tolerance;
+      LinearSolver      solver;
+      Vector            residual, change, offset;
+    };
+
+
+    /** Two implicit stages with the same matrix, L-stable, embedded first order solution. */
+    class SDIRK2 : public ImplicitStepper
+    {
+    public:
+      SDIRK2(const Operator &op, const StepperOptions &options)
+        : ImplicitStepper(op, options, "sdirk2")
+      {
+        prepare_base();
+        op.initialize_vector(k1);
+        op.initialize_vector(k2);
+      }
+
+    private:
+      int step(const Vector &u, const double t, const double h) override
+      {
+        sdirk2(u, t, h, k1, k2);
+        const double gamma = 1. - std::sqrt(0.5);
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          error.local_element(i) = gamma * h * (k2.local_element(i) - k1.local_element(i));
+        return 2;
+      }
+
+      Vector k1, k2;
+    };
+
+
+    /**
+     * Two-step methods that start with SDIRK2. The local error is estimated from the difference to an explicit predictor through the last three
+     * values.
+     */
+    class TwoStep : public ImplicitStepper
+    {
+    public:
+      TwoStep(const Operator &op, const StepperOptions &options, const std::string &method)
+        : ImplicitStepper(op, options, method)
+      {
+        prepare_base();
+        for (Vector *v : {&previous, &oldest, &k1, &k2})
+          op.initialize_vector(*v);
+      }
+
+      void restart() override
+      {
+        n_known = 0;
+      }
+
+    protected:
+      int step(const Vector &u, const double t, const double h) override
+      {
+        if (n_known < 1)
+          {
+            sdirk2(u, t, h, k1, k2);
+            const double gamma = 1. - std::sqrt(0.5);
+            for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+              error.local_element(i) = gamma * h * (k2.local_element(i) - k1.local_element(i));
+            return 2;
+          }
+        method_step(u, t, h);
+        if (n_known < 2)
+          {
+            error = 0.;
+            return 3;
+          }
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          error.local_element(i) = error_factor(h) * (next.local_element(i) - predicted(i, u, h));
+        return 3;
+      }
+
+      void accept(const Vector &u, const double h) override
+      {
+        oldest.swap(previous);
+        previous   = u;
+        h_oldest   = h_previous;
+        h_previous = h;
+        n_known    = std::min(n_known + 1, 2);
+      }
+
+      virtual void   method_step(const Vector &u, const double t, const double h) = 0;
+      virtual double error_factor(const double h) const                           = 0;
+
+      /** Value at t + h of the parabola through the three last values. */
+      double predicted(const unsigned int i, const Vector &u, const double h) const
+      {
+        const double a = -h_previous, b = -h_previous - h_oldest;
+        const double l0 = (h - a) * (h - b) / (a * b), la = h * (h - b) / (a * (a - b)),
+                     lb = h * (h - a) / (b * (b - a));
+        return l0 * u.local_element(i) + la * previous.local_element(i) +
+               lb * oldest.local_element(i);
+      }
+
+      Vector previous, oldest, k1, k2;
+      double h_previous = 0., h_oldest = 0.;
+      int    n_known = 0;
+    };
+
+
+    class BDF2 : public TwoStep
+    {
+    public:
+      BDF2(const Operator &op, const StepperOptions &options)
+        : TwoStep(op, options, "bdf2")
+      {}
+
+    private:
+      void method_step(const Vector &u, const double t, const double h) override
+      {
+        const double w = h / h_previous, a0 = (1. + 2. * w) / (1. + w), a1 = 1. + w,
+                     a2 = w * w / (1. + w);
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          base.local_element(i) = (a1 * u.local_element(i) - a2 * previous.local_element(i)) / a0;
+        next = u;
+        solve_stage(base, h / a0, t + h, next);
+      }
+
+      double error_factor(const double) const override
+      {
+        return 2. / 11.; // equal steps: error -2/9 h^3 u''', predictor h^3 u'''
+      }
+    };
+
+
+    /** The trapezoidal rule; it does not damp fast modes, so it starts with L-stable steps. */
+    class CrankNicolson : public TwoStep
+    {
+    public:
+      CrankNicolson(const Operator &op, const StepperOptions &options)
+        : TwoStep(op, options, "crank nicolson")
+      {
+        op.initialize_vector(load);
+        op.initialize_vector(start);
+      }
+
+    private:
+      void method_step(const Vector &u, const double t, const double h) override
+      {
+        // C (U - u) = h/2 (F(u, t) + F(U, t + h)): as a stage from U = u, with the old half of the rate in the start value.
+        start = u;
+        op.distribute(start, t);
+        op.residual(load, start, t);
+        if (op.capacity_is_diagonal())
+          for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+            base.local_element(i) = u.local_element(i) + 0.5 * h * load.local_element(i) /
+                                                           op.lumped_capacity().local_element(i);
+        else
+          {
+            base = 0.;
+            spent.iterations += capacity_solver().solve(1., 0., base, load);
+            base.sadd(0.5 * h, 1., u);
+          }
+        next = u;
+        solve_stage(base, 0.5 * h, t + h, next);
+      }
+
+      double error_factor(const double) const override
+      {
+        return 1. / 13.; // equal steps: error h^3 u'''/12 against the predictor's h^3 u'''
+      }
+
+      LinearSolver &capacity_solver()
+      {
+        if (!mass_solver)
+          mass_solver = std::make_unique<LinearSolver>(op, 1e-12, 1000);
+        return *mass_solver;
+      }
+
+      Vector                        load, start;
+      std::unique_ptr<LinearSolver> mass_solver;
+    };
+  } // namespace
+
+
+  std::unique_ptr<Stepper> make_sdirk2(const Operator &op, const StepperOptions &options)
+  {
+    return std::make_unique<SDIRK2>(op, options);
+  }
+
+  std::unique_ptr<Stepper> make_bdf2(const Operator &op, const StepperOptions &options)
+  {
+    return std::make_unique<BDF2>(op, options);
+  }
+
+  std::unique_ptr<Stepper> make_crank_nicolson(const Operator &op, const StepperOptions &options)
+  {
+    return std::make_unique<CrankNicolson>(op, options);
+  }
+} // namespace PeriDeal

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/solver_gmres.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/solvers/linear_solver.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** a C + b K as deal.II's solvers want it. */
+    struct System
+    {
+      System(const Operator &op, const double a, const double b)
+        : op(op)
+        , a(a)
+        , b(b)
+      {
+        if (a != 0.)
+          op.initialize_vector(image);
+      }
+
+      void vmult(Vector &y, const Vector &x) const
+      {
+        op.apply(y, x);
+        if (b != 1.)
+          y *= b;
+        if (a != 0.)
+          {
+            op.apply_capacity(image, x);
+            op.clear_constrained(image);
+            y.add(a, image);
+          }
+      }
+
+      const Operator &op;
+      const double    a, b;
+      mutable Vector  image;
+    };
+  } // namespace
+
+
+  LinearSolver::LinearSolver(const Operator    &op,
+                             const double       tolerance,
+                             const unsigned int max_iterations)
+    : op(op)
+    , tolerance(tolerance)
+    , max_iterations(max_iterations)
+    , preconditioner(op)
+  {}
+
+
+  unsigned int LinearSolver::solve(const double a, const double b, Vector &x, const Vector &rhs)
+  {
+    const double size = rhs.l2_norm();
+    if (size == 0.)
+      {
+        x = 0.;
+        return 0;
+      }
+    const double ratio = (a == 0.) ? (built_capacity == 0. ? 1. : 0.) :
+                                     (b / a) / (built_stiffness / built_capacity);
+    if (!(ratio > 1. / 3. && ratio < 3.) || built_stiffness < 0.)
+      {
+        preconditioner.initialize(a, b);
+        built_capacity  = a;
+        built_stiffness = b;
+      }
+    SolverControl control(max_iterations, tolerance * size);
+    const System  system(op, a, b);
+    try
+      {
+        if (op.symmetric())
+          SolverCG<Vector>(control).solve(system, x, rhs, preconditioner);
+        else
+          SolverGMRES<Vector>(control, SolverGMRES<Vector>::AdditionalData(60, true))
+            .solve(system, x, rhs, preconditioner);
+      }
+    catch (const SolverControl::NoConvergence &failure)
+      {
+        std::ostringstream message;
+        message
+          << "The linear solver stopped after " << failure.last_step
+          << " iterations at a relative residual of " << failure.last_residual / size
+          << ", above 'Tolerance' = " << tolerance
+          << " in section 'Solver'. Raise 'Tolerance' or 'Maximum iterations' there, or check for parts of the body that cracks have cut off.";
+        AssertThrow(false, UserError(message.str()));
+      }
+    return control.last_step();
+  }
+
+
+  unsigned int solve_steady(const Operator    &op,
+                            Vector            &u,
+                            const double       t,
+                            const double       tolerance,
+                            const unsigned int max_iterations)
+  {
+    AssertThrow(
+      op.has_steady_state(),
+      UserError(
+        "'Steady = true' in section 'Time' needs a 'Dirichlet' or a 'Convection' side in section "
+        "'Boundary conditions': nothing fixes the level of the solution."));
+    Vector rhs, change;
+    op.initialize_vector(rhs);
+    op.initialize_vector(change);
+    op.distribute(u, t);
+    op.residual(rhs, u, t);
+    LinearSolver       solver(op, tolerance, max_iterations);
+    const unsigned int n_iterations = solver.solve(0., 1., change, rhs);
+    u += change;
+    op.distribute(u, t);
+    AssertThrow(
+      std::isfinite(u.l1_norm()),
+      UserError("The steady solution is not finite. Check the material and the boundary values."));
+    return n_iterations;
+  }
+} // namespace PeriDeal

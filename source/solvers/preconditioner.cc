@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <perideal/solvers/preconditioner.h>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  struct MultigridPreconditioner::Data
+  {
+    TrilinosWrappers::SparseMatrix    surrogate, shifted;
+    TrilinosWrappers::PreconditionAMG multigrid;
+    Vector                            inverse_diagonal;
+    mutable Vector                    scratch;
+  };
+
+
+  MultigridPreconditioner::MultigridPreconditioner(const Operator &op)
+    : op(op)
+    , data(std::make_unique<Data>())
+  {
+    op.surrogate(data->surrogate);
+    op.initialize_vector(data->inverse_diagonal);
+    op.initialize_vector(data->scratch);
+  }
+
+
+  MultigridPreconditioner::~MultigridPreconditioner() = default;
+
+
+  void MultigridPreconditioner::initialize(const double a, const double b)
+  {
+    const Vector &capacity = op.lumped_capacity();
+    const Vector &diagonal = op.diagonal();
+    Vector        is_free;
+    op.initialize_vector(is_free);
+    is_free = 1.;
+    op.clear_constrained(is_free);
+
+    data->shifted.copy_from(data->surrogate);
+    data->shifted *= b;
+    for (unsigned int i = 0; i < capacity.locally_owned_size(); ++i)
+      {
+        const auto row     = capacity.get_partitioner()->local_to_global(i);
+        const bool is_held = is_free.local_element(i) == 0.;
+        for (auto entry = data->shifted.begin(row); entry != data->shifted.end(row); ++entry)
+          if (entry->column() == row)
+            entry->value() = is_held ? 1. : entry->value() + a * capacity.local_element(i);
+        data->inverse_diagonal.local_element(i) =
+          is_held ? 0. : 1. / (a * capacity.local_element(i) + b * diagonal.local_element(i));
+      }
+    data->shifted.compress(VectorOperation::insert);
+
+    TrilinosWrappers::PreconditionAMG::AdditionalData options;
+    options.elliptic              = true;
+    options.higher_order_elements = false;
+    options.smoother_sweeps       = 2;
+    options.aggregation_threshold = 1e-4;
+    data->multigrid.initialize(data->shifted, options);
+  }
+
+
+  void MultigridPreconditioner::vmult(Vector &y, const Vector &x) const
+  {
+    data->multigrid.vmult(y, x);
+    if (!op.surrogate_is_exact())
+      {
+        data->scratch = x;
+        data->scratch.scale(data->inverse_diagonal);
+        y += data->scratch;
+      }
+    op.clear_constrained(y);
+  }
+} // namespace PeriDeal

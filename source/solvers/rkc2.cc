@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/solvers/step_tools.h>
+#include <perideal/solvers/stepper.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    /** Coefficients of the s-stage scheme of Sommeijer, Shampine and Verwer (J. Comput. Appl. Math. 88, 1998). */
+    struct RKCCoefficients
+    {
+      explicit RKCCoefficients(const unsigned int s)
+        : a(s + 1)
+        , b(s + 1)
+        , c(s + 1)
+      {
+        constexpr double    damping = 2. / 13.;
+        std::vector<double> T(s + 1), dT(s + 1), ddT(s + 1);
+        w0    = 1. + damping / (static_cast<double>(s) * s);
+        T[0]  = 1.;
+        T[1]  = w0;
+        dT[1] = 1.;
+        for (unsigned int j = 2; j <= s; ++j)
+          {
+            T[j]   = 2. * w0 * T[j - 1] - T[j - 2];
+            dT[j]  = 2. * T[j - 1] + 2. * w0 * dT[j - 1] - dT[j - 2];
+            ddT[j] = 4. * dT[j - 1] + 2. * w0 * ddT[j - 1] - ddT[j - 2];
+          }
+        w1 = dT[s] / ddT[s];
+        for (unsigned int j = 2; j <= s; ++j)
+          {
+            b[j] = ddT[j] / (dT[j] * dT[j]);
+            c[j] = w1 * ddT[j] / dT[j];
+          }
+        b[0] = b[1] = b[2];
+        c[0]        = 0.;
+        c[1]        = c[2] / dT[2];
+        for (unsigned int j = 0; j <= s; ++j)
+          a[j] = 1. - b[j] * T[j];
+      }
+
+      double              w0, w1;
+      std::vector<double> a, b, c;
+    };
+
+
+    /** Second order stabilised explicit Runge-Kutta-Chebyshev method with adaptive steps and as many stages as they need. */
+    class RKC2 : public Stepper
+    {
+    public:
+      RKC2(const Operator &op, const StepperOptions &options)
+        : op(op)
+        , fixed(options.time_step > 0.)
+        , dt(fixed ? options.time_step : 0.)
+        , tolerance(options.tolerance)
+      {
+        for (Vector *v : {&rate, &stage_rate, &before, &last, &now})
+          op.initialize_vector(*v);
+      }
+
+      std::string name() const override
+      {
+        return "rkc2";
+      }
+
+      void advance(Vector &u, const double t, const double t_end) override
+      {
+        if (fixed)
+          {
+            const unsigned long long n = n_equal_steps(t_end - t, dt);
+            const double             h = (t_end - t) / static_cast<double>(n);
+            for (unsigned long long k = 0; k < n; ++k)
+              {
+                compute_rate(op, u, t + k * h, rate);
+                stages(u, t + k * h, h);
+                u.swap(now);
+                ++spent.steps;
+              }
+            op.distribute(u, t_end);
+          }
+        else
+          advance_adaptively(u, t, t_end);
+        check_finite(u, name(), t_end);
+      }
+
+      double current_step() const override
+      {
+        return dt;
+      }
+
+      double expected_applications(const double time_span) const override
+      {
+        if (fixed)
+          return static_cast<double>(n_equal_steps(time_span, dt) * n_stages(dt));
+        // Steps grow with the solution's age; a few dozen of them with sqrt(lambda t) stages in all, times a measured factor.
+        return 2.5 * std::sqrt(1.54 * time_span * op.spectrum().sharp) *
+                 std::cbrt(1e-3 / tolerance) +
+               20.;
+      }
+
+    private:
+      unsigned int n_stages(const double h) const
+      {
+        return std::max(
+          2u,
+          1u + static_cast<unsigned int>(std::sqrt(1.54 * h * 1.02 * op.spectrum().sharp + 1.)));
+      }
+
+
+      /** From u at t with its rate to `now` at t + h. */
+      void stages(const Vector &u, const double t, const double h)
+      {
+        const unsigned int    s = n_stages(h), n = u.locally_owned_size();
+        const RKCCoefficients k(s);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            before.local_element(i) = u.local_element(i);
+            last.local_element(i) = u.local_element(i) + k.b[1] * k.w1 * h * rate.local_element(i);
+          }
+        for (unsigned int j = 2; j <= s; ++j)
+          {
+            compute_rate(op, last, t + k.c[j - 1] * h, stage_rate);
+            const double mu = 2. * k.b[j] * k.w0 / k.b[j - 1], nu = -k.b[j] / k.b[j - 2],
+                         mu_rate = 2. * k.b[j] * k.w1 / k.b[j - 1] * h,
+                         gamma = -k.a[j - 1] * mu_rate, own = 1. - mu - nu;
+            for (unsigned int i = 0; i < n; ++i)
+              now.local_element(i) = own * u.local_element(i) + mu * last.local_element(i) +
+                                     nu * before.local_element(i) +
+                                     mu_rate * stage_rate.local_element(i) +
+                                     gamma * rate.local_element(i);
+            if (j < s)
+              {
+                before.swap(last);
+                last.swap(now);
+              }
+          }
+        op.distribute(now, t + h);
+      }
+
+
+      void advance_adaptively(Vector &u, const double t_start, const double t_end)
+      {
+        double t = t_start;
+        if (dt == 0.)
+          dt = std::min(t_end - t, 0.5 / op.spectrum().sharp);
+        compute_rate(op, u, t, rate);
+        while (t < t_end)
+          {
+            const bool   lands = t + dt * (1. + 1e-10) >= t_end;
+            const double h     = lands ? t_end - t : std::min(dt, 0.5 * (t_end - t) + 0.5 * dt);
+            stages(u, t, h);
+            compute_rate(op, now, t + h, stage_rate);
+            // Estimate of the local error (the method's equation 2.10), in the root mean square.
+            for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+              before.local_element(i) =
+                0.8 * (u.local_element(i) - now.local_element(i)) +
+                0.4 * h * (rate.local_element(i) + stage_rate.local_element(i));
+            const double level = std::max(capacity_norm(op, u), capacity_norm(op, now));
+            const double error = level == 0. ? 0. : capacity_norm(op, before) / (tolerance * level);
+            check_error(error, t);
+            const double growth = std::clamp(0.8 / std::cbrt(std::max(error, 1e-12)), 0.1, 5.);
+            if (error <= 1.)
+              {
+                t = lands ? t_end : t + h;
+                u.swap(now);
+                rate.swap(stage_rate);
+                ++spent.steps;
+                dt = lands ? std::max(dt, h * growth) : h * growth;
+              }
+            else
+              {
+                ++spent.rejected;
+                dt = h * std::min(growth, 0.9);
+              }
+          }
+      }
+
+
+      void check_error(const double error, const double t) const
+      {
+        if (std::isfinite(error))
+          return;
+        std::ostringstream message;
+        message
+          << "The run became unstable: stepper 'rkc2' produced values that are not finite near t = "
+          << t
+          << ". Check loads and boundary values in time, or choose 'Stepper = sdirk2' in section 'Time'.";
+        AssertThrow(false, UserError(message.str()));
+      }
+
+      const Operator &op;
+      const bool      fixed;
+      double          dt;
+      const double    tolerance;
+      Vector          rate, stage_rate, before, last, now;
+    };
+  } // namespace
+
+
+  std::unique_ptr<Stepper> make_rkc2(const Operator &op, const StepperOptions &options)
+  {
+    return std::make_unique<RKC2>(op, options);
+  }
+} // namespace PeriDeal

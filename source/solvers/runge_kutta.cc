@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/solvers/step_tools.h>
+#include <perideal/solvers/stepper.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    constexpr unsigned int steps_between_checks = 100;
+
+
+    /** Steps of one size; the last one of a span is shorter if it has to land. `auto` takes a share of the stable step. */
+    class FixedStepper : public Stepper
+    {
+    public:
+      FixedStepper(const Operator       &op,
+                   const StepperOptions &options,
+                   const std::string    &method,
+                   const double          share_of_bound)
+        : op(op)
+        , method(method)
+        , dt(options.time_step > 0. ? options.time_step :
+                                      share_of_bound * stable_step(method, op.spectrum().sharp))
+      {}
+
+      std::string name() const override
+      {
+        return method;
+      }
+
+      void advance(Vector &u, const double t, const double t_end) override
+      {
+        const unsigned long long n = n_equal_steps(t_end - t, dt);
+        for (unsigned long long k = 0; k < n; ++k)
+          {
+            const double now  = t + static_cast<double>(k) * dt;
+            const double size = (k + 1 == n) ? t_end - now : dt;
+            step(u, now, size);
+            ++spent.steps;
+            if (spent.steps % steps_between_checks == 0)
+              check_finite(u, method, now + size);
+          }
+        op.distribute(u, t_end);
+        check_finite(u, method, t_end);
+      }
+
+      double current_step() const override
+      {
+        return dt;
+      }
+
+    protected:
+      virtual void step(Vector &u, const double t, const double size) = 0;
+
+      const Operator &op;
+
+    private:
+      const std::string method;
+      const double      dt;
+    };
+
+
+    /** Forward Euler. */
+    class Euler : public FixedStepper
+    {
+    public:
+      Euler(const Operator &op, const StepperOptions &options)
+        : FixedStepper(op, options, "euler", 0.9)
+      {
+        op.initialize_vector(rate);
+      }
+
+      double expected_applications(const double time_span) const override
+      {
+        return static_cast<double>(n_equal_steps(time_span, current_step()));
+      }
+
+    private:
+      void step(Vector &u, const double t, const double size) override
+      {
+        compute_rate(op, u, t, rate);
+        u.add(size, rate);
+      }
+
+      Vector rate;
+    };
+
+
+    /** The classical fourth order Runge-Kutta method. */
+    class RK4 : public FixedStepper
+    {
+    public:
+      RK4(const Operator &op, const StepperOptions &options)
+        : FixedStepper(op, options, "rk4", 0.95)
+      {
+        for (Vector *v : {&rate, &stage, &sum})
+          op.initialize_vector(*v);
+      }
+
+      double expected_applications(const double time_span) const override
+      {
+        return 4. * static_cast<double>(n_equal_steps(time_span, current_step()));
+      }
+
+    private:
+      void step(Vector &u, const double t, const double size) override
+      {
+        constexpr double place[4]  = {0., 0.5, 0.5, 1.},
+                         weight[4] = {1. / 6., 1. / 3., 1. / 3., 1. / 6.};
+        for (unsigned int s = 0; s < 4; ++s)
+          {
+            if (s == 0)
+              compute_rate(op, u, t, rate);
+            else
+              {
+                const unsigned int n = u.locally_owned_size();
+                for (unsigned int i = 0; i < n; ++i)
+                  stage.local_element(i) =
+                    u.local_element(i) + place[s] * size * rate.local_element(i);
+                compute_rate(op, stage, t + place[s] * size, rate);
+              }
+            if (s == 0)
+              sum.equ(weight[s] * size, rate);
+            else
+              sum.add(weight[s] * size, rate);
+          }
+        u += sum;
+      }
+
+      Vector rate, stage, sum;
+    };
+  } // namespace
+
+
+  std::unique_ptr<Stepper> make_euler(const Operator &op, const StepperOptions &options)
+  {
+    return std::make_unique<Euler>(op, options);
+  }
+
+
+  std::unique_ptr<Stepper> make_rk4(const Operator &op, const StepperOptions &options)
+  {
+    return std::make_unique<RK4>(op, options);
+  }
+} // namespace PeriDeal

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/solvers/step_tools.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace PeriDeal
+{
+  void compute_rate(const Operator &op, Vector &u, const double t, Vector &rate)
+  {
+    op.distribute(u, t);
+    op.residual(rate, u, t);
+    const Vector      &capacity = op.lumped_capacity();
+    const unsigned int n        = rate.locally_owned_size();
+    for (unsigned int i = 0; i < n; ++i)
+      rate.local_element(i) /= capacity.local_element(i);
+  }
+
+
+  double capacity_norm(const Operator &op, const Vector &v)
+  {
+    const Vector &capacity = op.lumped_capacity();
+    double        sums[2]  = {0., 0.};
+    for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+      {
+        sums[0] += capacity.local_element(i) * v.local_element(i) * v.local_element(i);
+        sums[1] += capacity.local_element(i);
+      }
+    for (double &sum : sums)
+      sum = dealii::Utilities::MPI::sum(sum, v.get_mpi_communicator());
+    return std::sqrt(sums[0] / sums[1]);
+  }
+
+
+  void check_finite(const Vector &u, const std::string &stepper, const double t)
+  {
+    if (std::isfinite(u.l1_norm()))
+      return;
+    std::ostringstream message;
+    message << "The run became unstable: stepper '" << stepper
+            << "' produced values that are not finite before t = " << t
+            << ". Choose a smaller 'Time step', or 'Stepper = auto', in section 'Time'.";
+    AssertThrow(false, UserError(message.str()));
+  }
+
+
+  unsigned long long n_equal_steps(const double span, const double dt)
+  {
+    return std::max(1ULL, static_cast<unsigned long long>(std::ceil(span / dt * (1. - 1e-10))));
+  }
+} // namespace PeriDeal

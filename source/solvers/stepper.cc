@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/solvers/stepper.h>
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <sstream>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    struct Entry
+    {
+      std::string                                                                       name;
+      std::function<std::unique_ptr<Stepper>(const Operator &, const StepperOptions &)> make;
+      bool                                                                              is_explicit;
+    };
+
+    const std::vector<Entry> &entries()
+    {
+      static const std::vector<Entry> list = {{"euler", make_euler, true},
+                                              {"rk4", make_rk4, true},
+                                              {"rkc2", make_rkc2, true},
+                                              {"chebyshev", make_chebyshev, true},
+                                              {"crank nicolson", make_crank_nicolson, false},
+                                              {"bdf2", make_bdf2, false},
+                                              {"sdirk2", make_sdirk2, false}};
+      return list;
+    }
+
+
+    void refuse_unstable_step(const std::string &name, const Operator &op, const double dt)
+    {
+      if (dt <= 0. || stable_step(name, 1.) == std::numeric_limits<double>::infinity())
+        return;
+      const Spectrum spectrum = op.spectrum();
+      const double   sharp    = stable_step(name, spectrum.sharp),
+                   safe       = stable_step(name, spectrum.safe);
+      if (dt <= sharp)
+        return;
+      std::ostringstream message;
+      message
+        << "'Time step' in section 'Time' is " << dt << ", above the stability bound of '" << name
+        << "' for this scene: steps up to " << sharp
+        << " are stable (largest eigenvalue, Lanczos), up to " << safe
+        << " for sure (Gershgorin). Choose a smaller step, 'Time step = auto', or 'Stepper = auto'.";
+      AssertThrow(false, UserError(message.str()));
+    }
+  } // namespace
+
+
+  const std::vector<std::string> &stepper_names()
+  {
+    static const std::vector<std::string> names = []() {
+      std::vector<std::string> list{"auto"};
+      for (const Entry &entry : entries())
+        list.push_back(entry.name);
+      return list;
+    }();
+    return names;
+  }
+
+
+  std::string choose_stepper(const Operator &op)
+  {
+    if (!op.capacity_is_diagonal())
+      return "sdirk2";
+    return op.symmetric() && !op.depends_on_time() ? "chebyshev" : "rkc2";
+  }
+
+
+  double stable_step(const std::string &name, const double largest_eigenvalue)
+  {
+    if (name == "euler")
+      return 2. / largest_eigenvalue;
+    if (name == "rk4")
+      return 2.785293563405282 /
+             largest_eigenvalue; // where |1 + z + z^2/2 + z^3/6 + z^4/24| = 1 on the negative axis
+    return std::numeric_limits<double>::infinity();
+  }
+
+
+  std::unique_ptr<Stepper> make_stepper(const std::string    &name,
+                                        const Operator       &op,
+                                        const StepperOptions &options)
+  {
+    const std::string wanted = name == "auto" ? choose_stepper(op) : name;
+    for (const Entry &entry : entries())
+      if (entry.name == wanted)
+        {
+          AssertThrow(
+            !entry.is_explicit || op.capacity_is_diagonal(),
+            UserError(
+              "'Stepper = " + wanted +
+              "' in section 'Time' needs 'Capacity = lumped' in section "
+              "'Finite elements'. With 'consistent' choose sdirk2, bdf2 or crank nicolson."));
+          refuse_unstable_step(wanted, op, options.time_step);
+          return entry.make(op, options);
+        }
+    AssertThrow(false,
+                UserError("'Stepper' in section 'Time' is '" + name +
+                          "', which is unknown. Known: " + join_names(stepper_names()) +
+                          ". Did you mean '" + nearest_name(name, stepper_names()) + "'?"));
+    return nullptr;
+  }
+} // namespace PeriDeal

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Run scenes and check what they write.
+
+    from scene_test import run_scene, check_close, finish
+
+    run = run_scene("prm/quick_start.prm", {"Domain/Cells": "20, 20"}, ranks=2)
+    check_close(run.probe("peridynamics", (0, 0.1), time=0.5), 12.34, relative=0.01, what="T at (0, 0.1)")
+    finish()
+
+A failed check is printed and counted, and the script goes on; finish() ends it with exit status 1 if any failed. A scene
+that should have run and did not ends the script at once.
+"""
+
+import csv
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SOURCE_DIR = os.environ.get(
+    "PERIDEAL_SOURCE_DIR", os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
+EXECUTABLE = os.environ.get("PERIDEAL_EXECUTABLE", os.path.join(SOURCE_DIR, "build/release/applications/perideal"))
+MPIRUN = os.environ.get("PERIDEAL_MPIRUN", "mpirun")
+
+_checks = {"passed": 0, "failed": 0}
+_folders = []
+
+
+class Run:
+    """What a run of perideal left behind. Tables are read when they are asked for."""
+
+    def __init__(self, folder, returncode, stdout, stderr):
+        self.folder = folder
+        self.returncode = returncode
+        self.stdout = stdout
+        self.stderr = stderr
+
+    @property
+    def summary(self):
+        with open(os.path.join(self.folder, "summary.json")) as file:
+            return json.load(file)
+
+    def model(self, name):
+        """The part of the summary about one model."""
+        return self.summary["models"][name]
+
+    def table(self, name):
+        """The rows of a csv file as dictionaries; what reads as a number is one."""
+        with open(os.path.join(self.folder, name), newline="") as file:
+            return [{key: _value(text) for key, text in row.items()} for row in csv.DictReader(file)]
+
+    @property
+    def probes(self):
+        return self.table("probes.csv")
+
+    @property
+    def line(self):
+        return self.table("line.csv")
+
+    @property
+    def totals(self):
+        return self.table("totals.csv")
+
+    def rows(self, model, point=None, time=None, table="probes.csv"):
+        """The rows of a model, at one point and one time if given."""
+        found = []
+        for row in self.table(table):
+            here = [row[axis] for axis in "xyz" if axis in row]
+            if row["model"] != model:
+                continue
+            if point is not None and not all(math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12) for a, b in zip(here, point)):
+                continue
+            if time is not None and not math.isclose(row["time"], time, rel_tol=1e-9, abs_tol=1e-12):
+                continue
+            found.append(row)
+        return found
+
+    def probe(self, model, point, time=None, column="value"):
+        """One number of probes.csv; without a time the last one written."""
+        rows = self.rows(model, point, time)
+        if not rows:
+            raise SystemExit(f"no row for {model} at {point}, time {time} in {self.folder}/probes.csv")
+        return rows[-1][column]
+
+
+def _value(text):
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        return text
+
+
+def run_perideal(arguments, ranks=1, timeout=3000, cwd=None):
+    """Run the program with any arguments; returns (exit status, stdout, stderr)."""
+    command = [EXECUTABLE] + list(arguments)
+    if ranks > 1:
+        command = [MPIRUN, "-q", "--oversubscribe", "-np", str(ranks)] + command
+    environment = dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                       OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1")
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=timeout, cwd=cwd,
+                          env=environment)
+    return done.returncode, done.stdout, done.stderr
+
+
+def run_scene(scene, overrides=None, ranks=1, expect_error=False, keep=False, timeout=3000):
+    """Run a scene in a fresh folder.
+
+    scene: a path within the repository, an absolute path, or the text of a scene (if it has several lines).
+    overrides: {"Section/Entry": value}. ranks: number of processes.
+    expect_error: the run has to end with exit status 1, one message and no trace, else with 0. keep: leave the folder there.
+    """
+    folder = tempfile.mkdtemp(prefix="perideal_")
+    if keep:
+        print(f"kept: {folder}")
+    else:
+        _folders.append(folder)
+    if "\n" in scene:
+        path = os.path.join(folder, "scene.prm")
+        with open(path, "w") as file:
+            file.write(scene)
+    else:
+        path = scene if os.path.isabs(scene) else os.path.join(SOURCE_DIR, scene)
+    results = os.path.join(folder, "results")
+    arguments = ["run", path]
+    settings = {"Output directory": results}
+    settings.update(overrides or {})
+    for entry, value in settings.items():
+        arguments += ["-s", f"{entry}={value}"]
+    status, stdout, stderr = run_perideal(arguments, ranks, timeout, cwd=SOURCE_DIR)
+    run = Run(settings["Output directory"], status, stdout, stderr)
+    if expect_error:
+        check_clean_error(run, f"{scene if len(scene) < 80 else 'scene'} {overrides or ''}")
+    elif status != 0:
+        print(stdout[-4000:], stderr[-4000:], sep="\n")
+        raise SystemExit(f"FAILED: {' '.join(arguments)} on {ranks} process(es) ended with exit status {status}")
+    return run
+
+
+def check_clean_error(run, what="the run"):
+    """Exit status 1, a message, and nothing that looks like a crash: no signal, no stack, no text of deal.II's exceptions."""
+    text = run.stdout + run.stderr
+    check(run.returncode == 1, f"{what}: exit status {run.returncode} where 1 was expected\n{text[-2000:]}")
+    check(run.stderr.strip() != "", f"{what}: no message on stderr")
+    for trace in ("Stacktrace", "An error occurred in line", "terminate called", "Segmentation fault", "Signal:",
+                  "*** Process received signal", "Additional information", "MPI_ABORT"):
+        check(trace not in text, f"{what}: '{trace}' in the output\n{text[-2000:]}")
+
+
+def check_message(run, *words):
+    """The message of a failed run names all these words."""
+    for word in words:
+        check(word in run.stderr, f"the message does not say '{word}':\n{run.stderr[-2000:]}")
+
+
+def check(condition, message):
+    """Count a check; print the message if it failed."""
+    _checks["passed" if condition else "failed"] += 1
+    if not condition:
+        print(f"FAILED: {message}", flush=True)
+    return bool(condition)
+
+
+def check_close(value, expected, relative=0.0, absolute=0.0, scale=None, what="value"):
+    """|value - expected| <= max(relative * |scale|, absolute); the scale is the expected value unless given.
+
+    Where the expected value is near zero, give the size of the field as scale. Sequences are compared number by number,
+    with the largest expected one as the scale. Returns the error divided by the scale.
+    """
+    values = list(value) if hasattr(value, "__iter__") else [value]
+    wanted = list(expected) if hasattr(expected, "__iter__") else [expected]
+    if not check(len(values) == len(wanted) and len(values) > 0,
+                 f"{what}: {len(values)} numbers where {len(wanted)} were expected"):
+        return math.inf
+    if scale is None:
+        scale = max(abs(w) for w in wanted)
+    worst, error = max(enumerate(abs(v - w) if math.isfinite(v) else math.inf for v, w in zip(values, wanted)),
+                       key=lambda pair: pair[1])
+    allowed = max(relative * abs(scale), absolute)
+    share = error / abs(scale) if scale else error
+    ok = check(error <= allowed, f"{what}: {values[worst]:.12g} where {wanted[worst]:.12g} was expected; error {error:.3g}"
+                                 f" ({share:.3g} relative), allowed {allowed:.3g}")
+    if ok:
+        print(f"ok: {what}: {values[worst]:.10g}, expected {wanted[worst]:.10g}, relative error {share:.2e}", flush=True)
+    return share
+
+
+def check_less(value, limit, what="value"):
+    """value <= limit, and printed."""
+    if check(value <= limit, f"{what}: {value:.6g} is more than {limit:.6g}"):
+        print(f"ok: {what}: {value:.4g} <= {limit:.4g}", flush=True)
+
+
+def observed_orders(sizes, errors):
+    """The orders of convergence between neighbours: log(e1/e2)/log(h1/h2)."""
+    return [math.log(errors[k] / errors[k + 1]) / math.log(sizes[k] / sizes[k + 1]) for k in range(len(sizes) - 1)]
+
+
+def finish():
+    """Remove the folders, print the number of checks and end the script."""
+    for folder in _folders:
+        shutil.rmtree(folder, ignore_errors=True)
+    print(f"{_checks['passed']} checks passed, {_checks['failed']} failed")
+    sys.exit(1 if _checks["failed"] or not _checks["passed"] else 0)
+
+
+def _selftest():
+    """The helpers themselves, and that the program starts and answers."""
+    check_close([1.0, 2.0], [1.0, 2.0 + 1e-9], relative=1e-8, what="two numbers")
+    check_close(observed_orders([1, 0.5, 0.25], [1, 0.25, 0.0625]), [2, 2], absolute=1e-12, what="orders")
+    status, stdout, _ = run_perideal(["--help"])
+    check(status == 0 and "run" in stdout, "perideal --help")
+    status, _, stderr = run_perideal(["run", "there_is_no_such_scene.prm"])
+    check(status == 1 and "there_is_no_such_scene.prm" in stderr, f"a missing scene: {stderr}")
+    finish()
+
+
+if __name__ == "__main__":
+    _selftest()
