@@ -183,18 +183,18 @@ namespace PeriDeal
       if (cell->is_locally_owned())
         for (const unsigned int v : cell->vertex_indices())
           owned_vertices[cell->vertex_index(v)] = true;
+    const bool any_owned =
+      std::find(owned_vertices.begin(), owned_vertices.end(), true) != owned_vertices.end();
     for (unsigned int k = 0; k < points.size(); ++k)
       {
-        if (std::none_of(owned_vertices.begin(), owned_vertices.end(), [](const bool b) {
-              return b;
-            }))
+        if (!any_owned)
           break;
+        const auto first_place =
+          GridTools::find_active_cell_around_point(cache, points[k], {}, owned_vertices, 1e-8);
+        if (first_place.first.state() != IteratorState::valid)
+          continue; // somebody else's
         const auto found = GridTools::find_all_active_cells_around_point(
-          mapping,
-          dofs.get_triangulation(),
-          points[k],
-          1e-8,
-          GridTools::find_active_cell_around_point(cache, points[k], {}, owned_vertices, 1e-8));
+          mapping, dofs.get_triangulation(), points[k], 1e-8, first_place);
         for (const auto &place : found)
           if (place.first->is_locally_owned() && finder[k] == nobody)
             {

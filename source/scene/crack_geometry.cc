@@ -67,8 +67,7 @@ namespace PeriDeal
   template <int dim>
   double CrackGeometry<dim>::signed_distance(const Point<dim> &p) const
   {
-    const double distance = (p - corner_points[0]) * unit_normal;
-    return std::abs(distance) <= tolerance ? tolerance : distance;
+    return (p - corner_points[0]) * unit_normal + tolerance;
   }
 
 
