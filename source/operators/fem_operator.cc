@@ -5,6 +5,7 @@
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/mapping_q1.h>
 
+#include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/fem_operator.h>
 #include <perideal/operators/spectrum.h>
@@ -80,19 +81,18 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::find_gershgorin()
   {
-    std::string message;
-    double      bound = 0.;
+    std::string         message;
+    double              bound = 0.;
+    std::vector<double> row_sums(stiffness_diagonal.locally_owned_size(), 0.);
+    for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
+      row_sums[row] += std::abs(value);
+    });
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
       {
-        const auto row = stiffness_diagonal.get_partitioner()->local_to_global(i);
-        double     sum = 0.;
-        for (auto entry = stiffness.begin(row); entry != stiffness.end(row); ++entry)
-          sum += std::abs(entry->value());
         if (!(stiffness_diagonal.local_element(i) > 0.))
-          message =
-            "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
-            "conducting cell. Use 'pairs' or a finer mesh.";
-        bound = std::max(bound, sum / capacity.local_element(i));
+          message = "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
+                    "conducting cell. Use 'pairs' or a finer mesh.";
+        bound = std::max(bound, row_sums[i] / capacity.local_element(i));
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
     gershgorin = Utilities::MPI::max(bound, dofs.get_communicator());
@@ -240,19 +240,13 @@ namespace PeriDeal
     initialize_vector(held);
     mask(held, 1.);
     held.update_ghost_values();
-    for (unsigned int i = 0; i < held.locally_owned_size(); ++i)
-      {
-        const auto row = held.get_partitioner()->local_to_global(i);
-        for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
-          if (entry->column() == row)
-            {
-              if (held.local_element(i) > 0.)
-                entry->value() = 1.;
-            }
-          else if (held.local_element(i) > 0. || held(entry->column()) > 0.)
-            entry->value() = 0.;
-      }
-    matrix.compress(VectorOperation::insert);
+    for_each_entry(matrix, [&](const unsigned int i, const auto column, double &value) {
+      const bool is_held = held.local_element(i) > 0.;
+      if (column == held.get_partitioner()->local_to_global(i))
+        value = is_held ? 1. : value;
+      else if (is_held || held(column) > 0.)
+        value = 0.;
+    });
   }
 
   template <int dim>

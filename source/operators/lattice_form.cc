@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
+#include <limits>
+
+#include "node_loops.h"
 
 namespace PeriDeal
 {
@@ -15,11 +17,16 @@ namespace PeriDeal
 
   namespace
   {
+    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+
     /** Consecutive local nodes on consecutive sites of one lattice row. */
-    struct NodeRun
+    struct Piece
     {
-      std::size_t   first_slot; // in the padded grid
-      std::uint32_t first_node, n;
+      std::size_t   slot; // in the padded grid
+      std::uint32_t node, n;
+      std::uint32_t varying;            // where in the lists of varying values, or none: then
+      double        volume, family_sum; // all nodes have these
     };
 
 
@@ -39,53 +46,100 @@ namespace PeriDeal
     };
 
 
+    /**
+     * Nodes that are computed together: a block of rows of one plane, in 1D a stretch of the bar. What is needed of the grid
+     * is filled in just before, and the sums are finished while they are in cache. Each number is the end of the group's
+     * part of a list.
+     */
+    struct Group
+    {
+      std::size_t fills, runs, pieces, corrected, ranges;
+    };
+
+
     template <int dim>
     class LatticeForm : public BondForm
     {
     public:
       explicit LatticeForm(const Families<dim> &families)
-        : kernel(make_kernel(families))
+        : families(families)
+        , kernel(make_kernel(false))
         , n_owned(families.nodes().n_owned())
         , n_local(families.nodes().n_local())
       {
-        lay_out_grid(families);
-        find_runs(families);
-        find_fictitious_slots(families);
-        volumes.resize(n_local);
-        for (unsigned int i = 0; i < n_local; ++i)
-          volumes[i] = families.nodes().volume(i);
-        find_family_sums(families);
-        find_corrections(families);
+        lay_out_grid();
+        find_pieces();
+        find_groups();
+        find_fictitious_slots();
+        find_family_sums();
+        find_corrections();
       }
 
-      void apply(double *y, const double *values, const double *outside) const override
+      void apply(double            *y,
+                 const double      *values,
+                 const double      *outside,
+                 const NodesAction &finish) const override
       {
-        fill_grid(values, outside);
-        convolve(y);
-        for (unsigned int i = 0; i < n_owned; ++i)
-          y[i] = volumes[i] * (family_sums[i] * values[i] - y[i]);
-        for (std::size_t k = 0; k < corrected_rows.size(); ++k)
+        const bool fill_first = !outside_nodes.empty();
+        if (fill_first)
+          fill_grid(values, outside);
+        Group at{0, 0, 0, 0, 0};
+        for (const Group &end : groups)
           {
-            const unsigned int i   = corrected_rows[k];
-            double             sum = 0.;
-            for (std::size_t c = correction_starts[k]; c < correction_starts[k + 1]; ++c)
-              {
-                const std::uint32_t j     = corrections[c].column;
-                const double        other = j < n_local ? values[j] : outside[j - n_local];
-                sum += corrections[c].coefficient * (values[i] - other);
-              }
-            y[i] += sum;
+            for (std::size_t k = at.fills; k < end.fills && !fill_first; ++k)
+              fill(fills[k], values);
+            convolve(kernel, at.runs, end.runs, y);
+            for (std::size_t k = at.pieces; k < end.pieces; ++k)
+              combine(pieces[k], values, y);
+            for (std::size_t k = at.corrected; k < end.corrected; ++k)
+              y[corrected_rows[k]] += correction(k, values, outside);
+            for (std::size_t k = at.ranges; k < end.ranges && finish; ++k)
+              finish(ranges[k].first, ranges[k].second);
+            at = end;
           }
+      }
+
+      void row_sums(double *sums, double &n_bonds) const override
+      {
+        for (const Piece &piece : pieces)
+          for (std::uint32_t k = 0; k < piece.n; ++k)
+            sums[piece.node + k] = volume(piece, k) * family_sum(piece, k);
+        // The number of bonds is a convolution of ones with ones; half a bond is the other node's.
+        const StencilKernel       counter = make_kernel(true);
+        const std::vector<double> halves(n_local, 0.5),
+          wholes(families.fictitious().size(), 1.);
+        std::vector<double> count(n_owned);
+        fill_grid_with_values(halves, wholes);
+        convolve(counter, 0, stencil_runs.size(), count.data());
+        // Near cracks the plain way.
+        std::vector<typename Families<dim>::Bond> bonds;
+        for (const std::uint32_t i : corrected_rows)
+          {
+            families.bonds_of(i, bonds);
+            sums[i] = count[i] = 0.;
+            for (const auto &bond : bonds)
+              {
+                sums[i] += bond.weight;
+                if (bond.weight > 0.)
+                  count[i] += bond.neighbor < n_local ? 0.5 : 1.;
+              }
+          }
+        n_bonds = 0.;
+        for (const double c : count)
+          n_bonds += c;
       }
 
       std::size_t memory_consumption() const override
       {
-        return sizeof(double) * (grid.capacity() + volumes.capacity() + family_sums.capacity()) +
-               runs.capacity() * sizeof(NodeRun) +
+        return sizeof(double) *
+                 (grid.capacity() + varying_volumes.capacity() + varying_sums.capacity()) +
+               (fills.capacity() + pieces.capacity()) * sizeof(Piece) +
+               groups.capacity() * sizeof(Group) + ranges.capacity() * sizeof(ranges[0]) +
                stencil_runs.capacity() * sizeof(StencilKernel::Run) +
                corrections.capacity() * sizeof(Correction) +
                corrected_rows.capacity() * sizeof(std::uint32_t) +
-               correction_starts.capacity() * sizeof(std::size_t);
+               correction_starts.capacity() * sizeof(std::size_t) +
+               outside_nodes.capacity() * sizeof(OutsideNode);
       }
 
       unsigned long long n_stored() const override
@@ -101,8 +155,8 @@ namespace PeriDeal
     private:
       using Index = typename Lattice<dim>::Index;
 
-      /** The stencil w kappa on the nonnegative offsets, with the self term as it is inside the body. */
-      static StencilKernel make_kernel(const Families<dim> &families)
+      /** The stencil w kappa on the nonnegative offsets, with the self term as it is inside the body; or ones. */
+      StencilKernel make_kernel(const bool ones) const
       {
         std::vector<std::array<int, 3>> offsets;
         std::vector<double>             weights;
@@ -118,7 +172,7 @@ namespace PeriDeal
               if (self.offset == member.offset)
                 weight += self.weight;
             offsets.push_back(offset);
-            weights.push_back(kappa * weight);
+            weights.push_back(ones ? 1. : kappa * weight);
           }
         return StencilKernel(dim, offsets, weights);
       }
@@ -132,14 +186,30 @@ namespace PeriDeal
         return s;
       }
 
-
-      void lay_out_grid(const Families<dim> &families)
+      /** Coordinates of a slot in the grid. */
+      std::array<std::ptrdiff_t, 3> place(std::size_t s) const
       {
-        const Nodes<dim> &nodes = families.nodes();
-        Index             low{}, high{};
+        std::array<std::ptrdiff_t, 3> p{{0, 0, 0}};
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            p[d] = s % extent[d];
+            s /= extent[d];
+          }
+        return p;
+      }
+
+      Index site_of(const unsigned int node) const
+      {
+        return families.nodes().lattice()->index(families.nodes().position(node));
+      }
+
+
+      void lay_out_grid()
+      {
+        Index low{}, high{};
         for (unsigned int i = 0; i < n_owned; ++i)
           {
-            const Index site = nodes.lattice()->index(nodes.position(i));
+            const Index site = site_of(i);
             for (unsigned int d = 0; d < dim; ++d)
               {
                 low[d]  = i == 0 ? site[d] : std::min(low[d], site[d]);
@@ -166,59 +236,123 @@ namespace PeriDeal
       }
 
 
-      void find_runs(const Families<dim> &families)
+      /** Maximal pieces of rows, owned nodes and ghosts apart; their values come later. */
+      void find_pieces()
       {
-        const Nodes<dim> &nodes = families.nodes();
-        std::size_t       next  = 0;
+        constexpr std::uint32_t longest = dim == 1 ? 8192 : none;
+        std::size_t             next    = 0;
         for (unsigned int i = 0; i < n_local; ++i)
           {
-            const Index site = nodes.lattice()->index(nodes.position(i));
+            const Index site = site_of(i);
             if (!in_grid(site))
               continue;
             const std::size_t s         = slot(site);
-            const bool        continues = !runs.empty() && s == next && i != n_owned &&
-                                   runs.back().first_node + runs.back().n == i &&
-                                   (s % extent[0]) != 0;
+            const bool        continues = !fills.empty() && s == next && i != n_owned &&
+                                   fills.back().node + fills.back().n == i &&
+                                   (s % extent[0]) != 0 && fills.back().n < longest;
             if (continues)
-              ++runs.back().n;
+              ++fills.back().n;
             else
-              runs.push_back({s, i, 1});
+              fills.push_back({s, i, 1, none, 0., 0.});
             next = s + 1;
-          }
-        for (const NodeRun &run : runs)
-          if (run.first_node < n_owned)
-            {
-              StencilKernel::Run stencil_run;
-              std::size_t        s = run.first_slot;
-              stencil_run.x        = s % extent[0];
-              s /= extent[0];
-              if constexpr (dim > 1)
-                {
-                  stencil_run.y = s % extent[1];
-                  s /= extent[1];
-                }
-              if constexpr (dim > 2)
-                stencil_run.z = s;
-              stencil_run.n = run.n;
-              stencil_runs.push_back(stencil_run);
-              first_nodes.push_back(run.first_node);
-            }
-        StencilKernel::sort_for_reuse(stencil_runs);
-        for (const StencilKernel::Run &run : stencil_runs)
-          {
-            Index site;
-            site[0] = corner[0] + static_cast<int>(run.x);
-            if constexpr (dim > 1)
-              site[1] = corner[1] + static_cast<int>(run.y);
-            if constexpr (dim > 2)
-              site[2] = corner[2] + static_cast<int>(run.z);
-            first_nodes.push_back(families.node_at(site));
           }
       }
 
 
+      /** The order of computation. */
+      void find_groups()
+      {
+        for (const Piece &piece : fills)
+          if (piece.node < n_owned)
+            {
+              const auto         p = place(piece.slot);
+              StencilKernel::Run run;
+              run.x = p[0];
+              run.y = p[1];
+              run.z = p[2];
+              run.n = piece.n;
+              stencil_runs.push_back(run);
+            }
+        StencilKernel::sort_for_reuse(stencil_runs);
+        for (const StencilKernel::Run &run : stencil_runs)
+          {
+            Index                               site;
+            const std::array<std::ptrdiff_t, 3> p{{run.x, run.y, run.z}};
+            for (unsigned int d = 0; d < dim; ++d)
+              site[d] = corner[d] + static_cast<int>(p[d]);
+            const std::uint32_t node = families.node_at(site);
+            pieces.push_back({slot(site), node, static_cast<std::uint32_t>(run.n), none, 0., 0.});
+          }
+        const auto together = [](const StencilKernel::Run &a, const StencilKernel::Run &b) {
+          constexpr std::ptrdiff_t n = StencilKernel::block_rows;
+          return dim > 1 && a.z == b.z && a.y / n == b.y / n;
+        };
+        for (std::size_t k = 0; k < pieces.size(); ++k)
+          {
+            const bool          same = k > 0 && together(stencil_runs[k - 1], stencil_runs[k]);
+            const std::uint32_t first = pieces[k].node, end = first + pieces[k].n;
+            if (!same)
+              groups.push_back({0, k, k, 0, 0});
+            if (same && ranges.back().second == first)
+              ranges.back().second = end;
+            else
+              ranges.emplace_back(first, end);
+            groups.back().runs = groups.back().pieces = k + 1;
+            groups.back().ranges                      = ranges.size();
+          }
+        order_fills();
+      }
+
+
+      /** Put pieces to be filled in the order in which groups first need them; leave out those that none needs. */
+      void order_fills()
+      {
+        const std::size_t        n_y = dim > 1 ? extent[dim > 1] : 1, n_z = dim > 2 ? extent[dim - 1] : 1;
+        std::vector<std::size_t> starts(n_y * n_z + 1, 0);
+        const auto row_of = [&](const Piece &piece) { return piece.slot / extent[0]; };
+        std::stable_sort(fills.begin(), fills.end(), [&](const Piece &a, const Piece &b) {
+          return row_of(a) < row_of(b);
+        });
+        for (const Piece &piece : fills)
+          ++starts[row_of(piece) + 1];
+        for (std::size_t r = 0; r + 1 < starts.size(); ++r)
+          starts[r + 1] += starts[r];
+        std::vector<bool>  done(fills.size(), false);
+        std::vector<Piece> ordered;
+        std::size_t        run = 0;
+        const auto         halo = kernel.halo();
+        for (Group &group : groups)
+          {
+            const std::ptrdiff_t        z     = stencil_runs[run].z;
+            std::ptrdiff_t              x_end = 0, x_begin = extent[0], y_end = 0, y_begin = n_y;
+            for (; run < group.runs; ++run)
+              {
+                const StencilKernel::Run &r = stencil_runs[run];
+                x_begin                     = std::min(x_begin, r.x);
+                x_end   = std::max(x_end, r.x + static_cast<std::ptrdiff_t>(r.n));
+                y_begin = std::min(y_begin, r.y);
+                y_end   = std::max(y_end, r.y + 1);
+              }
+            for (std::ptrdiff_t c = z - halo[2]; c <= z + halo[2]; ++c)
+              for (std::ptrdiff_t b = y_begin - halo[1]; b < y_end + halo[1]; ++b)
+                for (std::size_t k = starts[b + n_y * c]; k < starts[b + n_y * c + 1]; ++k)
+                  {
+                    const auto p = place(fills[k].slot);
+                    if (done[k] || p[0] >= x_end + halo[0] ||
+                        p[0] + static_cast<std::ptrdiff_t>(fills[k].n) <= x_begin - halo[0])
+                      continue;
+                    done[k] = true;
+                    ordered.push_back(fills[k]);
+                  }
+            group.fills = ordered.size();
+          }
+        fills.swap(ordered);
+        fills.shrink_to_fit();
+      }
+
+
       /** Where the fictitious nodes go in the grid, and which of these sites no real node fills. */
-      void find_fictitious_slots(const Families<dim> &families)
+      void find_fictitious_slots()
       {
         for (std::uint32_t f = 0; f < families.fictitious().size(); ++f)
           {
@@ -232,132 +366,38 @@ namespace PeriDeal
       }
 
 
-      /** The template's sum of coefficients at each node: its convolution of a field of ones. */
-      void find_family_sums(const Families<dim> &families)
+      /** The template's sum of coefficients at each node: its convolution of the volumes. */
+      void find_family_sums()
       {
-        const std::vector<double> ones(n_local, 1.), ones_outside(families.fictitious().size(), 1.);
-        family_sums.resize(n_owned);
-        fill_grid(ones.data(), ones_outside.data());
-        convolve(family_sums.data());
-      }
-
-
-      /** The template's conductance of a bond. */
-      double template_weight(const Families<dim>                &families,
-                             const unsigned int                  i,
-                             const typename Families<dim>::Bond &bond) const
-      {
-        if (families.self_members().empty())
-          return bond.intact;
-        const std::uint32_t j = bond.neighbor;
-        const double volume = j < n_local ? volumes[j] : families.fictitious()[j - n_local].volume;
-        const Tensor<1, dim> xi     = families.bond_vector(i, j);
-        double               weight = 0.;
-        for (const auto *list : {&families.lattice_members(), &families.self_members()})
-          for (const FamilyMember<dim> &member : *list)
-            if (families.is_offset(xi, member))
-              weight += member.weight;
-        return volumes[i] * volume * weight * families.conductivity(i);
-      }
-
-
-      void find_corrections(const Families<dim> &families)
-      {
-        std::vector<typename Families<dim>::Bond> bonds;
-        correction_starts.push_back(0);
-        for (unsigned int i = 0; i < n_owned; ++i)
+        std::vector<double> volumes(n_local), outside, sums(n_owned);
+        for (unsigned int i = 0; i < n_local; ++i)
+          volumes[i] = families.nodes().volume(i);
+        for (const FictitiousNode<dim> &node : families.fictitious())
+          outside.push_back(node.volume);
+        fill_grid_with_values(volumes, outside);
+        convolve(kernel, 0, stencil_runs.size(), sums.data());
+        for (std::size_t k = 0, g = 0; g < groups.size(); ++g)
           {
-            if (!families.near_crack(i) && families.self_members().empty())
-              continue;
-            families.bonds_of(i, bonds);
-            for (const auto &bond : bonds)
-              {
-                const double expected   = template_weight(families, i, bond);
-                const double difference = bond.weight - expected;
-                if (std::abs(difference) > 1e-14 * expected)
-                  corrections.push_back({bond.neighbor, difference});
-              }
-            if (corrections.size() > correction_starts.back())
-              {
-                corrected_rows.push_back(i);
-                correction_starts.push_back(corrections.size());
-              }
+            // A group's pieces have to stay together: the list is rebuilt behind them.
+            for (; k < groups[g].pieces; ++k)
+              split(pieces[k], volumes, sums.data(), split_pieces);
+            piece_ends.push_back(split_pieces.size());
           }
-      }
-
-
-      void fill_grid(const double *values, const double *outside) const
-      {
-        for (const NodeRun &run : runs)
+        pieces.swap(split_pieces);
+        split_pieces.clear();
+        for (std::size_t k = 0, g = 0; g < groups.size(); ++g)
           {
-            double       *to     = grid.data() + run.first_slot;
-            const double *from   = values + run.first_node;
-            const double *volume = volumes.data() + run.first_node;
-            for (std::uint32_t k = 0; k < run.n; ++k)
-              to[k] = volume[k] * from[k];
+            groups[g].pieces = piece_ends[g];
+            for (; k < groups[g].fills; ++k)
+              split(fills[k], volumes, nullptr, split_pieces);
+            groups[g].fills = split_pieces.size();
           }
-        for (const std::size_t s : emptied_slots)
-          grid[s] = 0.;
-        for (const OutsideNode &node : outside_nodes)
-          grid[node.slot] += node.volume * outside[node.number];
+        fills.swap(split_pieces);
+        for (auto *list : {&fills, &pieces})
+          list->shrink_to_fit();
+        split_pieces = {};
+        piece_ends   = {};
       }
-
-
-      void convolve(double *y) const
-      {
-        for (std::size_t k = 0; k < stencil_runs.size(); ++k)
-          stencil_runs[k].out = y + first_nodes[k];
-        StencilKernel::Grid padded;
-        padded.data = grid.data();
-        if constexpr (dim > 1)
-          padded.row_stride = extent[0];
-        if constexpr (dim > 2)
-          padded.plane_stride = static_cast<std::ptrdiff_t>(extent[0]) * extent[1];
-        kernel.apply(padded, stencil_runs);
-      }
-
-      StencilKernel                           kernel;
-      unsigned int                            n_owned, n_local;
-      Index                                   corner, extent;
-      mutable std::vector<double>             grid;
-      std::vector<NodeRun>                    runs;
-      mutable std::vector<StencilKernel::Run> stencil_runs;
-      std::vector<std::uint32_t>              first_nodes;
-      std::vector<OutsideNode>                outside_nodes;
-      std::vector<std::size_t>                emptied_slots;
-      std::vector<double>                     volumes, family_sums;
-      std::vector<std::uint32_t>              corrected_rows;
-      std::vector<std::size_t>                correction_starts;
-      std::vector<Correction>                 corrections;
     };
   } // namespace
-
-
-  template <int dim>
-  std::unique_ptr<BondForm> make_lattice_form(const Families<dim> &families)
-  {
-    return std::make_unique<LatticeForm<dim>>(families);
-  }
-
-
-  template <int dim>
-  bool lattice_form_suits(const Families<dim> &families, std::string &reason)
-  {
-    if (!families.has_unique_sites())
-      reason = "the nodes are not on a lattice with one node per site";
-    else if (!families.uniform_conductivity())
-      reason = "the conductivity varies";
-    else
-      return true;
-    return false;
-  }
-
-
-#define PERIDEAL_INSTANTIATE(dim)                                              \
-  template std::unique_ptr<BondForm> make_lattice_form(const Families<dim> &); \
-  template bool                      lattice_form_suits(const Families<dim> &, std::string &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/lac/trilinos_precondition.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <perideal/base/matrix_rows.h>
 #include <perideal/solvers/preconditioner.h>
 
 namespace PeriDeal
@@ -43,17 +44,15 @@ namespace PeriDeal
 
     data->shifted.copy_from(data->surrogate);
     data->shifted *= b;
+    for_each_entry(data->shifted, [&](const unsigned int i, const auto column, double &value) {
+      if (column == capacity.get_partitioner()->local_to_global(i))
+        value = is_free.local_element(i) == 0. ? 1. : value + a * capacity.local_element(i);
+    });
     for (unsigned int i = 0; i < capacity.locally_owned_size(); ++i)
-      {
-        const auto row     = capacity.get_partitioner()->local_to_global(i);
-        const bool is_held = is_free.local_element(i) == 0.;
-        for (auto entry = data->shifted.begin(row); entry != data->shifted.end(row); ++entry)
-          if (entry->column() == row)
-            entry->value() = is_held ? 1. : entry->value() + a * capacity.local_element(i);
-        data->inverse_diagonal.local_element(i) =
-          is_held ? 0. : 1. / (a * capacity.local_element(i) + b * diagonal.local_element(i));
-      }
-    data->shifted.compress(VectorOperation::insert);
+      data->inverse_diagonal.local_element(i) =
+        is_free.local_element(i) == 0. ?
+          0. :
+          1. / (a * capacity.local_element(i) + b * diagonal.local_element(i));
 
     TrilinosWrappers::PreconditionAMG::AdditionalData options;
     options.elliptic              = true;

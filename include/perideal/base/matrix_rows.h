@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <Epetra_CrsMatrix.h>
+
+namespace PeriDeal
+{
+  /**
+   * Call visit(row, column, value) for each stored entry of the rows of this process, with the local number of the row, the global number of the
+   * column and a reference to the value, which may be changed. deal.II's iterators copy each row and write through a search; on matrices of
+   * a million entries that shows. Not collective; the matrix must be compressed.
+   */
+  template <typename Visit>
+  void for_each_entry(const dealii::TrilinosWrappers::SparseMatrix &matrix, const Visit &visit)
+  {
+    const Epetra_CrsMatrix &rows    = matrix.trilinos_matrix();
+    const Epetra_Map       &columns = rows.ColMap();
+    for (int row = 0; row < rows.NumMyRows(); ++row)
+      {
+        int     n_entries = 0, *indices = nullptr;
+        double *values = nullptr;
+        rows.ExtractMyRowView(row, n_entries, values, indices);
+        for (int k = 0; k < n_entries; ++k)
+          visit(static_cast<unsigned int>(row),
+                static_cast<dealii::types::global_dof_index>(columns.GID(indices[k])),
+                values[k]);
+      }
+  }
+} // namespace PeriDeal
