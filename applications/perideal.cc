@@ -4,11 +4,15 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/scene/lists.h>
 #include <perideal/simulation/simulation.h>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <chrono>
 #include <iostream>
+#include <thread>
 
 namespace
 {
@@ -59,44 +63,86 @@ namespace
   {
     app.set_version_flag("--version", "PeriDeal " PERIDEAL_VERSION);
     app.require_subcommand(1);
-    app.footer("Parallel: mpirun -np N perideal run SCENE.prm\n"
-               "Scenes with explanations are in prm/, the format is explained in doc/.");
+    app.footer(
+      "Examples:\n"
+      "  perideal run prm/quick_start.prm\n"
+      "  perideal run prm/quick_start.prm -s \"Domain/Cells=120, 120\" -s \"Time/Stepper=rkc2\"\n"
+      "  mpirun -np 4 perideal run prm/quick_start.prm\n"
+      "  perideal parameters markdown\n"
+      "Scenes to start from are in prm/; the format is explained in doc/scene_format.md.");
 
-    CLI::App *run   = app.add_subcommand("run", "Compute a scene and write its results");
+    CLI::App *run =
+      app.add_subcommand("run",
+                         "Compute a scene and write its results into its 'Output directory'");
     CLI::App *check = app.add_subcommand(
       "check",
-      "Parse a scene, say what a run of it needs (unknowns, bonds, memory, stable steps, time), run nothing");
+      "Parse a scene and say what a run of it needs: unknowns, bonds, memory, stable steps, time. Computes nothing");
     for (CLI::App *command : {run, check})
       {
         command->add_option("scene", request.scene, "scene file (.prm)")->required();
         command
-          ->add_option("-s,--set", request.overrides, "override an entry: \"Section/Entry=value\"")
+          ->add_option(
+            "-s,--set",
+            request.overrides,
+            "override an entry: \"Section/Entry=value\", outside all sections \"Entry=value\"; may be given several times")
           ->allow_extra_args(false);
-        command->add_flag("-q,--quiet", request.quiet, "print errors only");
+        command->add_flag("-q,--quiet", request.quiet, "print nothing but errors");
       }
-    CLI::App *parameters =
-      app.add_subcommand("parameters",
-                         "Print every entry of a scene with type, default, unit and explanation");
+    CLI::App *parameters = app.add_subcommand(
+      "parameters",
+      "Print every entry of a scene file with type, default, unit and explanation");
     parameters->add_option("format", request.format, "prm, markdown, JSON or XML")
       ->capture_default_str();
+  }
+
+
+  /** A word that is no command, or no command at all. Throws UserError. */
+  void require_command(const int argc, char **argv)
+  {
+    const std::vector<std::string> commands = {"run", "check", "parameters"};
+    const std::string              help =
+      " Commands: " + join_names(commands) + ". `perideal --help` explains them.";
+    AssertThrow(argc > 1, UserError("A command is missing." + help));
+    const std::string word = argv[1];
+    if (word.empty() || word[0] != '-')
+      AssertThrow(
+        std::find(commands.begin(), commands.end(), word) != commands.end(),
+        UserError("Unknown command '" + word + "'." + did_you_mean(word, commands) + help));
+  }
+
+
+  /** What CLI11 has to say about the arguments, with the nearest option and where to read on. */
+  std::string explain(const CLI::ParseError &problem, const CLI::App &app)
+  {
+    std::string                    message   = problem.what();
+    const std::vector<std::string> options   = {"--set", "--quiet", "--help", "--version"};
+    const std::vector<std::string> remaining = app.remaining(true);
+    if (!remaining.empty() && remaining.front().compare(0, 2, "--") == 0)
+      message +=
+        "." + did_you_mean(remaining.front().substr(0, remaining.front().find('=')), options);
+    return message + (message.back() == '.' || message.back() == '?' ? "" : ".") +
+           " `perideal --help` and `perideal run --help` explain the arguments.";
   }
 
 
   int execute(int argc, char **argv, const bool first_rank)
   {
     CLI::App app(
-      "PeriDeal solves heat conduction with peridynamics and finite elements on one mesh, from one scene file.");
+      "PeriDeal solves heat conduction with peridynamics and with finite elements on one mesh, from one "
+      "scene file (.prm), and compares the two.");
     Request request;
     describe_commands(app, request);
+    require_command(argc, argv);
     try
       {
         app.parse(argc, argv);
       }
     catch (const CLI::ParseError &problem)
       {
-        if (!first_rank)
-          return problem.get_exit_code() == 0 ? 0 : 1;
-        return app.exit(problem) == 0 ? 0 : 1;
+        AssertThrow(problem.get_exit_code() == 0, UserError(explain(problem, app)));
+        if (first_rank)
+          app.exit(problem); // --help or --version
+        return 0;
       }
     if (app.got_subcommand("parameters"))
       {
@@ -110,11 +156,30 @@ namespace
   }
 
 
-  /** One message, from rank 0 if everybody has it. */
+  /** Whether every process has come here, too, within some seconds. */
+  bool everybody_failed()
+  {
+    MPI_Request request;
+    MPI_Ibarrier(MPI_COMM_WORLD, &request);
+    int done = 0;
+    for (unsigned int tenths = 0; tenths < 50 && done == 0; ++tenths)
+      {
+        MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+        if (done == 0)
+          std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      }
+    return done != 0;
+  }
+
+
+  /** One message, from rank 0 if everybody has it. The others must not wait forever for a process that failed alone. */
   int report(const std::string &message, const bool first_rank)
   {
-    if (first_rank)
+    const bool all = everybody_failed();
+    if (first_rank || !all)
       std::cerr << "\nperideal: error: " << message << std::endl;
+    if (!all)
+      MPI_Abort(MPI_COMM_WORLD, 1);
     return 1;
   }
 } // namespace

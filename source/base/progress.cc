@@ -15,11 +15,12 @@ namespace PeriDeal
 {
   Progress::Progress(const MPI_Comm communicator, const bool quiet)
     : active(false)
-    , terminal(isatty(STDOUT_FILENO) != 0)
+    , terminal(isatty(STDOUT_FILENO) != 0 && isatty(STDERR_FILENO) != 0)
   {
     int rank = 0;
     MPI_Comm_rank(communicator, &rank);
     active = rank == 0 && !quiet;
+    // (mpirun gives its processes a terminal as output even where it writes into a file itself, but a pipe for messages.)
     // A script that passes our output on through a pipe says what is at its end.
     if (const char *wanted = std::getenv("PERIDEAL_PROGRESS"))
       terminal = std::string(wanted) == "bar";

@@ -31,7 +31,11 @@ namespace PeriDeal
     for (const auto &corners : scene.cracks.cracks)
       cracks.emplace_back(corners);
     find_weights(scene);
-    add_halo(nodes, farthest);
+    // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away than any bond.
+    const double layer = parameters.flux_treatment == FluxTreatment::layer_extrapolation ?
+                           delta + 0.5 * nodes.smallest_spacing() :
+                           0.;
+    add_halo(nodes, std::max(farthest, layer));
     typename Lattice<dim>::Index reach_in_sites{};
     for (const FamilyMember<dim> &member : members)
       for (unsigned int d = 0; d < dim; ++d)
@@ -98,6 +102,16 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool Families<dim>::in_table(const typename Lattice<dim>::Index &site) const
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      if (site[d] < corner[d] || site[d] >= corner[d] + extent[d])
+        return false;
+    return true;
+  }
+
+
+  template <int dim>
   std::size_t Families<dim>::site_key(const typename Lattice<dim>::Index &site) const
   {
     std::size_t key = 0;
@@ -134,8 +148,10 @@ namespace PeriDeal
     node_of_site.assign(n_sites, numbers::invalid_unsigned_int);
     for (unsigned int i = 0; i < own_nodes->n_local(); ++i)
       node_of_site[site_key(own_nodes->lattice()->index(own_nodes->position(i)))] = i;
+    // Images of ghosts may lie beyond the table, where no owned node has a bond to.
     for (unsigned int f = 0; f < outside.size(); ++f)
-      outside_of_site[site_key(outside[f].site)].push_back(own_nodes->n_local() + f);
+      if (in_table(outside[f].site))
+        outside_of_site[site_key(outside[f].site)].push_back(own_nodes->n_local() + f);
   }
 
 
@@ -222,19 +238,50 @@ namespace PeriDeal
       {
         if (!crack.is_near(own_nodes->position(node), farthest))
           continue;
-        const Point<dim> a = own_nodes->crack_point(node), b = neighbor < own_nodes->n_local() ?
-                                                                 own_nodes->crack_point(neighbor) :
-                                                                 position(neighbor);
-        if (!crack.separates(a, b))
-          continue;
-        cut = true;
-        kept *= contact_conductance < 0. ?
-                  transmission :
-                  contact_fraction(contact_conductance,
-                                   std::abs(bond_vector(node, neighbor) * crack.normal()),
-                                   bond_conductivity(node, neighbor));
+        const auto test = [&](const Point<dim> &a, const Point<dim> &b) {
+          if (!crack.separates(a, b))
+            return;
+          cut = true;
+          kept *= contact_conductance < 0. ?
+                    transmission :
+                    contact_fraction(contact_conductance,
+                                     std::abs((b - a) * crack.normal()),
+                                     bond_conductivity(node, neighbor));
+        };
+        if (neighbor < own_nodes->n_local())
+          test(own_nodes->crack_point(node), own_nodes->crack_point(neighbor));
+        else
+          test_images(node, outside[neighbor - own_nodes->n_local()], test);
       }
     return kept;
+  }
+
+
+  template <int dim>
+  template <typename Test>
+  void Families<dim>::test_images(const unsigned int         node,
+                                  const FictitiousNode<dim> &fictitious,
+                                  const Test                &test) const
+  {
+    // The body and its cracks are mirrored to the outside. Instead of the cracks mirror the bond, about each set of the sides that it passes.
+    const Lattice<dim> &lattice = *own_nodes->lattice();
+    const auto          origin  = lattice.index(own_nodes->position(fictitious.mirror));
+    for (unsigned int image = 0; image < (1u << dim); ++image)
+      {
+        auto a = lattice.index(own_nodes->position(node)), b = fictitious.site;
+        bool mirrored = true;
+        for (unsigned int d = 0; d < dim && mirrored; ++d)
+          if ((image >> d) & 1)
+            {
+              // The sum of the sites of mirror images of each other is that of the mirror and the fictitious node.
+              mirrored        = origin[d] != fictitious.site[d];
+              const int twice = origin[d] + fictitious.site[d];
+              a[d]            = twice - a[d];
+              b[d]            = twice - b[d];
+            }
+        if (mirrored)
+          test(lattice.position(a), lattice.position(b));
+      }
   }
 
 
@@ -252,7 +299,9 @@ namespace PeriDeal
     bond.intact   = own_nodes->volume(node) * volume * w * bond_conductivity(node, neighbor);
     bond.weight   = bond.intact * kept_fraction(node, neighbor, bond.cut);
     if (!factors.empty())
-      bond.weight *= 0.5 * (factors[node] + (real ? factors[neighbor] : factors[node]));
+      bond.weight *=
+        0.5 * (factors[node] +
+               factors[real ? neighbor : outside[neighbor - own_nodes->n_local()].mirror]);
     bonds.push_back(bond);
   }
 
@@ -282,15 +331,23 @@ namespace PeriDeal
   {
     const double volume    = own_nodes->volume(node);
     unsigned int n_present = 0;
+    // The missing half of a vertex on a side is a node at the same place: one term for both.
+    const auto is_second_half = [&](const Bond &bond) {
+      return bond.neighbor >= own_nodes->n_local() &&
+             node_at(outside[bond.neighbor - own_nodes->n_local()].site) !=
+               numbers::invalid_unsigned_int;
+    };
     for (const Bond &bond : bonds)
       for (const FamilyMember<dim> &self : self_additions)
-        if (bond.weight > 0. && is_offset(bond_vector(node, bond.neighbor), self))
+        if (bond.weight > 0. && !is_second_half(bond) &&
+            is_offset(bond_vector(node, bond.neighbor), self))
           ++n_present;
     // In a bar the term is the mean over the neighbours that are there (Bobaru 2010, section 3).
     const double share = dim == 1 && n_present == 1 ? 2. : 1.;
     for (Bond &bond : bonds)
       for (const FamilyMember<dim> &self : self_additions)
-        if (bond.intact > 0. && is_offset(bond_vector(node, bond.neighbor), self))
+        if (bond.intact > 0. && !is_second_half(bond) &&
+            is_offset(bond_vector(node, bond.neighbor), self))
           {
             const double intact =
               share * volume * volume * self.weight * bond_conductivity(node, bond.neighbor);
@@ -377,10 +434,7 @@ namespace PeriDeal
   template <int dim>
   unsigned int Families<dim>::node_at(const typename Lattice<dim>::Index &site) const
   {
-    for (unsigned int d = 0; d < dim; ++d)
-      if (site[d] < corner[d] || site[d] >= corner[d] + extent[d])
-        return numbers::invalid_unsigned_int;
-    return node_of_site[site_key(site)];
+    return in_table(site) ? node_of_site[site_key(site)] : numbers::invalid_unsigned_int;
   }
 
   template <int dim>

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <perideal/base/user_error.h>
 #include <perideal/laws/kernel.h>
@@ -60,35 +61,35 @@ namespace PeriDeal
         if (neighbor == node || r <= tiny)
           continue; // the node itself, or its twin across a crack
         double w = 0.;
-        if (!members.empty())
-          {
-            for (const FamilyMember<dim> &member : members)
-              if (is_offset(xi, member))
-                w = member.weight;
-          }
-        else
+        if (members.empty())
           w = off_lattice_weight(r);
+        else if (const FamilyMember<dim> *member = find_member(xi))
+          w = member->weight;
         if (w > 0.)
           add_bond(node, neighbor, w, bonds);
       }
   }
 
 
-  namespace
+  template <int dim>
+  const FamilyMember<dim> *Families<dim>::find_member(const Tensor<1, dim> &xi) const
   {
-    /** Positions of all nodes on the boundary, gathered on every process. */
-    template <int dim>
-    std::vector<Point<dim>> boundary_positions(const Nodes<dim> &nodes)
-    {
-      std::vector<Point<dim>> own;
-      for (const BoundaryShare &share : nodes.boundary_shares())
-        own.push_back(nodes.position(share.node));
-      std::vector<Point<dim>> all;
-      for (const auto &part : Utilities::MPI::all_gather(nodes.communicator(), own))
-        all.insert(all.end(), part.begin(), part.end());
-      return all;
-    }
-  } // namespace
+    std::array<int, dim> offset;
+    for (unsigned int d = 0; d < dim; ++d)
+      offset[d] = static_cast<int>(std::lround(xi[d] / own_nodes->lattice()->spacing[d]));
+    // The members are sorted with the last coordinate slowest.
+    const auto found =
+      std::lower_bound(members.begin(),
+                       members.end(),
+                       offset,
+                       [](const FamilyMember<dim> &member, const std::array<int, dim> &wanted) {
+                         return std::lexicographical_compare(member.offset.rbegin(),
+                                                             member.offset.rend(),
+                                                             wanted.rbegin(),
+                                                             wanted.rend());
+                       });
+    return found != members.end() && found->offset == offset ? &*found : nullptr;
+  }
 
 
   template <int dim>
@@ -96,15 +97,18 @@ namespace PeriDeal
   {
     double     smallest_count = std::numeric_limits<double>::max();
     double     sum = 0., n_full = 0.;
-    const auto boundary = boundary_positions(*own_nodes);
+    LinearAlgebra::distributed::Vector<double>   at_boundary(own_nodes->partitioner());
     std::vector<std::pair<unsigned int, double>> found;
+    for (const BoundaryShare &share : own_nodes->boundary_shares())
+      at_boundary.local_element(share.node) = 1.;
+    at_boundary.update_ghost_values();
     for (unsigned int i = 0; i < own_nodes->n_owned(); ++i)
       {
         const Point<dim> &p = own_nodes->position(i);
         search->within(p, farthest, found);
         smallest_count  = std::min(smallest_count, static_cast<double>(found.size()) - 1.);
-        const bool full = std::none_of(boundary.begin(), boundary.end(), [&](const Point<dim> &b) {
-          return b.distance_square(p) < farthest * farthest;
+        const bool full = std::none_of(found.begin(), found.end(), [&](const auto &f) {
+          return at_boundary.local_element(f.first) > 0.;
         });
         if (!full || !members.empty())
           continue;

@@ -102,6 +102,10 @@ namespace PeriDeal
           conditions.symmetry.end();
         if (dirichlet == nullptr && !symmetric)
           continue;
+        AssertThrow(
+          lattice.n_sites[side / 2] > reach[side / 2],
+          UserError("'Boundary treatment' and 'Symmetry': the body is narrower than the horizon, so that one mirror image "
+                    "does not fill a family. Choose a smaller 'Horizon' in section 'Peridynamics'."));
         const auto add_image = [&](const FictitiousNode<dim> &original) {
           const int inside = depth(lattice, original.site, side);
           if (inside < 0 || inside > reach[side / 2] ||

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -48,9 +49,97 @@ namespace PeriDeal
                   const FaceKey<dim>            &face,
                   const CrackGeometry<dim>      &crack)
     {
-      return std::all_of(face.begin(), face.end(), [&](const unsigned int v) {
+      Point<dim> center;
+      for (const unsigned int v : face)
+        center += (p[v] - Point<dim>()) / static_cast<double>(face.size());
+      // The centre too: all corners of a face may touch the edge of a crack that is not convex.
+      return crack.contains(center) && std::all_of(face.begin(), face.end(), [&](const unsigned int v) {
         return crack.contains(p[v]);
       });
+    }
+
+
+    /** The part of a segment or polygon in the half space normal * (x - origin) <= 0. */
+    template <int dim>
+    std::vector<Point<dim>> clipped(const std::vector<Point<dim>> &corners,
+                                    const Point<dim>              &origin,
+                                    const Tensor<1, dim>          &normal)
+    {
+      std::vector<Point<dim>> inside;
+      for (std::size_t i = 0; i < corners.size(); ++i)
+        {
+          const Point<dim> &a = corners[i], &b = corners[(i + 1) % corners.size()];
+          const double      at_a = normal * (a - origin), at_b = normal * (b - origin);
+          if (at_a <= 0.)
+            inside.push_back(a);
+          if ((at_a < 0. && at_b > 0.) || (at_a > 0. && at_b < 0.))
+            inside.push_back(a + at_a / (at_a - at_b) * (b - a));
+        }
+      return inside;
+    }
+
+
+    /** Length of a segment, area of a planar polygon. */
+    template <int dim>
+    double measure(const std::vector<Point<dim>> &corners)
+    {
+      if (corners.size() < 2)
+        return 0.;
+      if constexpr (dim == 3)
+        {
+          Tensor<1, dim> doubled_area;
+          for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+            doubled_area += cross_product_3d(corners[i] - corners[0], corners[i + 1] - corners[0]);
+          return 0.5 * doubled_area.norm();
+        }
+      double longest = 0.;
+      for (const Point<dim> &p : corners)
+        longest = std::max(longest, p.distance(corners[0]));
+      return longest;
+    }
+
+
+    /** Outward normal of face f, not of unit length. */
+    template <int dim>
+    Tensor<1, dim> face_normal(const std::vector<Point<dim>> &p,
+                               const FaceKey<dim>            &face,
+                               const Tensor<1, dim>          &outward)
+    {
+      Tensor<1, dim> normal;
+      if constexpr (dim == 2)
+        normal = cross_product_2d(p[face[1]] - p[face[0]]);
+      else if constexpr (dim == 3)
+        normal = cross_product_3d(p[face[3]] - p[face[0]], p[face[2]] - p[face[1]]);
+      return normal * outward < 0. ? -normal : normal;
+    }
+
+
+    /** How much of a crack a cell holds, its faces included. */
+    template <int dim>
+    double measure_in_cell(const std::vector<Point<dim>> &p,
+                           const CellData<dim>           &cell,
+                           const CrackGeometry<dim>      &crack)
+    {
+      constexpr double slack = 1e-8; // outwards, relative to the cell: its faces belong to it
+      Point<dim>       center;
+      for (const unsigned int v : cell.vertices)
+        center += (p[v] - Point<dim>()) / static_cast<double>(cell.vertices.size());
+      double size = 0.;
+      for (const unsigned int v : cell.vertices)
+        size = std::max(size, p[v].distance(center));
+      if (!crack.is_near(center, 1.01 * size))
+        return 0.;
+      std::vector<Point<dim>> part = crack.corners();
+      for (unsigned int f = 0; f < GeometryInfo<dim>::faces_per_cell && !part.empty(); ++f)
+        {
+          const FaceKey<dim> face = face_vertices<dim>(cell, f);
+          Point<dim>         middle;
+          for (const unsigned int v : face)
+            middle += (p[v] - Point<dim>()) / static_cast<double>(face.size());
+          const Tensor<1, dim> outward = middle - center;
+          part = clipped<dim>(part, middle + slack * outward, face_normal<dim>(p, face, outward));
+        }
+      return measure<dim>(part);
     }
 
     /** The (at most two) cells on each face, by the face's sorted vertices. */
@@ -110,6 +199,16 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool lies_on_faces(const CoarseMesh<dim> &mesh, const CrackGeometry<dim> &crack)
+  {
+    double held = 0.;
+    for (const CellData<dim> &cell : mesh.cells)
+      held += measure_in_cell<dim>(mesh.vertices, cell, crack);
+    return std::abs(held - 2. * measure_on_faces(mesh, crack)) <= 1e-6 * crack.measure();
+  }
+
+
+  template <int dim>
   void cut_along_faces(CoarseMesh<dim> &mesh, const std::vector<CrackGeometry<dim>> &cracks)
   {
     std::map<unsigned int, std::vector<std::pair<unsigned int, unsigned int>>> joined;
@@ -157,6 +256,7 @@ namespace PeriDeal
 
 #define PERIDEAL_INSTANTIATE(dim)                                                        \
   template double measure_on_faces(const CoarseMesh<dim> &, const CrackGeometry<dim> &); \
+  template bool   lies_on_faces(const CoarseMesh<dim> &, const CrackGeometry<dim> &);    \
   template void   cut_along_faces(CoarseMesh<dim> &, const std::vector<CrackGeometry<dim>> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

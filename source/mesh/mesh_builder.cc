@@ -107,7 +107,7 @@ namespace PeriDeal
                                          const std::vector<CrackGeometry<dim>> &cracks)
     {
       for (const CrackGeometry<dim> &crack : cracks)
-        if (std::abs(measure_on_faces(mesh, crack) - crack.measure()) > 1e-8 * crack.measure())
+        if (!lies_on_faces(mesh, crack))
           return &crack;
       return nullptr;
     }
@@ -150,24 +150,12 @@ namespace PeriDeal
     }
 
 
-    /** A key of a face's centre that does not depend on round-off in its last digits. */
-    template <int dim>
-    std::array<long long, dim> face_key(const Point<dim> &center, const double size)
-    {
-      std::array<long long, dim> key;
-      for (unsigned int d = 0; d < dim; ++d)
-        key[d] = std::llround(center[d] / size * 1e9);
-      return key;
-    }
-
-    template <int dim>
-    using BoundaryIds = std::map<std::array<long long, dim>, types::boundary_id>;
+    /** Of the boundary faces of a file, by the number of the cell and of its face; cutting along cracks leaves both as they are. */
+    using BoundaryIds = std::map<std::pair<unsigned int, unsigned int>, types::boundary_id>;
 
 
     template <int dim>
-    CoarseMesh<dim> read_mesh_file(const std::string &file_name,
-                                   BoundaryIds<dim>  &ids,
-                                   double            &size)
+    CoarseMesh<dim> read_mesh_file(const std::string &file_name, BoundaryIds &ids)
     {
       std::ifstream file(file_name);
       AssertThrow(file,
@@ -194,11 +182,10 @@ namespace PeriDeal
       CoarseMesh<dim> coarse;
       SubCellData     faces;
       std::tie(coarse.vertices, coarse.cells, faces) = GridTools::get_coarse_mesh_description(mesh);
-      size                                           = GridTools::diameter(mesh);
       for (const auto &cell : mesh.active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary())
-            ids[face_key<dim>(cell->face(f)->center(), size)] = cell->face(f)->boundary_id();
+            ids[{cell->active_cell_index(), f}] = cell->face(f)->boundary_id();
       return coarse;
     }
 
@@ -236,12 +223,14 @@ namespace PeriDeal
             false,
             parallel::shared::Triangulation<1>::partition_custom_signal);
           parallel::shared::Triangulation<1> *pointer = mesh.get();
-          mesh->signals.post_refinement.connect([pointer, communicator]() {
+          const auto partition = [pointer, communicator]() {
             const std::size_t n_proc = Utilities::MPI::n_mpi_processes(communicator);
             std::size_t       n      = 0;
             for (const auto &cell : pointer->active_cell_iterators())
               cell->set_subdomain_id(n++ * n_proc / pointer->n_active_cells());
-          });
+          };
+          mesh->signals.create.connect(partition);
+          mesh->signals.post_refinement.connect(partition);
           return mesh;
         }
       else
@@ -262,11 +251,10 @@ namespace PeriDeal
         cut.emplace_back(corners);
 
     CoarseMesh<dim>  coarse;
-    BoundaryIds<dim> ids;
+    BoundaryIds      ids;
     unsigned int     n_refinements = 0;
-    double           size          = 1.;
     if (domain.shape == Shape::mesh_file)
-      coarse = read_mesh_file<dim>(domain.mesh_file, ids, size);
+      coarse = read_mesh_file<dim>(domain.mesh_file, ids);
     else if (domain.shape == Shape::plate_with_hole)
       {
         coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {
@@ -293,7 +281,7 @@ namespace PeriDeal
         if (cell->face(f)->at_boundary())
           {
             const Point<dim> center = cell->face(f)->center();
-            const auto       found  = ids.find(face_key<dim>(center, size));
+            const auto       found  = ids.find({static_cast<unsigned int>(cell->index()), f});
             cell->face(f)->set_boundary_id(domain.shape != Shape::mesh_file ?
                                              box_side(domain, cut, center) :
                                            found != ids.end() ? found->second :

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <sstream>
 
 namespace PeriDeal
 {
@@ -95,6 +96,11 @@ namespace PeriDeal
     , owned_count(dof_handler.locally_owned_dofs().n_elements())
     , regular(lattice_of(domain, !is_vertex_element(dof_handler)))
   {
+    const FiniteElement<dim> &fe = dof_handler.get_fe();
+    AssertThrow(fe.n_components() == 1 &&
+                  fe.n_dofs_per_cell() == (fe.n_dofs_per_vertex() > 0 ? 1u << dim : 1u),
+                ExcMessage("Peridynamic nodes are the dofs of FE_Q(1) or FE_DGQ(0), found " +
+                           fe.get_name() + "."));
     find_positions(domain);
     find_volumes(nodal_volume);
     find_boundary_shares();
@@ -108,14 +114,23 @@ namespace PeriDeal
   void Nodes<dim>::find_positions(const Domain<dim> &)
   {
     positions.resize(owned_count);
-    const bool vertices = is_vertex_element(*dofs);
-    double     edge     = std::numeric_limits<double>::max();
+    const bool         vertices = is_vertex_element(*dofs);
+    double             edge     = std::numeric_limits<double>::max();
+    std::ostringstream message;
     for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &cell, const unsigned int v) {
       const Point<dim> p = vertices ? cell->vertex(v) : cell->center();
       positions[node]    = regular ? regular->position(regular->index(p)) : p;
+      if (regular && positions[node].distance(p) > 1e-6 * regular->spacing.norm())
+        {
+          message.str("");
+          message << "The mesh has a node at (" << p
+                  << "), which is not on the lattice that section "
+                     "'Domain' describes by its corners and 'Cells'.";
+        }
       if (!regular)
         edge = std::min(edge, cell->minimum_vertex_distance());
     });
+    throw_on_all_if_any(communicator(), message.str());
     if (regular)
       for (unsigned int d = 0; d < dim; ++d)
         edge = std::min(edge, regular->spacing[d]);

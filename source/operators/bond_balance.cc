@@ -6,6 +6,7 @@
 #include <perideal/operators/bond_operator.h>
 
 #include <algorithm>
+#include <map>
 
 namespace PeriDeal
 {
@@ -47,6 +48,9 @@ namespace PeriDeal
     // Bonds to fictitious nodes: they carry heat through the side that these lie behind.
     if (!bonds.fictitious().empty())
       {
+        std::map<unsigned int, const SideCondition *> prescribed;
+        for (const auto &entry : constraints.prescribed_nodes())
+          prescribed[entry.node] = entry.condition;
         std::vector<typename Families<dim>::Bond> family;
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
           {
@@ -66,12 +70,12 @@ namespace PeriDeal
                   const unsigned int f    = bond.neighbor - nodes.n_local();
                   const double       heat = bond.weight * (outside_values[f] - u.local_element(i));
                   balance.sides[name_of_side(bonds.fictitious()[f].side, box)] += heat;
-                  if (constraints.kind(i) == NodeConstraints<dim>::prescribed)
-                    // Already in the node's own sum, with the other sign.
-                    for (const auto &entry : constraints.prescribed_nodes())
-                      if (entry.node == i)
-                        balance.sides[name_of_side(bonds.fictitious()[f].side, box)] -= heat,
-                          balance.sides[entry.condition->name] += heat;
+                  // In a prescribed node's own sum already, with the other sign.
+                  if (const auto entry = prescribed.find(i); entry != prescribed.end())
+                    {
+                      balance.sides[name_of_side(bonds.fictitious()[f].side, box)] -= heat;
+                      balance.sides[entry->second->name] += heat;
+                    }
                 }
           }
       }

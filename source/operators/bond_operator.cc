@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/node_loops.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/bond_operator.h>
 #include <perideal/operators/spectrum.h>
@@ -21,7 +22,11 @@ namespace PeriDeal
     , bonds(nodes, scene)
     , constraints(bonds, scene)
   {
-    initialize_vector(scratch);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      if (constraints.kind(i) != NodeConstraints<dim>::free)
+        held.push_back(i);
+    if (constraints.any_slave())
+      initialize_vector(scratch);
     find_capacity();
     find_side_loads();
     if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling)
@@ -37,7 +42,8 @@ namespace PeriDeal
         Vector loads;
         initialize_vector(loads);
         add_loads_now(loads, 0.);
-        constant_loads.swap(loads);
+        if (std::any_of(loads.begin(), loads.end(), [](const double load) { return load != 0.; }))
+          constant_loads.swap(loads);
       }
   }
 
@@ -141,30 +147,19 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes = bonds.nodes();
     initialize_vector(bond_diagonal);
-    std::vector<typename Families<dim>::Bond> family;
-    std::string                               message;
-    double                                    n_directed = 0.;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        bonds.bonds_of(i, family);
-        double sum = 0.;
-        for (const auto &bond : family)
-          {
-            sum += bond.weight;
-            if (bond.weight > 0.)
-              n_directed += bond.neighbor < nodes.n_local() ? 0.5 : 1.;
-          }
-        if (!(sum > 0.) && message.empty() && constraints.kind(i) == NodeConstraints<dim>::free)
-          {
-            std::ostringstream where;
-            where << "(" << nodes.position(i) << ")";
-            message =
-              "The node at " + where.str() +
-              " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section "
-              "'Cracks', which may cut all bonds of a node (a crack in 'Horizon ratio' close to 1).";
-          }
-        bond_diagonal.local_element(i) = sum;
-      }
+    const double n_own = form->row_sums(bond_diagonal.begin());
+    std::string  message;
+    for (unsigned int i = 0; i < nodes.n_owned() && message.empty(); ++i)
+      if (!(bond_diagonal.local_element(i) > 0.) &&
+          constraints.kind(i) == NodeConstraints<dim>::free)
+        {
+          std::ostringstream where;
+          where << "(" << nodes.position(i) << ")";
+          message =
+            "The node at " + where.str() +
+            " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section "
+            "'Cracks', which may cut all bonds of a node (a crack in 'Horizon ratio' close to 1).";
+        }
     throw_on_all_if_any(nodes.communicator(), message);
     for (const auto &[node, h] : convection_diagonal)
       bond_diagonal.local_element(node) += h;
@@ -174,7 +169,7 @@ namespace PeriDeal
         bound = std::max(bound, 2. * bond_diagonal.local_element(i) / capacity.local_element(i));
     gershgorin = Utilities::MPI::max(bound, nodes.communicator());
     n_bonds    = static_cast<unsigned long long>(
-      std::llround(Utilities::MPI::sum(n_directed, nodes.communicator())));
+      std::llround(Utilities::MPI::sum(n_own, nodes.communicator())));
     n_nonzeros = Utilities::MPI::sum(form->n_stored(), nodes.communicator());
     constraints.mask(bond_diagonal, 1.);
   }
@@ -208,7 +203,44 @@ namespace PeriDeal
 
 
   template <int dim>
+  void BondOperator<dim>::add_convection(Vector            &y,
+                                         const Vector      &x,
+                                         const unsigned int begin,
+                                         const unsigned int end) const
+  {
+    for (auto entry = std::lower_bound(convection_diagonal.begin(),
+                                       convection_diagonal.end(),
+                                       begin,
+                                       [](const auto &a, const unsigned int b) {
+                                         return a.first < b;
+                                       });
+         entry != convection_diagonal.end() && entry->first < end;
+         ++entry)
+      y.local_element(entry->first) += entry->second * x.local_element(entry->first);
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::clear_held(Vector            &y,
+                                     const unsigned int begin,
+                                     const unsigned int end) const
+  {
+    for (auto node = std::lower_bound(held.begin(), held.end(), begin);
+         node != held.end() && *node < end;
+         ++node)
+      y.local_element(*node) = 0.;
+  }
+
+
+  template <int dim>
   void BondOperator<dim>::apply(Vector &y, const Vector &x) const
+  {
+    apply_then(y, x, [](const unsigned int, const unsigned int) {});
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::apply_then(Vector &y, const Vector &x, const RowsAction &finish) const
   {
     ++applications;
     const Vector *input = &x;
@@ -222,10 +254,14 @@ namespace PeriDeal
     const auto &fictitious = bonds.fictitious();
     for (std::size_t f = 0; f < fictitious.size(); ++f)
       outside_signs_only[f] = fictitious[f].sign * input->local_element(fictitious[f].mirror);
-    sum_bonds(y, *input, outside_signs_only.data());
-    for (const auto &[node, h] : convection_diagonal)
-      y.local_element(node) += h * input->local_element(node);
-    constraints.mask(y);
+    form->apply(y.begin(),
+                input->begin(),
+                outside_signs_only.data(),
+                [&](const unsigned int begin, const unsigned int end) {
+                  add_convection(y, *input, begin, end);
+                  clear_held(y, begin, end);
+                  finish(begin, end);
+                });
     input->set_ghost_state(false);
   }
 
@@ -233,16 +269,42 @@ namespace PeriDeal
   template <int dim>
   void BondOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
   {
+    residual_then(r, u, t, [](const unsigned int, const unsigned int) {});
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::residual_then(Vector           &r,
+                                        const Vector     &u,
+                                        const double      t,
+                                        const RowsAction &finish) const
+  {
     ++applications;
     u.update_ghost_values();
     fictitious_values(u, t, outside_values);
-    sum_bonds(r, u, outside_values.data());
-    for (const auto &[node, h] : convection_diagonal)
-      r.local_element(node) += h * u.local_element(node);
-    r *= -1.;
-    add_loads(r, t);
-    constraints.mask(r);
+    double       *values = r.begin();
+    const double *loads  = constant_loads.size() > 0 ? constant_loads.begin() : nullptr;
+    form->apply(values,
+                u.begin(),
+                outside_values.data(),
+                [&](const unsigned int begin, const unsigned int end) {
+                  add_convection(r, u, begin, end);
+                  if (loads != nullptr)
+                    NodeLoops::subtract_from(values + begin, loads + begin, end - begin);
+                  else
+                    NodeLoops::negate(values + begin, end - begin);
+                  clear_held(r, begin, end);
+                  if (!loads_vary)
+                    finish(begin, end);
+                });
     u.set_ghost_state(false);
+    if (loads_vary)
+      {
+        add_loads_now(r, t);
+        const unsigned int n = r.locally_owned_size();
+        clear_held(r, 0, n);
+        finish(0, n);
+      }
   }
 
 
@@ -251,7 +313,7 @@ namespace PeriDeal
   {
     if (loads_vary)
       add_loads_now(r, t);
-    else
+    else if (constant_loads.size() > 0)
       r += constant_loads;
   }
 

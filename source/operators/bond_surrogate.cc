@@ -4,6 +4,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
+#include <perideal/laws/interface.h>
 #include <perideal/operators/bond_operator.h>
 
 #include <cmath>
@@ -14,19 +15,27 @@ namespace PeriDeal
 
   namespace
   {
-    /** Conductance of a bond between nearest neighbours as a 5 or 7 point scheme has it; zero for longer bonds and cut ones. */
+    /**
+     * Conductance of a bond between nearest neighbours as a 5 or 7 point scheme has it; zero for longer bonds and cut ones. The same from both ends, so that the
+     * matrix is symmetric.
+     */
     template <int dim>
     double neighbor_conductance(const Families<dim>                &families,
+                                const InterfaceRule                 rule,
                                 const unsigned int                  node,
                                 const typename Families<dim>::Bond &bond)
     {
       const Nodes<dim> &nodes = families.nodes();
-      if (bond.neighbor >= nodes.n_local() || bond.intact == 0.)
+      if (bond.intact == 0.)
         return 0.;
       const Tensor<1, dim> xi     = families.bond_vector(node, bond.neighbor);
-      const double         volume = std::sqrt(nodes.volume(node) * nodes.volume(bond.neighbor));
+      const unsigned int   real   = bond.neighbor < nodes.n_local() ?
+                                      bond.neighbor :
+                                      families.fictitious()[bond.neighbor - nodes.n_local()].mirror;
+      const double         volume = std::sqrt(nodes.volume(node) * nodes.volume(real));
       const double         kept   = bond.weight / bond.intact;
-      const double         kappa  = bond.intact > 0. ? families.conductivity(node) : 0.;
+      const double         kappa =
+        interface_conductivity(rule, families.conductivity(node), families.conductivity(real));
       if (nodes.lattice())
         {
           unsigned int n_steps = 0;
@@ -56,6 +65,7 @@ namespace PeriDeal
 
     std::vector<typename Families<dim>::Bond>    family;
     std::vector<unsigned int>                    starts{0};
+    std::vector<double>                          outside(nodes.n_owned(), 0.);
     std::vector<std::pair<unsigned int, double>> entries;
     TrilinosWrappers::SparsityPattern            pattern(owned,
                                               nodes.communicator(),
@@ -68,8 +78,16 @@ namespace PeriDeal
           {
             bonds.bonds_of(i, family);
             for (const auto &bond : family)
-              if (const double c = neighbor_conductance(bonds, i, bond); c > 0.)
+              if (const double c =
+                    neighbor_conductance(bonds, scene.material.interface_rule, i, bond);
+                  c > 0.)
                 {
+                  if (bond.neighbor >= nodes.n_local())
+                    {
+                      // A fictitious node holds its neighbours as far as it does not follow its mirror.
+                      outside[i] += (1. - bonds.fictitious()[bond.neighbor - nodes.n_local()].sign) * c;
+                      continue;
+                    }
                   entries.emplace_back(bond.neighbor, c);
                   pattern.add(row, nodes.partitioner()->local_to_global(bond.neighbor));
                 }
@@ -84,7 +102,7 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const auto row  = nodes.partitioner()->local_to_global(i);
-        double     diag = convection[i];
+        double     diag = convection[i] + outside[i];
         for (unsigned int k = starts[i]; k < starts[i + 1]; ++k)
           {
             const auto [j, c] = entries[k];

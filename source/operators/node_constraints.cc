@@ -202,6 +202,8 @@ namespace PeriDeal
       k = static_cast<int>(n_coupled++);
     if (n_coupled == 0)
       return;
+    coupled_loads.resize(n_coupled);
+    coupled_values.resize(n_coupled);
 
     std::vector<Eigen::Triplet<double>> entries;
     for (unsigned int k = 0; k < n_coupled; ++k)
@@ -236,7 +238,7 @@ namespace PeriDeal
     if (!slaves_exist)
       return;
     u.update_ghost_values();
-    Eigen::VectorXd load = Eigen::VectorXd::Zero(n_coupled);
+    coupled_loads.setZero();
     for (const Slave &entry : slaves)
       {
         double value = homogeneous ? 0. :
@@ -245,20 +247,20 @@ namespace PeriDeal
         for (const auto &[master, coefficient] : entry.masters)
           value += coefficient * u.local_element(master);
         if (entry.coupled >= 0)
-          load[entry.coupled] = value;
+          coupled_loads[entry.coupled] = value;
         else
           u.local_element(entry.node) = value;
       }
     if (n_coupled > 0)
       {
         // Each entry has one owner, the others add zero: exact in any order.
-        Utilities::MPI::sum(ArrayView<const double>(load.data(), n_coupled),
+        Utilities::MPI::sum(ArrayView<const double>(coupled_loads.data(), n_coupled),
                             nodes.communicator(),
-                            ArrayView<double>(load.data(), n_coupled));
-        const Eigen::VectorXd value = coupling.solve(load);
+                            ArrayView<double>(coupled_loads.data(), n_coupled));
+        coupled_values = coupling.solve(coupled_loads);
         for (const Slave &entry : slaves)
           if (entry.coupled >= 0)
-            u.local_element(entry.node) = value[entry.coupled];
+            u.local_element(entry.node) = coupled_values[entry.coupled];
       }
     u.set_ghost_state(false);
   }

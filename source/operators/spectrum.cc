@@ -12,51 +12,47 @@ namespace PeriDeal
 {
   namespace
   {
-    /** x <- C^{-1/2} x or C^{1/2} x. */
-    void scale(Vector &x, const Vector &capacity, const bool inverse)
+    /**
+     * Largest eigenvalue by Lanczos iterations with the last two vectors only: once an eigenvalue has converged copies of it appear,
+     * but the largest one is as good as with all vectors kept, which would take more memory than all else.
+     */
+    double lanczos(const Operator &op, Vector &now)
     {
-      for (unsigned int i = 0; i < x.locally_owned_size(); ++i)
-        {
-          const double root = std::sqrt(capacity.local_element(i));
-          x.local_element(i) *= inverse ? 1. / root : root;
-        }
-    }
-
-
-    double lanczos(const Operator &op, Vector &start)
-    {
-      constexpr unsigned int n_max    = 60;
-      const Vector          &capacity = op.lumped_capacity();
-      std::vector<Vector>    basis;
+      constexpr unsigned int n_max = 60;
       std::vector<double>    alpha, beta;
-      Vector                 x(start), y(start);
-      scale(start, capacity, false);
-      start /= start.l2_norm();
-      basis.push_back(start);
-      double bound = 0.;
+      Vector                 inverse_root(op.lumped_capacity()), last(now), x(now), y(now);
+      for (double &c : inverse_root)
+        c = 1. / std::sqrt(c);
+      for (unsigned int i = 0; i < now.locally_owned_size(); ++i)
+        now.local_element(i) /= inverse_root.local_element(i);
+      now /= now.l2_norm();
+      last         = 0.;
+      double bound = 0., norm = 0.;
       for (unsigned int k = 0; k < n_max; ++k)
         {
-          x = basis.back();
-          scale(x, capacity, true);
-          op.apply(y, x);
-          scale(y, capacity, true);
-          alpha.push_back(basis.back() * y);
-          for (unsigned int pass = 0; pass < 2; ++pass)
-            for (const Vector &v : basis)
-              y.add(-(v * y), v);
-          const double          norm     = y.l2_norm();
+          x = now;
+          x.scale(inverse_root);
+          op.apply_then(y, x, [&](const unsigned int begin, const unsigned int end) {
+            for (unsigned int i = begin; i < end; ++i)
+              y.local_element(i) =
+                inverse_root.local_element(i) * y.local_element(i) - norm * last.local_element(i);
+          });
+          alpha.push_back(now * y);
+          y.add(-alpha.back(), now);
+          norm                           = y.l2_norm();
           const Eigen::VectorXd diagonal = Eigen::Map<Eigen::VectorXd>(alpha.data(), alpha.size());
           const Eigen::VectorXd side     = Eigen::Map<Eigen::VectorXd>(beta.data(), beta.size());
           Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
           ritz.computeFromTridiagonal(diagonal, side);
-          const Eigen::Index last     = diagonal.size() - 1;
-          const double       residual = norm * std::abs(ritz.eigenvectors()(last, last));
-          bound                       = ritz.eigenvalues()[last] + residual;
+          const Eigen::Index end      = diagonal.size() - 1;
+          const double       residual = norm * std::abs(ritz.eigenvectors()(end, end));
+          bound                       = ritz.eigenvalues()[end] + residual;
           if (residual < 5e-3 * bound || norm <= 1e-12 * bound)
             break;
           beta.push_back(norm);
           y /= norm;
-          basis.push_back(y);
+          last.swap(now);
+          now.swap(y);
         }
       return bound;
     }

@@ -9,6 +9,7 @@
 #include <perideal/output/field_writer.h>
 
 #include <fstream>
+#include <numeric>
 
 namespace PeriDeal
 {
@@ -150,10 +151,9 @@ namespace PeriDeal
     write("nodes", columns[0]);
     for (std::size_t k = 0; k < names.size(); ++k)
       write(names[k], columns[k + 1]);
-    auto                     cells = file.create_dataset<unsigned int>("cells", {n / 2, 2});
-    FullMatrix<unsigned int> pairs(n / 2, 2);
-    for (unsigned int i = 0; i < n; ++i)
-      pairs(i / 2, i % 2) = i;
+    auto                      cells = file.create_dataset<unsigned int>("cells", {n / 2, 2});
+    std::vector<unsigned int> pairs(n);
+    std::iota(pairs.begin(), pairs.end(), 0u);
     cells.write(pairs);
   }
 

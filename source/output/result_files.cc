@@ -6,6 +6,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/output/result_files.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -14,54 +15,81 @@ namespace PeriDeal
 {
   namespace
   {
-    /** Files and folders of a run, by the first part of their names. */
-    bool is_result(const std::filesystem::path &path)
+    namespace fs = std::filesystem;
+
+    bool begins_with(const std::string &text, const std::string &begin)
     {
-      static const std::vector<std::string> names = {"summary.json",
-                                                     "report.html",
-                                                     "probes.csv",
-                                                     "line.csv",
-                                                     "totals.csv",
-                                                     "scene.prm",
-                                                     "fields"};
-      const std::string                     name  = path.filename().string();
-      for (const std::string &known : names)
-        if (name == known)
-          return true;
-      return path.extension() == ".pvd" || path.extension() == ".xdmf";
+      return text.compare(0, begin.size(), begin) == 0;
+    }
+
+
+    /** Files that a run writes, in its directory or in the folder of fields. Nothing else is ever removed. */
+    bool is_result(const fs::path &path, const bool field)
+    {
+      static const std::vector<std::string> names  = {"summary.json",
+                                                      "report.html",
+                                                      "probes.csv",
+                                                      "line.csv",
+                                                      "totals.csv",
+                                                      "scene.prm"};
+      const std::string                     name   = path.filename().string();
+      const bool                            series = begins_with(name, "finite_elements") ||
+                          begins_with(name, "peridynamics");
+      const std::string                     kind   = path.extension().string();
+      if (field)
+        return series && (kind == ".vtu" || kind == ".pvtu" || kind == ".h5");
+      return std::find(names.begin(), names.end(), name) != names.end() ||
+             (series && (kind == ".pvd" || kind == ".xdmf"));
+    }
+
+
+    void remove_results(const fs::path &directory, const bool field)
+    {
+      if (fs::exists(directory))
+        for (const auto &entry : fs::directory_iterator(directory))
+          if (is_result(entry.path(), field))
+            fs::remove(entry.path());
+    }
+
+
+    /** An empty text, or what is wrong with the directory. */
+    std::string prepare(const fs::path &directory, const fs::path &scene_file)
+    {
+      try
+        {
+          fs::create_directories(directory / "fields");
+          std::error_code no_such_file;
+          if (fs::equivalent(directory / "scene.prm", scene_file, no_such_file))
+            return "the scene file itself, which lies there, would be written over";
+          remove_results(directory, false);
+          remove_results(directory / "fields", true);
+          const fs::path trial = directory / ".perideal_trial";
+          std::ofstream  file(trial);
+          file << "x" << std::flush;
+          if (!file)
+            return "it cannot be written to";
+          file.close();
+          fs::remove(trial);
+          return "";
+        }
+      catch (const fs::filesystem_error &error)
+        {
+          return error.code().message();
+        }
     }
   } // namespace
 
 
-  void prepare_directory(const std::string &directory, const MPI_Comm communicator)
+  void prepare_directory(const std::string &directory,
+                         const std::string &scene_file,
+                         const MPI_Comm     communicator)
   {
-    namespace fs = std::filesystem;
     std::string message;
     if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
-      {
-        try
-          {
-            fs::create_directories(directory);
-            for (const auto &entry : fs::directory_iterator(directory))
-              if (is_result(entry.path()))
-                fs::remove_all(entry.path());
-            fs::create_directories(fs::path(directory) / "fields");
-            const fs::path trial = fs::path(directory) / ".perideal_trial";
-            std::ofstream  file(trial);
-            file << "x" << std::flush;
-            if (!file)
-              message = "it cannot be written to";
-            file.close();
-            fs::remove(trial);
-          }
-        catch (const fs::filesystem_error &error)
-          {
-            message = error.code().message();
-          }
-        if (!message.empty())
-          message = "'Output directory' (outside all sections): cannot use '" + directory +
-                    "': " + message + ". Choose a directory that you may write to.";
-      }
+      message = prepare(directory, scene_file);
+    if (!message.empty())
+      message = "'Output directory' (outside all sections): cannot use '" + directory +
+                "': " + message + ". Choose a directory that you may write to.";
     throw_on_all_if_any(communicator, message);
   }
 
@@ -69,12 +97,18 @@ namespace PeriDeal
   void write_file(const std::string &name, const std::string &text)
   {
     const std::string unfinished = name + ".part";
+    std::error_code   problem;
     {
       std::ofstream file(unfinished);
       file << text << std::flush;
-      AssertThrow(file, UserError("Cannot write '" + name + "': is the disk full?"));
+      if (!file)
+        problem = std::make_error_code(std::errc::io_error);
     }
-    std::filesystem::rename(unfinished, name);
+    if (!problem)
+      fs::rename(unfinished, name, problem);
+    AssertThrow(!problem,
+                UserError("'Output directory' (outside all sections): cannot write '" + name +
+                          "'. Is the disk full, or was the directory removed during the run?"));
   }
 
 

@@ -26,12 +26,15 @@ namespace PeriDeal
             "false",
             "",
             "Solve for the steady state; all other entries of this section are ignored then.");
-    declare("Stepper",
-            EntryType::choice,
-            "auto",
-            "",
-            "Time integration.",
-            {"auto", "euler", "rk4", "rkc2", "chebyshev", "crank nicolson", "bdf2", "sdirk2"});
+    declare(
+      "Stepper",
+      EntryType::choice,
+      "auto",
+      "",
+      "Time integration: `auto` picks chebyshev (constant loads, symmetric operator), else rkc2, and "
+      "sdirk2 for a consistent capacity. Of these three and bdf2 and crank nicolson the steps "
+      "adapt to Tolerance; euler and rk4 have a fixed step.",
+      {"auto", "euler", "rk4", "rkc2", "chebyshev", "crank nicolson", "bdf2", "sdirk2"});
     declare("Time step",
             EntryType::text,
             "auto",
@@ -227,7 +230,8 @@ namespace PeriDeal
       EntryType::text,
       "",
       "temperature",
-      "Exact solution to compare with: a formula of x, y, z, t or the name of an exact solution.");
+      "Exact solution to compare with: a formula of x, y, z, t, or a name (doc/theory.md lists them) "
+      "such as `bobaru 2012 example 1` or `lattice harmonic(1, 1)`.");
   }
 
 

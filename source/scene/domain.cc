@@ -82,7 +82,7 @@ namespace PeriDeal
             EntryType::choice,
             "vertices",
             "",
-            "Where the peridynamic nodes sit.",
+            "Where the peridynamic nodes sit. Finite elements use the vertices in any case.",
             {"vertices", "cell centers"});
     declare(
       "Hole center",
@@ -112,7 +112,8 @@ namespace PeriDeal
       EntryType::text,
       "",
       "",
-      "File of the mesh, relative to the working directory. Its boundary ids name the sides.");
+      "Gmsh file (.msh) of quadrilaterals or hexahedra, relative to the working directory. Its "
+      "boundary ids name the sides; give `Horizon` as a length.");
     parse();
   }
 
@@ -202,6 +203,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Domain<dim>::use_own_mesh()
+  {
+    own_mesh = true;
+    set("Shape", "mesh file");
+  }
+
+
+  template <int dim>
   void Domain<dim>::parse()
   {
     shape = choice<Shape>("Shape");
@@ -216,7 +225,7 @@ namespace PeriDeal
     parse_cells();
     parse_hole();
     mesh_file = text("Mesh file");
-    if (shape == Shape::mesh_file && mesh_file.empty())
+    if (shape == Shape::mesh_file && mesh_file.empty() && !own_mesh)
       error("Mesh file", "is empty, but 'Shape' is 'mesh file'.");
     if (shape != Shape::mesh_file && !mesh_file.empty())
       error("Mesh file", "is given, but 'Shape' is '" + text("Shape") + "', not 'mesh file'.");

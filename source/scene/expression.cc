@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -23,6 +24,9 @@ namespace PeriDeal
 
   namespace
   {
+    DeferredFormulaErrors *collector = nullptr;
+
+
     // What users of deal.II's FunctionParser find beyond muparser's own functions, with the same
     // meaning
     double if_then_else(const double condition, const double a, const double b)
@@ -248,16 +252,30 @@ namespace PeriDeal
     compiled->z        = dim > 2 ? p[dim > 2 ? 2 : 0] : 0.;
     compiled->t        = t;
     const double value = compiled->parser.Eval();
-    if (!std::isfinite(value))
+    if (!std::isfinite(value) && (collector == nullptr || collector->message.empty()))
+      not_finite(p, t);
+    return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
+  }
+
+
+  template <int dim>
+  void Expression::not_finite(const dealii::Point<dim> &p, const double t) const
+  {
+    std::string point;
+    for (unsigned int d = 0; d < dim; ++d)
+      point += (d == 0 ? "" : ", ") + number_text(p[d]);
+    try
       {
-        std::string point;
-        for (unsigned int d = 0; d < dim; ++d)
-          point += (d == 0 ? "" : ", ") + number_text(p[d]);
         entry_error(where,
                     "the value of '" + formula + "' is not finite at (" + point +
-                      "), t = " + number_text(t) + ".");
+                      "), t = " + number_text(t) + ". Change the formula so that it is a number everywhere.");
       }
-    return value;
+    catch (const UserError &error)
+      {
+        if (collector == nullptr)
+          throw;
+        collector->message = error.message();
+      }
   }
 
 
@@ -282,6 +300,24 @@ namespace PeriDeal
   const std::string &Expression::text() const
   {
     return formula;
+  }
+
+
+  DeferredFormulaErrors::DeferredFormulaErrors()
+  {
+    collector = this;
+  }
+
+
+  DeferredFormulaErrors::~DeferredFormulaErrors()
+  {
+    collector = nullptr;
+  }
+
+
+  void DeferredFormulaErrors::throw_if_any(const MPI_Comm communicator) const
+  {
+    throw_on_all_if_any(communicator, message);
   }
 
 

@@ -19,7 +19,7 @@ namespace PeriDeal
   General::General()
     : SceneSection("")
   {
-    declare("Title", EntryType::text, "", "", "Headline of reports.");
+    declare("Title", EntryType::text, "", "", "Headline of the report.");
     declare("Dimension", EntryType::whole_number, "2", "1", "Number of dimensions: 1, 2 or 3.");
     declare("Physics",
             EntryType::choice,
@@ -31,13 +31,15 @@ namespace PeriDeal
             EntryType::choices,
             "finite elements, peridynamics",
             "",
-            "The models that are run one after the other and compared.",
+            "The models that are run, on the same mesh, and compared.",
             {"finite elements", "peridynamics"});
-    declare("Output directory",
-            EntryType::text,
-            "output",
-            "",
-            "Directory of all files a run writes, relative to the working directory.");
+    declare(
+      "Output directory",
+      EntryType::text,
+      "output",
+      "",
+      "Directory of all files that a run writes, relative to the working directory. Results of an "
+      "earlier run in it are replaced.");
     parse();
   }
 

@@ -176,7 +176,7 @@ namespace PeriDeal
             all << in.rdbuf();
           text = all.str();
           if (!in)
-            message = "The scene file '" + file_name + "' cannot be read.";
+            message = "The scene file '" + file_name + "' cannot be read. Check its path, which is relative to the working directory.";
           else if (trimmed(text).empty())
             message = "The scene file '" + file_name + "' is empty.";
           else if (text.find('\0') != std::string::npos)

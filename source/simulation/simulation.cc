@@ -19,6 +19,23 @@ namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** What is wrong with a coefficient of convection at a point, or nothing. */
+    template <int dim>
+    std::string negative_coefficient(const SideCondition &convection, const Point<dim> &p)
+    {
+      if (convection.coefficient.value(p) >= 0.)
+        return "";
+      std::ostringstream message;
+      message << "'Convection' in section 'Boundary conditions', side '" << convection.name
+              << "': the coefficient '" << convection.coefficient.text() << "' is negative at ("
+              << p << "). It has to be 0 or more on the whole side.";
+      return message.str();
+    }
+  } // namespace
+
+
   template <int dim>
   Simulation<dim>::Simulation(const Scene<dim> &scene,
                               const SceneText  &text,
@@ -60,10 +77,10 @@ namespace PeriDeal
       mesh = build_mesh(scene.domain, scene.cracks, communicator, record->notes);
     }
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
-    check_sides();
+    with_formulas([&] { check_sides(); });
     for (const Model model : scene.general.models)
       {
-        models.push_back(make_model_run(model, *mesh, scene));
+        with_formulas([&] { models.push_back(make_model_run(model, *mesh, scene)); });
         describe(*models.back());
       }
     make_reference();
@@ -71,28 +88,63 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Simulation<dim>::with_formulas(const std::function<void()> &action) const
+  {
+    const DeferredFormulaErrors errors;
+    try
+      {
+        action();
+      }
+    catch (const UserError &)
+      {
+        errors.throw_if_any(communicator); // the cause, if the error follows from a formula's value
+        throw;
+      }
+    errors.throw_if_any(communicator);
+  }
+
+
+  template <int dim>
   void Simulation<dim>::check_sides() const
   {
-    if (scene.domain.shape != Shape::mesh_file)
-      return;
+    const auto               &conditions = scene.boundary_conditions;
     std::vector<unsigned int> present(256, 0), all(256);
+    std::string               message;
     for (const auto &cell : mesh->active_cell_iterators())
       if (cell->is_locally_owned())
         for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() < 256)
-            present[cell->face(f)->boundary_id()] = 1;
+          if (cell->face(f)->at_boundary())
+            {
+              const auto id = cell->face(f)->boundary_id();
+              if (id < 256)
+                present[id] = 1;
+              const SideCondition *convection =
+                BoundaryConditions<dim>::find(conditions.convection, id);
+              if (convection != nullptr && message.empty())
+                message = negative_coefficient<dim>(*convection, cell->face(f)->center());
+            }
+    throw_on_all_if_any(communicator, message);
+    if (scene.domain.shape == Shape::box)
+      return;
     Utilities::MPI::max(present, communicator, all);
     std::vector<std::string> known;
     for (unsigned int id = 0; id < all.size(); ++id)
       if (all[id] > 0 && id != crack_boundary_id)
         known.push_back(std::to_string(id));
-    const auto &conditions = scene.boundary_conditions;
-    for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})
-      for (const SideCondition &condition : *list)
-        AssertThrow(std::find(known.begin(), known.end(), condition.name) != known.end(),
-                    UserError("Section 'Boundary conditions' names the side '" + condition.name +
-                              "', which the mesh '" + scene.domain.mesh_file +
-                              "' does not have. Its boundary ids are: " + join_names(known) + "."));
+    const auto check = [&](const std::string &entry, const std::vector<SideCondition> &list) {
+      for (const SideCondition &condition : list)
+        AssertThrow(condition.id < all.size() && all[condition.id] > 0,
+                    UserError("'" + entry + "' in section 'Boundary conditions' names the side '" +
+                              condition.name +
+                              (scene.domain.shape == Shape::mesh_file ?
+                                 "', which the mesh '" + scene.domain.mesh_file +
+                                   "' does not have. Its boundary ids are: " + join_names(known) +
+                                   "." :
+                                 "', but the hole in section 'Domain' leaves nothing of it.")));
+    };
+    check("Dirichlet", conditions.dirichlet);
+    check("Flux", conditions.flux);
+    check("Convection", conditions.convection);
   }
 
 
@@ -160,7 +212,8 @@ namespace PeriDeal
     for (auto &model : models)
       {
         Timings::Scope scope(model->timings, "stepper");
-        model->stepper = make_stepper(scene.time.stepper, model->op(), options);
+        with_formulas(
+          [&] { model->stepper = make_stepper(scene.time.stepper, model->op(), options); });
         std::ostringstream line;
         line << model->name() << ": stepper " << model->stepper->name();
         if (model->stepper->current_step() > 0.)
@@ -204,14 +257,16 @@ namespace PeriDeal
     for (auto &model : models)
       {
         Timings::Scope scope(model->timings, scene.time.steady ? "solve" : "time stepping");
-        if (scene.time.steady)
-          model->steady_iterations = solve_steady(model->op(),
-                                                  model->solution,
-                                                  0.,
-                                                  scene.solver.tolerance,
-                                                  scene.solver.max_iterations);
-        else if (t > now)
-          model->stepper->advance(model->solution, now, t);
+        with_formulas([&] {
+          if (scene.time.steady)
+            model->steady_iterations = solve_steady(model->op(),
+                                                    model->solution,
+                                                    0.,
+                                                    scene.solver.tolerance,
+                                                    scene.solver.max_iterations);
+          else if (t > now)
+            model->stepper->advance(model->solution, now, t);
+        });
       }
     now = t;
   }
@@ -220,7 +275,7 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::run()
   {
-    prepare_directory(scene.general.output_directory, communicator);
+    prepare_directory(scene.general.output_directory, text.file_name, communicator);
     build();
     make_steppers();
     {
@@ -236,7 +291,7 @@ namespace PeriDeal
         advance_to(t);
         progress.update(scene.time.steady ? 1. : t / scene.time.end_time);
         Timings::Scope scope(timings, "output");
-        write_output(t);
+        with_formulas([&] { write_output(t); });
       }
     progress.end();
     for (const std::string &note : record->notes)

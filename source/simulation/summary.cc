@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
+#include <perideal/base/user_error.h>
 #include <perideal/simulation/simulation.h>
 
 #include <sstream>
@@ -179,16 +180,22 @@ namespace PeriDeal
 
     std::string message;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      {
-        const std::string directory = scene.general.output_directory + "/";
-        if (!scene.output.probes.empty())
-          write_file(directory + "probes.csv", probes->text());
-        if (!scene.output.line.empty())
-          write_file(directory + "line.csv", line->text());
-        write_file(directory + "totals.csv", record->totals);
-        write_file(directory + "scene.prm", scene_with_defaults());
-        write_file(directory + "summary.json", summary.dump(2) + "\n");
-      }
+      try
+        {
+          const std::string directory = scene.general.output_directory + "/";
+          if (!scene.output.probes.empty())
+            write_file(directory + "probes.csv", probes->text());
+          if (!scene.output.line.empty())
+            write_file(directory + "line.csv", line->text());
+          write_file(directory + "totals.csv", record->totals);
+          write_file(directory + "scene.prm", scene_with_defaults());
+          write_file(directory + "summary.json", summary.dump(2) + "\n");
+        }
+      catch (const UserError &error)
+        {
+          message = error.message();
+        }
+    throw_on_all_if_any(communicator, message);
   }
 
   template void Simulation<1>::write_summary();

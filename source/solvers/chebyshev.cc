@@ -3,6 +3,7 @@
 
 #include <deal.II/base/numbers.h>
 
+#include <perideal/base/node_loops.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
@@ -80,6 +81,7 @@ namespace PeriDeal
             "with time. Use rkc2 or auto."));
         for (Vector *v : {&last, &now, &image, &sum})
           op.initialize_vector(*v);
+        inverse = inverse_capacity(op);
       }
 
       std::string name() const override
@@ -107,6 +109,11 @@ namespace PeriDeal
           expansion(spectral_bound() * time_span, 1e-2 * tolerance).size());
       }
 
+      std::size_t memory_consumption() const override
+      {
+        return memory_of({&last, &now, &image, &sum}) + inverse.capacity() * sizeof(double);
+      }
+
     private:
       /** A little above the sharp bound: outside its interval a Chebyshev expansion grows. */
       double spectral_bound() const
@@ -126,36 +133,38 @@ namespace PeriDeal
         const double              bound = spectral_bound();
         const std::vector<double> coefficients =
           expansion(bound * tau, std::clamp(tolerance * level / change, 1e-17, 0.1));
-        const Vector      &capacity = op.lumped_capacity();
-        const unsigned int n        = u.locally_owned_size();
         // The argument B = 1 + 2 A / bound of the polynomials has its spectrum in [-1, 1]: T_0 v = last, T_1 v = now.
-        op.apply(image, last);
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            now.local_element(i) = last.local_element(i) -
-                                   2. / bound * image.local_element(i) / capacity.local_element(i);
-            sum.local_element(i) =
-              coefficients[0] * last.local_element(i) + coefficients[1] * now.local_element(i);
-          }
+        const double scale = 2. / bound;
+        op.apply_then(image, last, [&](const unsigned int begin, const unsigned int end) {
+          for (unsigned int i = begin; i < end; ++i)
+            {
+              now.local_element(i) =
+                last.local_element(i) - scale * (image.local_element(i) * inverse[i]);
+              sum.local_element(i) =
+                coefficients[0] * last.local_element(i) + coefficients[1] * now.local_element(i);
+            }
+        });
         for (std::size_t k = 2; k < coefficients.size(); ++k)
           {
-            op.apply(image, now);
-            const double c = coefficients[k], scale = 4. / bound;
-            for (unsigned int i = 0; i < n; ++i)
-              {
-                const double next = 2. * now.local_element(i) - last.local_element(i) -
-                                    scale * image.local_element(i) / capacity.local_element(i);
-                last.local_element(i) = next;
-                sum.local_element(i) += c * next;
-              }
+            op.apply_then(image, now, [&](const unsigned int begin, const unsigned int end) {
+              NodeLoops::chebyshev_term(last.begin() + begin,
+                                        sum.begin() + begin,
+                                        now.begin() + begin,
+                                        inverse.data() + begin,
+                                        image.begin() + begin,
+                                        2. * scale,
+                                        coefficients[k],
+                                        end - begin);
+            });
             last.swap(now);
           }
         u.add(tau, sum);
       }
 
-      const Operator &op;
-      const double    dt, tolerance;
-      Vector          last, now, image, sum;
+      const Operator     &op;
+      const double        dt, tolerance;
+      Vector              last, now, image, sum;
+      std::vector<double> inverse; // of the capacity
     };
   } // namespace
 

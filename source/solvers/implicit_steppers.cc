@@ -62,11 +62,12 @@ namespace PeriDeal
             double       growth = 1.;
             if (!fixed && order > 0)
               {
+                op.clear_constrained(error);
                 const double level = std::max(capacity_norm(op, u), capacity_norm(op, next));
                 const double size  = level == 0. ? 0. :
                                                    capacity_norm(op, error) / (tolerance * level);
                 AssertThrow(std::isfinite(size), UserError(unstable_message(t)));
-                growth = std::clamp(0.85 * std::pow(std::max(size, 1e-12), -1. / order), 0.2, 3.);
+                growth = std::clamp(0.85 * std::pow(std::max(size, 1e-12), -1. / order), 0.2, 2.); // BDF2 is stable for ratios up to 1 + sqrt 2
                 if (size > 1.)
                   {
                     ++spent.rejected;
@@ -215,10 +216,7 @@ namespace PeriDeal
           }
         method_step(u, t, h);
         if (n_known < 2)
-          {
-            error = 0.;
-            return 3;
-          }
+          return 0;
         for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
           error.local_element(i) = error_factor(h) * (next.local_element(i) - predicted(i, u, h));
         return 3;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/node_loops.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
@@ -63,6 +64,7 @@ namespace PeriDeal
       {
         for (Vector *v : {&rate, &stage_rate, &before, &last, &now})
           op.initialize_vector(*v);
+        inverse = inverse_capacity(op);
       }
 
       std::string name() const override
@@ -105,6 +107,12 @@ namespace PeriDeal
                20.;
       }
 
+      std::size_t memory_consumption() const override
+      {
+        return memory_of({&rate, &stage_rate, &before, &last, &now}) +
+               inverse.capacity() * sizeof(double);
+      }
+
     private:
       unsigned int n_stages(const double h) const
       {
@@ -126,15 +134,25 @@ namespace PeriDeal
           }
         for (unsigned int j = 2; j <= s; ++j)
           {
-            compute_rate(op, last, t + k.c[j - 1] * h, stage_rate);
             const double mu = 2. * k.b[j] * k.w0 / k.b[j - 1], nu = -k.b[j] / k.b[j - 2],
                          mu_rate = 2. * k.b[j] * k.w1 / k.b[j - 1] * h,
                          gamma = -k.a[j - 1] * mu_rate, own = 1. - mu - nu;
-            for (unsigned int i = 0; i < n; ++i)
-              now.local_element(i) = own * u.local_element(i) + mu * last.local_element(i) +
-                                     nu * before.local_element(i) +
-                                     mu_rate * stage_rate.local_element(i) +
-                                     gamma * rate.local_element(i);
+            const double factors[5] = {own, mu, nu, mu_rate, gamma};
+            op.distribute(last, t + k.c[j - 1] * h);
+            op.residual_then(stage_rate,
+                             last,
+                             t + k.c[j - 1] * h,
+                             [&](const unsigned int begin, const unsigned int end) {
+                               NodeLoops::rkc_stage(now.begin() + begin,
+                                                    u.begin() + begin,
+                                                    last.begin() + begin,
+                                                    before.begin() + begin,
+                                                    inverse.data() + begin,
+                                                    stage_rate.begin() + begin,
+                                                    rate.begin() + begin,
+                                                    factors,
+                                                    end - begin);
+                             });
             if (j < s)
               {
                 before.swap(last);
@@ -162,6 +180,8 @@ namespace PeriDeal
               before.local_element(i) =
                 0.8 * (u.local_element(i) - now.local_element(i)) +
                 0.4 * h * (rate.local_element(i) + stage_rate.local_element(i));
+            // Where a prescribed value moves the rate is unknown, but there is no error either.
+            op.clear_constrained(before);
             const double level = std::max(capacity_norm(op, u), capacity_norm(op, now));
             const double error = level == 0. ? 0. : capacity_norm(op, before) / (tolerance * level);
             check_error(error, t);
@@ -200,6 +220,7 @@ namespace PeriDeal
       double          dt;
       const double    tolerance;
       Vector          rate, stage_rate, before, last, now;
+      std::vector<double> inverse; // of the capacity
     };
   } // namespace
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/node_loops.h>
 #include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
 
@@ -25,6 +26,7 @@ namespace PeriDeal
         , method(method)
         , dt(options.time_step > 0. ? options.time_step :
                                       share_of_bound * stable_step(method, op.spectrum().sharp))
+        , inverse(inverse_capacity(op))
       {}
 
       std::string name() const override
@@ -61,6 +63,9 @@ namespace PeriDeal
     private:
       const std::string method;
       const double      dt;
+
+    protected:
+      const std::vector<double> inverse; // of the capacity
     };
 
 
@@ -71,7 +76,12 @@ namespace PeriDeal
       Euler(const Operator &op, const StepperOptions &options)
         : FixedStepper(op, options, "euler", 0.9)
       {
-        op.initialize_vector(rate);
+        op.initialize_vector(next);
+      }
+
+      std::size_t memory_consumption() const override
+      {
+        return memory_of({&next}) + inverse.capacity() * sizeof(double);
       }
 
       double expected_applications(const double time_span) const override
@@ -82,11 +92,16 @@ namespace PeriDeal
     private:
       void step(Vector &u, const double t, const double size) override
       {
-        compute_rate(op, u, t, rate);
-        u.add(size, rate);
+        op.distribute(u, t);
+        op.residual_then(next, u, t, [&](const unsigned int begin, const unsigned int end) {
+          double *values = next.begin(), *old = u.begin();
+          for (unsigned int i = begin; i < end; ++i)
+            values[i] = old[i] + size * (inverse[i] * values[i]);
+        });
+        u.swap(next);
       }
 
-      Vector rate;
+      Vector next;
     };
 
 
@@ -97,8 +112,13 @@ namespace PeriDeal
       RK4(const Operator &op, const StepperOptions &options)
         : FixedStepper(op, options, "rk4", 0.95)
       {
-        for (Vector *v : {&rate, &stage, &sum})
+        for (Vector *v : {&rate, &stage, &next_stage, &sum})
           op.initialize_vector(*v);
+      }
+
+      std::size_t memory_consumption() const override
+      {
+        return memory_of({&rate, &stage, &next_stage, &sum}) + inverse.capacity() * sizeof(double);
       }
 
       double expected_applications(const double time_span) const override
@@ -113,25 +133,39 @@ namespace PeriDeal
                          weight[4] = {1. / 6., 1. / 3., 1. / 3., 1. / 6.};
         for (unsigned int s = 0; s < 4; ++s)
           {
-            if (s == 0)
-              compute_rate(op, u, t, rate);
-            else
-              {
-                const unsigned int n = u.locally_owned_size();
-                for (unsigned int i = 0; i < n; ++i)
-                  stage.local_element(i) =
-                    u.local_element(i) + place[s] * size * rate.local_element(i);
-                compute_rate(op, stage, t + place[s] * size, rate);
-              }
-            if (s == 0)
-              sum.equ(weight[s] * size, rate);
-            else
-              sum.add(weight[s] * size, rate);
+            Vector      &at   = s == 0 ? u : stage;
+            const double here = t + place[s] * size;
+            op.distribute(at, here);
+            op.residual_then(rate, at, here, [&](const unsigned int begin, const unsigned int end) {
+              const std::size_t n = end - begin;
+              // sum becomes u plus the weighted rates so far.
+              if (s == 0)
+                NodeLoops::advance(sum.begin() + begin,
+                                   u.begin() + begin,
+                                   inverse.data() + begin,
+                                   rate.begin() + begin,
+                                   weight[s] * size,
+                                   n);
+              else
+                NodeLoops::accumulate(sum.begin() + begin,
+                                      inverse.data() + begin,
+                                      rate.begin() + begin,
+                                      weight[s] * size,
+                                      n);
+              if (s < 3)
+                NodeLoops::advance(next_stage.begin() + begin,
+                                   u.begin() + begin,
+                                   inverse.data() + begin,
+                                   rate.begin() + begin,
+                                   place[s + 1] * size,
+                                   n);
+            });
+            stage.swap(next_stage);
           }
-        u += sum;
+        u.swap(sum);
       }
 
-      Vector rate, stage, sum;
+      Vector rate, stage, next_stage, sum;
     };
   } // namespace
 

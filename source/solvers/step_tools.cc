@@ -21,14 +21,35 @@ namespace PeriDeal
   }
 
 
+  std::vector<double> inverse_capacity(const Operator &op)
+  {
+    const Vector       &capacity = op.lumped_capacity();
+    std::vector<double> inverse(capacity.locally_owned_size());
+    std::transform(capacity.begin(), capacity.end(), inverse.begin(), [](const double c) {
+      return 1. / c;
+    });
+    return inverse;
+  }
+
+
+  std::size_t memory_of(const std::initializer_list<const Vector *> vectors)
+  {
+    std::size_t sum = 0;
+    for (const Vector *vector : vectors)
+      sum += vector->memory_consumption();
+    return sum;
+  }
+
+
   double capacity_norm(const Operator &op, const Vector &v)
   {
-    const Vector &capacity = op.lumped_capacity();
-    double        sums[2]  = {0., 0.};
-    for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+    const double      *capacity = op.lumped_capacity().begin(), *values = v.begin();
+    double             sums[2] = {0., 0.};
+    const unsigned int n       = v.locally_owned_size();
+    for (unsigned int i = 0; i < n; ++i)
       {
-        sums[0] += capacity.local_element(i) * v.local_element(i) * v.local_element(i);
-        sums[1] += capacity.local_element(i);
+        sums[0] += capacity[i] * values[i] * values[i];
+        sums[1] += capacity[i];
       }
     for (double &sum : sums)
       sum = dealii::Utilities::MPI::sum(sum, v.get_mpi_communicator());

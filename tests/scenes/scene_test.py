@@ -199,9 +199,18 @@ def observed_orders(sizes, errors):
     return [math.log(errors[k] / errors[k + 1]) / math.log(sizes[k] / sizes[k + 1]) for k in range(len(sizes) - 1)]
 
 
-def finish():
-    """Remove the folders, print the number of checks and end the script."""
-    for folder in _folders:
+def print_table(title, columns, rows):
+    """Print a table; numbers that are not whole are printed with six digits."""
+    texts = [[cell if isinstance(cell, str) else f"{cell:.6g}" for cell in row] for row in rows]
+    widths = [max(len(column), *(len(row[k]) for row in texts), 1) for k, column in enumerate(columns)]
+    print(f"\n{title}")
+    for row in [list(columns)] + texts:
+        print("  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip(), flush=True)
+
+
+def finish(*more_folders):
+    """Remove the folders (and those given), print the number of checks and end the script."""
+    for folder in _folders + list(more_folders):
         shutil.rmtree(folder, ignore_errors=True)
     print(f"{_checks['passed']} checks passed, {_checks['failed']} failed")
     sys.exit(1 if _checks["failed"] or not _checks["passed"] else 0)

@@ -93,6 +93,7 @@ namespace PeriDeal
   private:
     struct Search; // neighbours off the lattice
 
+    const FamilyMember<dim> *find_member(const dealii::Tensor<1, dim> &xi) const;
     void   find_weights(const Scene<dim> &scene);
     void   index_lattice();
     void   calibrate_off_lattice(const Scene<dim> &scene);
@@ -104,6 +105,10 @@ namespace PeriDeal
     void   bonds_on_lattice(const unsigned int node, std::vector<Bond> &bonds) const;
     void   bonds_off_lattice(const unsigned int node, std::vector<Bond> &bonds) const;
     double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const;
+    template <typename Test>
+    void   test_images(const unsigned int         node,
+                       const FictitiousNode<dim> &fictitious,
+                       const Test                &test) const;
     double bond_conductivity(const unsigned int node, const unsigned int neighbor) const;
     double off_lattice_weight(const double r) const;
     void   add_self_term(const unsigned int node, std::vector<Bond> &bonds) const;
@@ -124,6 +129,7 @@ namespace PeriDeal
     std::unordered_map<std::size_t, std::vector<unsigned int>> outside_of_site;
     std::unique_ptr<Search>                                    search;
 
+    bool        in_table(const typename Lattice<dim>::Index &site) const;
     std::size_t site_key(const typename Lattice<dim>::Index &site) const;
   };
 } // namespace PeriDeal

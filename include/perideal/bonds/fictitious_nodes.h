@@ -51,7 +51,7 @@ namespace PeriDeal
   /**
    * All fictitious nodes that local nodes of this process may be bonded to.
    * @param reach largest offset of a family in each direction, in lattice spacings
-   * Throws UserError if a side that needs such a layer is not flat. Not collective.
+   * Throws UserError if a side that needs such a layer is not flat or if the body is narrower than the reach. Not collective.
    */
   template <int dim>
   std::vector<FictitiousNode<dim>> make_fictitious_nodes(const Nodes<dim>              &nodes,

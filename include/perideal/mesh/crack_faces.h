@@ -19,12 +19,16 @@ namespace PeriDeal
     std::vector<dealii::CellData<dim>> cells;
   };
 
-  /**
-   * Length (2D) or area (3D) of a crack that lies on interior faces of the mesh. Equal to the crack's own measure inside the body
-   * if and only if the mesh resolves the crack.
-   */
+  /** Length (2D) or area (3D) of a crack that lies on interior faces of the mesh. */
   template <int dim>
   double measure_on_faces(const CoarseMesh<dim> &mesh, const CrackGeometry<dim> &crack);
+
+  /**
+   * Whether all of a crack that is inside the body lies on whole interior faces of the mesh: then both cells beside each piece hold that piece, while a
+   * piece inside a cell is held by one cell only. The crack may leave the body.
+   */
+  template <int dim>
+  bool lies_on_faces(const CoarseMesh<dim> &mesh, const CrackGeometry<dim> &crack);
 
   /**
    * Cut cracks that lie on cell faces into a coarse mesh: around each vertex on a crack the cells fall into groups connected

@@ -5,6 +5,7 @@
 
 #include <perideal/bonds/families.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -17,14 +18,33 @@ namespace PeriDeal
   class BondForm
   {
   public:
+    /** Called with the first and past the last of some owned nodes. */
+    using NodesAction = std::function<void(const unsigned int begin, const unsigned int end)>;
+
     virtual ~BondForm() = default;
 
     /**
      * @param values  owned and ghost values
      * @param outside values of the fictitious nodes (may be null if there are none)
      * @param y       n_owned sums, overwritten
+     * @param finish  if not empty, called once for each node when its sum is known and still in cache, many nodes at a time; it
+     *                may change y of these nodes, but no values
      */
-    virtual void apply(double *y, const double *values, const double *outside) const = 0;
+    virtual void apply(double            *y,
+                       const double      *values,
+                       const double      *outside,
+                       const NodesAction &finish) const = 0;
+
+    void apply(double *y, const double *values, const double *outside) const
+    {
+      apply(y, values, outside, NodesAction());
+    }
+
+    /**
+     * The sum of W_ij over each owned node's family. Returns the number of this process's unbroken bonds; one between two real nodes
+     * counts half at each.
+     */
+    virtual double row_sums(double *sums) const = 0;
 
     /** Bytes held. */
     virtual std::size_t memory_consumption() const = 0;

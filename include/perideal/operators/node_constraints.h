@@ -86,5 +86,6 @@ namespace PeriDeal
     bool                                         slaves_exist = false, prescribed_exist = false;
     unsigned int                                 n_coupled = 0;
     Eigen::SparseLU<Eigen::SparseMatrix<double>> coupling;
+    mutable Eigen::VectorXd                      coupled_loads, coupled_values;
   };
 } // namespace PeriDeal

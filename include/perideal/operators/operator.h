@@ -5,6 +5,7 @@
 
 #include <perideal/base/types.h>
 
+#include <functional>
 #include <map>
 #include <string>
 
@@ -60,6 +61,9 @@ namespace PeriDeal
   class Operator
   {
   public:
+    /** Called with the first and past the last of some owned unknowns. */
+    using RowsAction = std::function<void(const unsigned int begin, const unsigned int end)>;
+
     virtual ~Operator() = default;
 
     virtual void initialize_vector(Vector &vector) const = 0;
@@ -72,6 +76,26 @@ namespace PeriDeal
 
     /** r = f(t) - K u on free unknowns, zero elsewhere. u must have been through distribute(u, t). */
     virtual void residual(Vector &r, const Vector &u, const double t) const = 0;
+
+    /**
+     * As apply(), and finish(begin, end) once for each owned unknown when its y is final, many unknowns at a time and, where the
+     * operator can, while y and x are still in cache. finish must not change x.
+     */
+    virtual void apply_then(Vector &y, const Vector &x, const RowsAction &finish) const
+    {
+      apply(y, x);
+      finish(0, y.locally_owned_size());
+    }
+
+    /** As residual(), with finish as in apply_then(). */
+    virtual void residual_then(Vector           &r,
+                               const Vector     &u,
+                               const double      t,
+                               const RowsAction &finish) const
+    {
+      residual(r, u, t);
+      finish(0, r.locally_owned_size());
+    }
 
     /** Set the prescribed and the slave values of u at time t. */
     virtual void distribute(Vector &u, const double t) const = 0;

@@ -12,9 +12,12 @@ namespace PeriDeal
 {
   /**
    * Make the output directory (with its `fields` folder) and take away the results of an earlier run, so that a run that fails leaves
-   * none behind that could be taken for its own. Throws UserError on all processes if the directory cannot be written. Collective.
+   * none behind that could be taken for its own; other files stay. Throws UserError on all processes if the directory cannot be written, or
+   * if the run would write over its own scene file there. Collective.
    */
-  void prepare_directory(const std::string &directory, const MPI_Comm communicator);
+  void prepare_directory(const std::string &directory,
+                         const std::string &scene_file,
+                         const MPI_Comm     communicator);
 
   /** Write a text file whole or not at all (new file, then rename). Call it on one process. */
   void write_file(const std::string &name, const std::string &text);

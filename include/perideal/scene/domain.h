@@ -58,6 +58,14 @@ namespace PeriDeal
     dealii::Tensor<1, dim> spacing() const;
 
     /**
+     * For programs that bring a mesh of any shape of their own: `Shape` becomes `mesh file` and no
+     * file is asked for. Sides are the boundary ids of that mesh, and `Horizon` in section
+     * `Peridynamics` has to be a length. A program whose mesh is a lattice gives its corners and
+     * `Cells` instead: families of a lattice are the same everywhere, which makes operators fast.
+     */
+    void use_own_mesh();
+
+    /**
      * Called once all entries are read: turns texts into the values above and checks them. Throws
      * UserError.
      */
@@ -74,5 +82,7 @@ namespace PeriDeal
     void parse_cells();
 
     void parse_hole();
+
+    bool own_mesh = false;
   };
 } // namespace PeriDeal

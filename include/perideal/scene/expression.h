@@ -5,6 +5,8 @@
 
 #include <deal.II/base/point.h>
 
+#include <mpi.h>
+
 #include <memory>
 #include <string>
 
@@ -30,7 +32,10 @@ namespace PeriDeal
      */
     Expression(const std::string &text, const std::string &where);
 
-    /** Value at a point; coordinates beyond dim are zero. Throws UserError if it is not finite. */
+    /**
+     * Value at a point; coordinates beyond dim are zero. Throws UserError if it is not finite, or gives NaN while
+     * DeferredFormulaErrors collects such errors.
+     */
     template <int dim>
     double value(const dealii::Point<dim> &p, const double t = 0.) const;
 
@@ -44,9 +49,35 @@ namespace PeriDeal
     const std::string &text() const;
 
   private:
+    template <int dim>
+    void not_finite(const dealii::Point<dim> &p, const double t) const;
+
     struct Compiled;
     std::shared_ptr<Compiled> compiled;
     std::string               formula, where;
     double                    constant;
+  };
+
+
+  /**
+   * While this is alive, a formula whose value is not finite gives NaN, and the first such error is kept instead of thrown.
+   *
+   * The processes evaluate formulas at different points. An error thrown by one of them alone would leave the others waiting for it;
+   * the run asks here from time to time instead, on all processes together. One at a time.
+   */
+  class DeferredFormulaErrors
+  {
+  public:
+    DeferredFormulaErrors();
+    ~DeferredFormulaErrors();
+    DeferredFormulaErrors(const DeferredFormulaErrors &)            = delete;
+    DeferredFormulaErrors &operator=(const DeferredFormulaErrors &) = delete;
+
+    /** Throws the UserError on every process if a formula failed on any. Collective. */
+    void throw_if_any(const MPI_Comm communicator) const;
+
+  private:
+    friend class Expression;
+    std::string message;
   };
 } // namespace PeriDeal

@@ -11,6 +11,7 @@
 #include <perideal/output/result_files.h>
 #include <perideal/simulation/model_run.h>
 
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -41,6 +42,7 @@ namespace PeriDeal
 
   private:
     void                build();
+    void                with_formulas(const std::function<void()> &action) const;
     void                make_steppers();
     void                make_evaluators();
     void                make_reference();

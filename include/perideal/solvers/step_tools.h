@@ -5,12 +5,20 @@
 
 #include <perideal/operators/operator.h>
 
+#include <initializer_list>
 #include <string>
+#include <vector>
 
 namespace PeriDeal
 {
   /** rate = C^{-1} (f(t) - K u) with diagonal C; u is distributed at t first. Collective. */
   void compute_rate(const Operator &op, Vector &u, const double t, Vector &rate);
+
+  /** C^{-1} with diagonal C, owned entries: a product is cheaper than a division. */
+  std::vector<double> inverse_capacity(const Operator &op);
+
+  /** Bytes of vectors. */
+  std::size_t memory_of(const std::initializer_list<const Vector *> vectors);
 
   /** sqrt(sum C_i v_i^2 / sum C_i): the root mean square in the measure of the capacity. Collective. */
   double capacity_norm(const Operator &op, const Vector &v);

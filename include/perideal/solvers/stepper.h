@@ -53,6 +53,12 @@ namespace PeriDeal
     /** Predicted operator applications to advance over a time span; 0 if unknown. For the estimate of a dry run. */
     virtual double expected_applications(const double time_span) const = 0;
 
+    /** Bytes of this process's vectors. */
+    virtual std::size_t memory_consumption() const
+    {
+      return 0;
+    }
+
     const StepperCost &cost() const
     {
       return spent;

@@ -1,0 +1,462 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Speed and memory of the operators and steppers on one core, next to what the machine can do, measured in the same run. Timings are
+// never tests: the exit status is 0 whatever comes out. Options are those of Google Benchmark; --quick leaves out the
+// run with four million nodes.
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/fe/fe_q.h>
+
+#include <perideal/mesh/mesh_builder.h>
+#include <perideal/operators/bond_operator.h>
+#include <perideal/solvers/stepper.h>
+
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#if defined(__GLIBC__)
+#  include <malloc.h>
+#endif
+#include <unistd.h>
+
+#include "machine_limits.h"
+
+namespace PeriDeal
+{
+  namespace
+  {
+    /** Lines of the final table. */
+    struct Finding
+    {
+      std::string what, measured, target;
+      int         met; // -1: no target
+    };
+
+    std::vector<Finding> findings;
+
+    template <typename... Arguments>
+    std::string text(const char *format, const Arguments... arguments)
+    {
+      char buffer[200];
+      std::snprintf(buffer, sizeof(buffer), format, arguments...);
+      return buffer;
+    }
+
+    void found(const std::string &what, const std::string &measured)
+    {
+      findings.push_back({what, measured, "", -1});
+    }
+
+    void found(const std::string &what,
+               const std::string &measured,
+               const std::string &target,
+               const bool         met)
+    {
+      findings.push_back({what, measured, target, met});
+    }
+
+
+    double seconds_since(const std::chrono::steady_clock::time_point start)
+    {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
+
+    /** Resident memory of this process in bytes. */
+    double resident_memory()
+    {
+#if defined(__GLIBC__)
+      malloc_trim(0);
+#endif
+      std::ifstream file("/proc/self/statm");
+      double        all = 0., resident = 0.;
+      file >> all >> resident;
+      return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+    }
+
+
+    template <int dim>
+    std::string scene_text(const unsigned int n_cells, const double m, const std::string &form)
+    {
+      std::ostringstream text;
+      const char        *corner[3] = {"1", "1,1", "1,1,1"}, *origin[3] = {"0", "0,0", "0,0,0"};
+      text << "set Dimension = " << dim << "\nset Models = peridynamics\nsubsection Domain\n"
+           << "set Lower corner = " << origin[dim - 1] << "\nset Upper corner = " << corner[dim - 1]
+           << "\nset Cells = " << n_cells;
+      for (int d = 1; d < dim; ++d)
+        text << ", " << n_cells;
+      text << "\nend\nsubsection Material\nset Conductivity = 1.14\nend\n"
+           << "subsection Initial and source\nset Initial value = 40\nend\n"
+           << "subsection Boundary conditions\nset Dirichlet = left: 0; right: 0"
+           << (dim > 1 ? "; bottom: 0; top: 0" : "") << (dim > 2 ? "; back: 0; front: 0" : "")
+           << "\nend\nsubsection Peridynamics\nset Horizon ratio = " << m
+           << "\nset Operator form = " << form << "\nend\n";
+      return text.str();
+    }
+
+
+    /** A square or cube, hot at first, with cold sides. */
+    template <int dim>
+    struct Problem
+    {
+      Problem(const unsigned int n_cells, const double m, const std::string &form, const double size = 1.)
+      {
+        SceneText text{"benchmark", scene_text<dim>(n_cells, m, form)};
+        parse_scene(text, scene);
+        for (unsigned int d = 0; d < dim; ++d)
+          scene.domain.upper[d] = size;
+        memory_before = resident_memory();
+        std::vector<std::string> notes;
+        mesh            = build_mesh(scene.domain, scene.cracks, MPI_COMM_WORLD, notes);
+        memory_mesh     = resident_memory();
+        handler         = std::make_unique<dealii::DoFHandler<dim>>(*mesh);
+        handler->distribute_dofs(dealii::FE_Q<dim>(1));
+        number_along_lattice(*handler, scene.domain);
+        memory_handler = resident_memory();
+        nodes          = std::make_unique<Nodes<dim>>(*handler,
+                                             scene.domain,
+                                             scene.cracks,
+                                             scene.peridynamics.nodal_volume);
+        bonds          = std::make_unique<BondOperator<dim>>(*nodes, scene);
+      }
+
+      Vector initial_value() const
+      {
+        Vector u;
+        bonds->initialize_vector(u);
+        u = 40.;
+        bonds->distribute(u, 0.);
+        return u;
+      }
+
+      double n_bonds() const // seen from both ends: one multiply-add each
+      {
+        return 2. * static_cast<double>(bonds->size().bonds);
+      }
+
+      Scene<dim>                                  scene;
+      std::unique_ptr<dealii::Triangulation<dim>> mesh;
+      std::unique_ptr<dealii::DoFHandler<dim>>    handler;
+      std::unique_ptr<Nodes<dim>>                 nodes;
+      std::unique_ptr<BondOperator<dim>>          bonds;
+      double                                      memory_before, memory_mesh, memory_handler;
+    };
+
+
+    /** Keeps the best time of each benchmark. */
+    class BestTimes : public benchmark::ConsoleReporter
+    {
+    public:
+      void ReportRuns(const std::vector<Run> &runs) override
+      {
+        for (const Run &run : runs)
+          if (run.run_type == Run::RT_Iteration)
+            {
+              const double time = run.real_accumulated_time / static_cast<double>(run.iterations);
+              const auto [entry, is_new] = times.try_emplace(run.run_name.function_name, time);
+              entry->second              = std::min(entry->second, time);
+            }
+        ConsoleReporter::ReportRuns(runs);
+      }
+
+      std::map<std::string, double> times;
+    };
+
+    constexpr int n_repetitions = 7;
+
+
+    struct FormResult
+    {
+      double n_nodes = 0., n_bonds = 0., time = 0.;
+      double rate() const
+      {
+        return n_bonds / time;
+      }
+    };
+
+
+    /** The operator as solvers call it. */
+    template <int dim>
+    FormResult measure_form(BestTimes         &times,
+                            const std::string &name,
+                            const unsigned int n_cells,
+                            const double       m,
+                            const std::string &form)
+    {
+      const Problem<dim> problem(n_cells, m, form);
+      Vector             x = problem.initial_value(), y(x);
+      for (unsigned int i = 0; i < x.locally_owned_size(); ++i)
+        x.local_element(i) *= 1. + 1e-3 * (i % 101);
+      problem.bonds->distribute_homogeneous(x);
+      const std::string label = name + " " + form;
+      benchmark::RegisterBenchmark(label.c_str(), [&](benchmark::State &state) {
+        for (auto _ : state)
+          problem.bonds->apply(y, x);
+        state.counters["bonds/s"] =
+          benchmark::Counter(problem.n_bonds() * static_cast<double>(state.iterations()),
+                             benchmark::Counter::kIsRate);
+      })
+        ->Repetitions(n_repetitions)
+        ->MinTime(0.05)
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond)
+        ->ReportAggregatesOnly(false);
+      benchmark::RunSpecifiedBenchmarks(&times);
+      benchmark::ClearRegisteredBenchmarks();
+      return {static_cast<double>(problem.nodes->n_owned()), problem.n_bonds(), times.times[label]};
+    }
+
+
+    template <int dim>
+    void compare_forms(BestTimes           &times,
+                       const MachineLimits &machine,
+                       const std::string   &name,
+                       const unsigned int   n_cells,
+                       const double         m,
+                       const double         least_ratio)
+    {
+      const FormResult lattice = measure_form<dim>(times, name, n_cells, m, "lattice"),
+                       stored  = measure_form<dim>(times, name, n_cells, m, "stored");
+      const double to_peak = lattice.rate() / machine.fma, ratio = lattice.rate() / stored.rate(),
+                   bytes   = 12. * stored.n_bonds + 32. * stored.n_nodes, // x, y (read and written), row starts
+        to_triad           = bytes / stored.time / machine.triad;
+      found(name + ": lattice form",
+            text("%.1f G bonds/s, %.2f ms", 1e-9 * lattice.rate(), 1e3 * lattice.time));
+      found(name + ": stored form",
+            text("%.2f G bonds/s, %.2f ms", 1e-9 * stored.rate(), 1e3 * stored.time));
+      if (dim == 2)
+        found(name + ": lattice / FMA peak",
+              text("%.0f %%", 100. * to_peak),
+              ">= 30 %",
+              to_peak >= 0.3);
+      else
+        found(name + ": lattice / FMA peak", text("%.0f %%", 100. * to_peak));
+      found(name + ": lattice / unaligned loads",
+            text("%.0f %%", 100. * lattice.rate() / machine.unaligned));
+      if (least_ratio > 0.)
+        found(name + ": lattice / stored",
+              text("%.1f", ratio),
+              text(">= %.0f", least_ratio),
+              ratio >= least_ratio);
+      else
+        found(name + ": lattice / stored", text("%.1f", ratio));
+      if (least_ratio > 0.)
+        found(name + ": stored / triad-limited rate",
+              text("%.0f %%", 100. * to_triad),
+              ">= 70 %",
+              to_triad >= 0.7);
+    }
+
+
+    /** Four million nodes, explicit in time: what PeriDeal holds, by its own count and by the process' growth. */
+    void measure_memory()
+    {
+      Problem<2>   problem(2000, 6.5, "lattice");
+      const double n = static_cast<double>(problem.nodes->n_global());
+      Vector       u = problem.initial_value();
+      StepperOptions options;
+      const auto     stepper = make_stepper("auto", *problem.bonds, options);
+      const double   span    = 50. / problem.bonds->spectrum().sharp;
+      const auto     start   = std::chrono::steady_clock::now();
+      const auto     applied = problem.bonds->n_applications();
+      stepper->advance(u, 0., span);
+      const double seconds = seconds_since(start);
+      const double applications = static_cast<double>(problem.bonds->n_applications() - applied);
+      const double resident = resident_memory();
+      const double operator_bytes = static_cast<double>(problem.bonds->size().memory),
+                   vector_bytes   = static_cast<double>(u.memory_consumption()),
+                   stepper_bytes  = static_cast<double>(stepper->memory_consumption()),
+                   counted        = operator_bytes + vector_bytes + stepper_bytes,
+                   growth         = resident - problem.memory_handler;
+      const std::string name = "2D 2001 x 2001, m = 6.5";
+      found(name + ": deal.II mesh",
+            text("%.0f bytes/node", (problem.memory_mesh - problem.memory_before) / n));
+      found(name + ": deal.II DoFHandler",
+            text("%.0f bytes/node", (problem.memory_handler - problem.memory_mesh) / n));
+      found(name + ": nodes, families, operator", text("%.1f bytes/node", operator_bytes / n));
+      found(name + ": solution", text("%.1f bytes/node", vector_bytes / n));
+      found(name + ": stepper (" + stepper->name() + ")", text("%.1f bytes/node", stepper_bytes / n));
+      found(name + ": all three, counted",
+            text("%.1f bytes/node", counted / n),
+            "<= 150",
+            counted <= 150. * n);
+      found(name + ": growth of the process",
+            text("%.1f bytes/node", growth / n),
+            "<= 150",
+            growth <= 150. * n);
+      found(name + ": one application in a run",
+            text("%.1f ms, %.1f G bonds/s",
+                 1e3 * seconds / applications,
+                 1e-9 * problem.n_bonds() * applications / seconds));
+    }
+
+
+    struct RunResult
+    {
+      double             seconds = 1e300, error = 0.;
+      unsigned long long applications = 0, steps = 0;
+    };
+
+
+    /** Best of some runs of one stepper. */
+    RunResult time_run(const Problem<2>     &problem,
+                       const std::string    &name,
+                       const StepperOptions &options,
+                       const double          end,
+                       const Vector         *reference,
+                       Vector               &u,
+                       const unsigned int    n_runs)
+    {
+      RunResult result;
+      for (unsigned int k = 0; k < n_runs; ++k)
+        {
+          u                  = problem.initial_value();
+          const auto stepper = make_stepper(name, *problem.bonds, options);
+          const auto before  = problem.bonds->n_applications();
+          const auto start   = std::chrono::steady_clock::now();
+          stepper->advance(u, 0., end);
+          result.seconds      = std::min(result.seconds, seconds_since(start));
+          result.applications = problem.bonds->n_applications() - before;
+          result.steps        = stepper->cost().steps;
+        }
+      if (reference != nullptr)
+        {
+          Vector difference(u);
+          difference -= *reference;
+          result.error = difference.l2_norm() / reference->l2_norm();
+        }
+      return result;
+    }
+
+
+    std::string describe(const RunResult &result)
+    {
+      return text("%.1f ms, %llu applications, error %.1e",
+                  1e3 * result.seconds,
+                  result.applications,
+                  result.error);
+    }
+
+
+    /** Example 1 of Bobaru and Duangpanya 2012: how long until the solution is right to 1e-3. */
+    void compare_steppers()
+    {
+      constexpr double end = 0.025, allowed = 1e-3;
+      const Problem<2> problem(240, 6.5, "auto");
+      const auto       start    = std::chrono::steady_clock::now();
+      const Spectrum   spectrum = problem.bonds->spectrum();
+      const double     bound    = seconds_since(start);
+      Vector           reference, u;
+      StepperOptions   options;
+      options.tolerance = 1e-12;
+      time_run(problem, "chebyshev", options, end, nullptr, reference, 1);
+
+      const std::string name = "Example 1, 241 x 241";
+      found(name + ": largest eigenvalue, once", text("%.1f ms", 1e3 * bound));
+      RunResult best[2];
+      const std::string names[2] = {"chebyshev", "rkc2"};
+      for (unsigned int k = 0; k < 2; ++k)
+        for (options.tolerance = 1e-1; options.tolerance > 1e-7; options.tolerance /= 3.)
+          {
+            best[k] = time_run(problem, names[k], options, end, &reference, u, 1);
+            if (best[k].error > allowed)
+              continue;
+            best[k] = time_run(problem, names[k], options, end, &reference, u, 7);
+            found(name + ": " + names[k] + text(" (Tolerance %.1g)", options.tolerance),
+                  describe(best[k]));
+            break;
+          }
+      StepperOptions limit;
+      limit.time_step   = 0.999 * stable_step("rk4", spectrum.sharp);
+      const RunResult rk4 = time_run(problem, "rk4", limit, end, &reference, u, 3);
+      found(name + text(": rk4 at its limit, step %.2e", limit.time_step), describe(rk4));
+      StepperOptions published;
+      published.time_step = 1e-6;
+      const RunResult part = time_run(problem, "rk4", published, 500e-6, nullptr, u, 3);
+      const double    whole = part.seconds * end / 500e-6;
+      found(name + ": rk4 at 1e-6, extrapolated from 500 steps", text("%.1f s", whole));
+      for (unsigned int k = 0; k < 2; ++k)
+        {
+          const double ratio = rk4.seconds / best[k].seconds;
+          if (k == 0)
+            found(name + ": " + names[k] + " faster than rk4 at its limit",
+                  text("%.1f x", ratio),
+                  ">= 8 x (either)",
+                  std::max(ratio, rk4.seconds / best[1].seconds) >= 8.);
+          else
+            found(name + ": " + names[k] + " faster than rk4 at its limit", text("%.1f x", ratio));
+          found(name + ": " + names[k] + " faster than rk4 at 1e-6",
+                text("%.0f x", whole / best[k].seconds));
+        }
+    }
+
+
+    void print_findings(const MachineLimits &machine)
+    {
+      std::printf("\nOne core, %s: %.1f G FMA/s, %.1f G doubles/s loaded aligned, %.1f unaligned, triad %.1f GB/s.\n"
+                  "A bond is counted at each of its nodes: one FMA. Times are the best of several.\n\n",
+                  machine.target.c_str(),
+                  1e-9 * machine.fma,
+                  1e-9 * machine.loads,
+                  1e-9 * machine.unaligned,
+                  1e-9 * machine.triad);
+      std::printf("%-62s %-46s %-16s %s\n", "what", "measured", "target", "met");
+      for (const Finding &line : findings)
+        std::printf("%-62s %-46s %-16s %s\n",
+                    line.what.c_str(),
+                    line.measured.c_str(),
+                    line.target.c_str(),
+                    line.met < 0 ? "" :
+                    line.met > 0 ? "yes" :
+                                   "NO");
+    }
+
+
+    void run(int argc, char **argv)
+    {
+      bool quick = false;
+      for (int k = 1; k < argc; ++k)
+        if (std::strcmp(argv[k], "--quick") == 0)
+          {
+            quick = true;
+            std::rotate(argv + k, argv + k + 1, argv + argc);
+            --argc;
+          }
+      benchmark::Initialize(&argc, argv);
+#if defined(__GLIBC__)
+      mallopt(M_MMAP_THRESHOLD, 1 << 20); // what is freed goes back at once, so that growth means something
+#endif
+      if (!quick)
+        measure_memory(); // first, before anything has been freed
+      const MachineLimits machine = measure_machine();
+      BestTimes           times;
+      compare_forms<2>(times, machine, "2D 1000 x 1000, m = 6.5", 999, 6.5, 6.);
+      compare_forms<3>(times, machine, "3D 100 x 100 x 100, m = 3", 99, 3., 5.);
+      compare_forms<1>(times, machine, "1D 1000000, m = 6.5", 999999, 6.5, 0.);
+      compare_steppers();
+      print_findings(machine);
+    }
+  } // namespace
+} // namespace PeriDeal
+
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  try
+    {
+      PeriDeal::run(argc, argv);
+    }
+  catch (const std::exception &error)
+    {
+      std::printf("%s\n", error.what());
+    }
+  return 0;
+}

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// This file wants -O3 -ffp-contract=off.
+
+#include <perideal/base/node_loops.h>
+
+// GCC compiles a function marked so for each instruction set, and the first call picks one.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#  define PERIDEAL_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#  define PERIDEAL_CLONES
+#endif
+
+namespace PeriDeal
+{
+  namespace NodeLoops
+  {
+    namespace
+    {
+      // A pointer to what no other pointer of the same loop points to.
+      using Out = double *__restrict__;
+      using In  = const double *__restrict__;
+
+      PERIDEAL_CLONES void scale_constant(Out to, In from, const double v, const std::size_t n)
+      {
+        for (std::size_t i = 0; i < n; ++i)
+          to[i] = v * from[i];
+      }
+
+      PERIDEAL_CLONES void scale_varying(Out to, In from, In v, const std::size_t n)
+      {
+        for (std::size_t i = 0; i < n; ++i)
+          to[i] = v[i] * from[i];
+      }
+
+      PERIDEAL_CLONES void
+      combine_constant(Out y, In u, const double v, const double d, const std::size_t n)
+      {
+        for (std::size_t i = 0; i < n; ++i)
+          y[i] = v * (d * u[i] - y[i]);
+      }
+
+      PERIDEAL_CLONES void combine_varying(Out y, In u, In v, In d, const std::size_t n)
+      {
+        for (std::size_t i = 0; i < n; ++i)
+          y[i] = v[i] * (d[i] * u[i] - y[i]);
+      }
+
+      PERIDEAL_CLONES void negate_all(Out y, const std::size_t n)
+      {
+        for (std::size_t i = 0; i < n; ++i)
+          y[i] = -y[i];
+      }
+
+      PERIDEAL_CLONES void subtract_all(Out y, In load, const std::size_t n)
+      {
+        for (std::size_t i = 0; i < n; ++i)
+          y[i] = load[i] - y[i];
+      }
+
+      PERIDEAL_CLONES void
+      advance_all(Out next, In u, In s, In r, const double a, const std::size_t n)
+      {
+        for (std::size_t i = 0; i < n; ++i)
+          next[i] = u[i] + a * (s[i] * r[i]);
+      }
+
+      PERIDEAL_CLONES void accumulate_all(Out sum, In s, In r, const double a, const std::size_t n)
+      {
+        for (std::size_t i = 0; i < n; ++i)
+          sum[i] += a * (s[i] * r[i]);
+      }
+
+      PERIDEAL_CLONES void chebyshev_all(Out               last,
+                                         Out               sum,
+                                         In                now,
+                                         In                s,
+                                         In                r,
+                                         const double      a,
+                                         const double      c,
+                                         const std::size_t n)
+      {
+        for (std::size_t i = 0; i < n; ++i)
+          {
+            const double next = 2. * now[i] - last[i] - a * (s[i] * r[i]);
+            last[i]           = next;
+            sum[i] += c * next;
+          }
+      }
+
+      PERIDEAL_CLONES void rkc_all(Out               next,
+                                   In                u,
+                                   In                last,
+                                   In                before,
+                                   In                s,
+                                   In                r,
+                                   In                rate,
+                                   const double     *coefficients,
+                                   const std::size_t n)
+      {
+        const double a = coefficients[0], b = coefficients[1], c = coefficients[2],
+                     d = coefficients[3], e = coefficients[4];
+        for (std::size_t i = 0; i < n; ++i)
+          next[i] = a * u[i] + b * last[i] + c * before[i] + d * (s[i] * r[i]) + e * rate[i];
+      }
+    } // namespace
+
+
+    void scale(double *to, const double *from, const double v, const std::size_t n)
+    {
+      scale_constant(to, from, v, n);
+    }
+
+    void scale(double *to, const double *from, const double *v, const std::size_t n)
+    {
+      scale_varying(to, from, v, n);
+    }
+
+    void
+    combine(double *y, const double *u, const double v, const double d, const std::size_t n)
+    {
+      combine_constant(y, u, v, d, n);
+    }
+
+    void
+    combine(double *y, const double *u, const double *v, const double *d, const std::size_t n)
+    {
+      combine_varying(y, u, v, d, n);
+    }
+
+    void negate(double *y, const std::size_t n)
+    {
+      negate_all(y, n);
+    }
+
+    void subtract_from(double *y, const double *load, const std::size_t n)
+    {
+      subtract_all(y, load, n);
+    }
+
+    void advance(double           *next,
+                 const double     *u,
+                 const double     *s,
+                 const double     *r,
+                 const double      a,
+                 const std::size_t n)
+    {
+      advance_all(next, u, s, r, a, n);
+    }
+
+    void accumulate(double           *sum,
+                    const double     *s,
+                    const double     *r,
+                    const double      a,
+                    const std::size_t n)
+    {
+      accumulate_all(sum, s, r, a, n);
+    }
+
+    void chebyshev_term(double           *last,
+                        double           *sum,
+                        const double     *now,
+                        const double     *s,
+                        const double     *r,
+                        const double      a,
+                        const double      c,
+                        const std::size_t n)
+    {
+      chebyshev_all(last, sum, now, s, r, a, c, n);
+    }
+
+    void rkc_stage(double           *next,
+                   const double     *u,
+                   const double     *last,
+                   const double     *before,
+                   const double     *s,
+                   const double     *r,
+                   const double     *rate,
+                   const double (&a)[5],
+                   const std::size_t n)
+    {
+      rkc_all(next, u, last, before, s, r, rate, a, n);
+    }
+  } // namespace NodeLoops
+} // namespace PeriDeal

@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Mistakes in scenes and on the command line: each ends with exit status 1 and one message that names the entry and the remedy.
+
+A mistake is a change of the small plate below (overrides), or lines put into it, or a command line. The words are what the
+message has to say; 'late' ones are found while the mesh or the operators are built. On two processes the message must come
+once and the program must not hang.
+"""
+
+import os
+import re
+import sys
+import tempfile
+
+from scene_test import check, finish, print_table, run_perideal
+
+SCENE = """
+set Title     = Small plate
+set Dimension = 2
+subsection Domain
+  set Lower corner = 0, 0
+  set Upper corner = 1, 1
+  set Cells        = 12, 12
+end
+subsection Boundary conditions
+  set Dirichlet = top: 1; bottom: 0
+end
+subsection Time
+  set End time = 0.01
+end
+subsection Output
+  set Fields = none
+  set Probes = 0.5,0.5
+end
+"""
+
+STEADY = {"Time/Steady": "true"}
+CRACK = {"Cracks/Segments": "0.25,0.5 ; 0.75,0.5"}
+
+QUADS = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+9
+1 0 0 0
+2 0.5 0 0
+3 1 0 0
+4 0 0.5 0
+5 0.5 0.5 0
+6 1 0.5 0
+7 0 1 0
+8 0.5 1 0
+9 1 1 0
+$EndNodes
+$Elements
+{n}
+1 1 2 3 3 1 2
+2 1 2 3 3 2 3
+3 1 2 4 4 7 8
+4 1 2 4 4 8 9
+{cells}
+$EndElements
+"""
+CELLS = "5 3 2 7 7 1 2 5 4\n6 3 2 7 7 2 3 6 5\n7 3 2 7 7 4 5 8 7\n8 3 2 7 7 5 6 9 8"
+
+
+def write(folder, name, text):
+    path = os.path.join(folder, name)
+    with open(path, "w") as file:
+        file.write(text)
+    return path
+
+
+def mesh_scene(folder, name, text, more=()):
+    """Overrides for a scene on a mesh file with this text."""
+    path = write(folder, name, text)
+    return {"Domain/Shape": "mesh file", "Domain/Mesh file": path, "Peridynamics/Horizon": "0.8",
+            "Boundary conditions/Dirichlet": "3: 0; 4: 1", "Domain/Lower corner": "0, 0", **dict(more)}
+
+
+def scene_mistakes(folder):
+    """(name, overrides or text of a scene, words of the message)."""
+    whole = QUADS.format(n=8, cells=CELLS)
+    triangles = QUADS.format(n=5, cells="5 2 2 7 7 1 2 5")
+    file_of_directory = write(folder, "a_file", "text")
+    changed = [
+        # names
+        ("unknown entry", {"Material/Conductivty": "2"}, ["Conductivty", "'Material'", "Did you mean 'Conductivity'?"]),
+        ("unknown section", {"Materials/Conductivity": "2"}, ["'Materials'", "Did you mean 'Material'?"]),
+        ("entry in another section", {"Domain/Horizon": "0.3"}, ["Horizon", "Peridynamics"]),
+        ("unknown choice", {"Peridynamics/Kernel": "conicle"}, ["'Kernel'", "Peridynamics", "Did you mean 'conical'?"]),
+        ("unknown model", {"Models": "peridynamic"}, ["'Models'", "Did you mean 'peridynamics'?"]),
+        ("unknown stepper", {"Time/Stepper": "rk5"}, ["'Stepper'", "'Time'", "Did you mean 'rk4'?"]),
+        # types and ranges
+        ("text for a number", {"Time/End time": "soon"}, ["'End time'", "'Time'", "'soon' is not a number"]),
+        ("fraction for a count", {"Domain/Cells": "12.5, 12"}, ["'Cells'", "12.5", "whole number"]),
+        ("negative conductivity", {"Material/Conductivity": "-1"}, ["'Conductivity'", "'Material'", "greater than 0"]),
+        ("negative density", {"Material/Density": "-2"}, ["'Density'", "greater than 0"]),
+        ("negative horizon", {"Peridynamics/Horizon": "-0.3"}, ["'Horizon'", "greater than 0"]),
+        ("m below 1", {"Peridynamics/Horizon ratio": "0.9"}, ["'Horizon ratio'", "1 or more"]),
+        ("horizon below the spacing", {"Peridynamics/Horizon": "0.05"}, ["'Horizon'", "shorter than the node spacing"]),
+        ("no cells", {"Domain/Cells": "0, 12"}, ["'Cells'", "at least one"]),
+        ("corners exchanged", {"Domain/Upper corner": "-1, 1"}, ["'Upper corner'", "'Lower corner'"]),
+        ("spacing that does not divide", {"Domain/Node spacing": "0.3", "Domain/Cells": "20, 20"},
+         ["'Node spacing'", "0.333"]),
+        ("dimension 4", {"Dimension": "4"}, ["'Dimension'", "1, 2 or 3"]),
+        ("degree 7", {"Finite elements/Degree": "7"}, ["'Degree'", "1, 2 or 3"]),
+        ("transmission of 2", {**CRACK, "Cracks/Transmission": "2"}, ["'Transmission'", "from 0 to 1"]),
+        ("solver tolerance 0", {"Solver/Tolerance": "0"}, ["'Tolerance'", "'Solver'", "between 0 and 1"]),
+        ("kernel exponent 3", {"Peridynamics/Kernel exponent": "3"}, ["'Kernel exponent'", "0, 1 or 2"]),
+        # expressions
+        ("bad expression", {"Material/Conductivity": "1 + 2*(x"}, ["'Conductivity'", "column"]),
+        ("unknown name in an expression", {"Initial and source/Source": "2*x + foo"}, ["'Source'", "foo", "column 7"]),
+        ("time in the material", {"Material/Conductivity": "1 + t"}, ["'Conductivity'", "depends on t"]),
+        ("nan as Dirichlet value", {"Boundary conditions/Dirichlet": "top: sqrt(-1); bottom: 0"},
+         ["'Dirichlet'", "top", "is not finite"]),
+        ("nan at some nodes of a side", {"Boundary conditions/Dirichlet": "top: sqrt(x - 0.5); bottom: 0"},
+         ["'Dirichlet'", "top", "is not finite"]),
+        ("nan as initial value", {"Initial and source/Initial value": "log(x - 0.5)"},
+         ["'Initial value'", "is not finite"]),
+        ("nan as source", {"Initial and source/Source": "1/(x - x)"}, ["'Source'", "is not finite"]),
+        # sides
+        ("unknown side", {"Boundary conditions/Dirichlet": "topp: 1"}, ["'Dirichlet'", "'topp'", "Did you mean 'top'?"]),
+        ("side without a value", {"Boundary conditions/Dirichlet": "top"}, ["'Dirichlet'", "'name: value'"]),
+        ("side twice", {"Boundary conditions/Dirichlet": "top: 1; top: 2"}, ["'Dirichlet'", "'top' is named twice"]),
+        ("contradicting conditions", {"Boundary conditions/Flux": "top: 3"}, ["'Flux'", "'top'", "'Dirichlet'"]),
+        ("negative coefficient", {"Boundary conditions/Convection": "left: -4, 20"}, ["'Convection'", "'left'", "negative"]),
+        ("3D side in 2D", {"Boundary conditions/Flux": "front: 3"}, ["'Flux'", "'front'", "left, right, bottom, top"]),
+        # cracks and points
+        ("crack outside", {"Cracks/Segments": "2,2 ; 3,3"}, ["'Segments'", "outside the body"]),
+        ("crack of one point", {"Cracks/Segments": "0.2,0.2"}, ["'Segments'", "two points"]),
+        ("crack of no length", {"Cracks/Segments": "0.2,0.2 ; 0.2,0.2"}, ["'Segments'", "no length"]),
+        ("3D points in 2D", {"Output/Probes": "0.5,0.5,0.5"}, ["'Probes'", "needs 2 coordinates, found 3"]),
+        ("probe outside", {"Output/Probes": "0.5,0.5 ; 0.5,1.5"}, ["'Probes'", "(0.5, 1.5)", "outside"]),
+        ("line of one point", {"Output/Line": "0,0 ; 1,1 ; 1"}, ["'Line'", "2 or more"]),
+        # time
+        ("write time beyond the end", {"Output/Write at": "0.001, 0.5"}, ["'Write at'", "0.5", "'End time'"]),
+        ("steady without a level", {**STEADY, "Boundary conditions/Dirichlet": ""}, ["'Steady'", "not determined"]),
+        ("steady with t", {**STEADY, "Boundary conditions/Dirichlet": "top: t; bottom: 0"}, ["'Dirichlet'", "depends on t"]),
+        ("unknown exact solution", {"Reference/Solution": "bobaru 2013 table 1"}, ["'Solution'", "'Reference'"]),
+        # combinations
+        ("degree 2 with pairs", {**CRACK, "Finite elements/Degree": "2"}, ["'Degree'", "pairs"]),
+        ("mirror on a mesh file", mesh_scene(folder, "m0.msh", whole, {"Peridynamics/Boundary treatment": "fictitious mirror"}.items()),
+         ["'Boundary treatment'", "sides of a box"]),
+    ]
+    late = [
+        ("not a directory", {"Output directory": file_of_directory + "/results"}, ["'Output directory'", "a_file"]),
+        ("negative conductivity at a node", {"Material/Conductivity": "x - 0.5"}, ["'Conductivity'", "must be positive", "(0"]),
+        ("negative conductivity in one corner", {"Material/Conductivity": "1.9 - x - y"}, ["'Conductivity'", "must be positive", "(0.9"]),
+        ("infinite conductivity in another corner", {"Material/Conductivity": "2 + 1/(x + y)"}, ["'Conductivity'", "is not finite", "(0, 0)"]),
+        ("infinite conductivity at a node", {"Material/Conductivity": "1/x"}, ["'Conductivity'", "is not finite", "(0"]),
+        ("negative density at a node", {"Material/Density": "0.5 - y"}, ["'Density'", "must be positive"]),
+        ("negative coefficient at a node", {"Boundary conditions/Convection": "left: 0.5 - y, 20"},
+         ["'Convection'", "left", "negative"]),
+        ("isolated node", {**STEADY, "Domain/Cells": "4, 4", "Peridynamics/Horizon ratio": "1", "Models": "peridynamics",
+                           "Cracks/Segments": "0.4,0.4 ; 0.6,0.4 ; 0.6,0.4 ; 0.6,0.6 ; 0.6,0.6 ; 0.4,0.6 ; 0.4,0.6 ; 0.4,0.4"},
+         ["(0.5", "0.5)", "'Cracks'", "isolated"]),
+        ("node without elements", {**STEADY, "Models": "finite elements", "Cracks/Mesh": "removed",
+                                   "Domain/Cells": "6, 6", "Cracks/Segments": "0.3,0.3 ; 0.7,0.7 ; 0.3,0.7 ; 0.7,0.3"},
+         ["'Mesh' in section 'Cracks'", "'pairs'"]),
+        ("island", {**STEADY, "Models": "peridynamics", "Peridynamics/Horizon ratio": "2",
+                    "Cracks/Segments": "0.3,0.3 ; 0.7,0.3 ; 0.7,0.3 ; 0.7,0.7 ; 0.7,0.7 ; 0.3,0.7 ; 0.3,0.7 ; 0.3,0.3",
+                    "Initial and source/Source": "1"}, ["cracks have cut off", "'Solver'"]),
+        ("crack not on faces", {"Cracks/Mesh": "faces", "Cracks/Segments": "0.25,0.51 ; 0.75,0.51"},
+         ["'Mesh = faces'", "'Cracks'", "'Mesh = pairs'"]),
+        ("hole that leaves nothing", {"Domain/Shape": "plate with hole", "Domain/Hole radius": "3"}, ["'Hole radius'"]),
+        ("probe in the hole", {"Domain/Shape": "plate with hole"}, ["'Probes'", "(0.5, 0.5)"]),
+        ("line through the hole", {"Domain/Shape": "plate with hole", "Output/Probes": "", "Output/Line": "0,0.5 ; 1,0.5 ; 9"},
+         ["'Line'", "(0.375, 0.5)"]),
+        ("probe outside a mesh", mesh_scene(folder, "m1.msh", whole, {"Output/Probes": "3, 3"}.items()), ["'Probes'", "(3, 3)"]),
+        ("missing mesh", {"Domain/Shape": "mesh file", "Domain/Mesh file": folder + "/none.msh",
+                          "Peridynamics/Horizon": "0.8", "Boundary conditions/Dirichlet": "3: 0"},
+         ["'Mesh file'", "none.msh", "cannot read"]),
+        ("broken mesh", mesh_scene(folder, "m2.msh", whole[:200]), ["'Mesh file'", "m2.msh", "broken"]),
+        ("not a mesh", mesh_scene(folder, "m3.msh", "This is not a mesh.\n"), ["'Mesh file'", "m3.msh", "broken"]),
+        ("empty mesh file", mesh_scene(folder, "m4.msh", ""), ["'Mesh file'", "m4.msh"]),
+        ("mesh of triangles", mesh_scene(folder, "m5.msh", triangles), ["'Mesh file'", "quadrilaterals"]),
+        ("2D mesh in 3D", {**mesh_scene(folder, "m6.msh", whole), "Dimension": "3", "Output/Probes": "",
+                           "Domain/Lower corner": "0, 0, 0", "Domain/Upper corner": "1, 1, 1", "Domain/Cells": "4, 4, 4"},
+         ["'Mesh file'", "m6.msh", "dimension 3"]),
+        ("unknown side of a mesh", mesh_scene(folder, "m7.msh", whole, {"Boundary conditions/Dirichlet": "3: 0; 9: 1"}.items()),
+         ["'9'", "'Dirichlet'", "boundary ids", "3, 4"]),
+        ("horizon too short for a mesh", mesh_scene(folder, "m8.msh", whole, {"Peridynamics/Horizon": "0.2"}.items()),
+         ["'Horizon'", "no neighbour"]),
+        ("unstable euler step", {"Time/Stepper": "euler", "Time/Time step": "0.01"}, ["'Time step'", "Lanczos", "Gershgorin"]),
+        ("chebyshev with moving values", {"Time/Stepper": "chebyshev", "Boundary conditions/Dirichlet": "top: t; bottom: 0"},
+         ["'Stepper", "chebyshev", "rkc2"]),
+        ("euler with consistent capacity", {"Time/Stepper": "euler", "Finite elements/Capacity": "consistent"},
+         ["'Stepper", "'Capacity", "lumped"]),
+        ("mirror with doubled nodes", {**CRACK, "Cracks/Mesh": "faces", "Peridynamics/Boundary treatment": "fictitious mirror"},
+         ["'Boundary treatment'", "pairs"]),
+        ("solver that may not iterate", {**STEADY, "Solver/Maximum iterations": "2"}, ["'Maximum iterations'", "'Solver'"]),
+        ("values become nan", {"Initial and source/Source": "sqrt(0.004 - t)", "Time/Stepper": "rkc2"},
+         ["is not finite", "'Source'"]),
+        ("boundary value becomes nan", {"Boundary conditions/Dirichlet": "top: sqrt(0.004 - t); bottom: 0"},
+         ["is not finite", "'Dirichlet'"]),
+        ("scene file in the way", {"Output directory": folder}, ["'Output directory'", "scene file", "Choose a directory"]),
+        ("side cut away by the hole", {"Domain/Shape": "plate with hole", "Domain/Hole center": "0, 0.5", "Domain/Hole radius": "0.6",
+                                       "Output/Probes": "", "Boundary conditions/Dirichlet": "left: 1; bottom: 0"},
+         ["'Dirichlet'", "'left'", "hole"]),
+        ("steady overflow", {**STEADY, "Boundary conditions/Dirichlet": "top: 1e308; bottom: -1e308"}, ["finite"]),
+    ]
+    texts = [
+        ("misspelt keyword", SCENE + "sett Title = x\n", ["'sett", "Did you mean 'set'?"]),
+        ("missing end", SCENE + "subsection Solver\n", ["'Solver'", "no 'end'"]),
+        ("end too much", SCENE + "end\n", ["'end' without a subsection"]),
+        ("entry twice", SCENE.replace("set Title ", "set Dimension = 3\nset Title "), ["'Dimension'", "twice"]),
+        ("entry outside its section", SCENE + "set Horizon = 0.3\n", ["Horizon", "Peridynamics"]),
+        ("no value", SCENE + "set Models\n", ["set entry = value"]),
+    ]
+    return changed, late, texts
+
+
+COMMANDS = [
+    ("no command", [], ["run", "check", "parameters", "--help"]),
+    ("unknown command", ["runn", "SCENE"], ["'runn'", "Did you mean 'run'?"]),
+    ("no scene", ["run"], ["scene"]),
+    ("missing scene", ["run", "no_such_scene.prm"], ["'no_such_scene.prm'"]),
+    ("a directory as scene", ["run", "/"], ["'/'"]),
+    ("option with a typo", ["run", "SCENE", "--quite"], ["--quite", "Did you mean '--quiet'?"]),
+    ("override of an unknown entry", ["run", "SCENE", "-s", "Domain/Cels=3, 3"], ["command line", "'Cels'", "Did you mean 'Cells'?"]),
+    ("override of an unknown section", ["run", "SCENE", "-s", "Domian/Cells=3, 3"], ["command line", "Did you mean 'Domain'?"]),
+    ("override without a value", ["run", "SCENE", "-s", "Domain/Cells"], ["'Domain/Cells'", "Section/Entry=value"]),
+    ("override with a bad value", ["check", "SCENE", "-s", "Domain/Cells=a, b"], ["command line", "'Cells'", "'a'"]),
+    ("unknown format", ["parameters", "yaml"], ["'yaml'", "prm, markdown, JSON, XML"]),
+    ("two scenes", ["run", "SCENE", "SCENE"], ["argument"]),
+]
+
+TRACES = ("Stacktrace", "An error occurred in line", "terminate called", "Segmentation fault", "Signal:", "Process received signal",
+          "Additional information", "MPI_ABORT", "internal error", "exception", "Assert")
+
+
+def judge(name, status, stdout, stderr, words, results, ranks):
+    """Count the checks of one mistake; returns the row of the table."""
+    at = f"{name}, {ranks} process(es)"
+    check(status == 1, f"{at}: exit status {status}\n{stdout[-600:]}{stderr[-1500:]}")
+    for trace in TRACES:
+        check(trace not in stdout + stderr, f"{at}: '{trace}' in the output\n{stderr[-1500:]}")
+    message = stderr.strip()
+    n_messages = len(re.findall(r"^perideal: error: ", stderr, re.M))
+    check(n_messages == 1 and message.startswith("perideal: error: "), f"{at}: {n_messages} messages\n{stderr[-1500:]}")
+    for word in words:
+        check(word in message, f"{at}: the message does not say {word!r}:\n  {message[-1500:]}")
+    check(len(message) < 700, f"{at}: a message of {len(message)} characters")
+    check(results is None or not os.path.exists(os.path.join(results, "summary.json")), f"{at}: a summary was left behind")
+    return (name, ranks, message.replace("perideal: error: ", "")[:150])
+
+
+def main():
+    folder = tempfile.mkdtemp(prefix="perideal_")
+    scene = write(folder, "scene.prm", SCENE)
+    changed, late, texts = scene_mistakes(folder)
+    only = sys.argv[1] if len(sys.argv) > 1 else ""
+    rows = []
+
+    def attempt(name, arguments, words, ranks, results=None):
+        if only and only not in name:
+            return
+        status, stdout, stderr = run_perideal(arguments, ranks, timeout=120)
+        rows.append(judge(name, status, stdout, stderr, words, results, ranks))
+
+    for number, (name, overrides, words) in enumerate(changed + late):
+        results = os.path.join(folder, f"results_{number}")
+        settings = {"Output directory": results, **overrides}
+        if "Node spacing" in str(settings):
+            settings.pop("Domain/Cells")
+            scene_here = write(folder, "no_cells.prm", SCENE.replace("set Cells        = 12, 12", ""))
+        else:
+            scene_here = scene
+        arguments = ["run", scene_here]
+        for entry, value in settings.items():
+            arguments += ["-s", f"{entry}={value}"]
+        for ranks in (1, 2) if number >= len(changed) or number % 4 == 0 else (1,):
+            attempt(name, arguments, words, ranks, results)
+    for name, text, words in texts:
+        attempt(name, ["run", write(folder, "text.prm", text)], words, 1)
+    for number, (name, arguments, words) in enumerate(COMMANDS):
+        arguments = [scene if word == "SCENE" else word for word in arguments]
+        for ranks in (1, 2) if number % 3 == 0 else (1,):
+            attempt(name, arguments, words, ranks)
+    print_table("Mistakes and what is said about them", ("mistake", "ranks", "message (first 150 characters)"), rows)
+    finish(folder)
+
+
+if __name__ == "__main__":
+    main()
