@@ -124,11 +124,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Best rate of a piece of work that returns its amount. */
+    /** Raise a rate to the best of some trials of a piece of work that returns its amount. */
     template <typename Work>
-    double best_rate(const unsigned int n_trials, const Work &work)
+    void improve(double &best, const unsigned int n_trials, const Work &work)
     {
-      double best = 0.;
       for (unsigned int k = 0; k < n_trials; ++k)
         {
           const auto   start  = std::chrono::steady_clock::now();
@@ -138,24 +137,22 @@ namespace PeriDeal
             amount /
               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         }
-      return best;
     }
   } // namespace
 
 
-  MachineLimits measure_machine()
+  void measure_machine(MachineLimits &limits)
   {
-    MachineLimits limits;
     limits.target = HWY_DYNAMIC_DISPATCH(name)();
-    limits.fma    = best_rate(20, [] { return HWY_DYNAMIC_DISPATCH(multiply_add)(1000000); });
+    improve(limits.fma, 20, [] { return HWY_DYNAMIC_DISPATCH(multiply_add)(1000000); });
 
     constexpr long length = 2048;
     const auto     small  = hwy::AllocateAligned<double>(length + 64);
     std::fill_n(small.get(), length + 64, 1.);
-    limits.loads     = best_rate(20, [&] {
+    improve(limits.loads, 20, [&] {
       return HWY_DYNAMIC_DISPATCH(load)(small.get(), length, 10000);
     });
-    limits.unaligned = best_rate(20, [&] {
+    improve(limits.unaligned, 20, [&] {
       return HWY_DYNAMIC_DISPATCH(load)(small.get() + 1, length, 10000);
     });
 
@@ -165,11 +162,10 @@ namespace PeriDeal
     std::fill_n(a.get(), n, 0.);
     std::fill_n(b.get(), n, 1.);
     std::fill_n(c.get(), n, 2.);
-    limits.triad = best_rate(10, [&] {
+    improve(limits.triad, 10, [&] {
       HWY_DYNAMIC_DISPATCH(triad)(a.get(), b.get(), c.get(), n);
       return 24. * n;
     });
-    return limits;
   }
 } // namespace PeriDeal
 #endif

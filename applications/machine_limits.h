@@ -17,6 +17,6 @@ namespace PeriDeal
     double      triad     = 0.;   // STREAM triad a = b + s c on arrays beyond all caches, bytes per second (24 an entry)
   };
 
-  /** Takes about two seconds. Each number is the best of several trials. */
-  MachineLimits measure_machine();
+  /** Takes about a second. Each number is the best of several trials, and of the limits of an earlier call. */
+  void measure_machine(MachineLimits &limits);
 } // namespace PeriDeal

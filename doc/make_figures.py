@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Make the pictures of the README and of doc/ from real runs.
+"""Make the pictures of the README and of doc/ from real runs, and the README's table of scenes.
 
     python3 doc/make_figures.py [--program PERIDEAL] [--all] [SCENE.prm ...]
 
 Runs each scene (all below prm/ if none is named), draws its report, and keeps of it
 doc/figures/NAME.png: the last temperature, scaled to a thumbnail. For prm/quick_start.prm the
 figure is kept in full width too, as doc/figures/quick_start_wide.png. A picture that is newer
-than its scene is left as it is, unless --all is given.
+than its scene is left as it is, unless --all is given. The table names every scene below prm/ with
+its title and the first sentence of its comment; --table writes the table only.
 """
 
 import argparse
+import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -21,7 +24,8 @@ from PIL import Image, ImageChops
 
 ROOT = Path(__file__).resolve().parent.parent
 FIGURES = ROOT / "doc" / "figures"
-THUMBNAIL_HEIGHT, WIDE_WIDTH, COLORS = 150, 1300, 128
+THUMBNAIL_HEIGHT, WIDE_WIDTH = 200, 1300
+BEGIN, END = "<!-- scenes: written by doc/make_figures.py -->\n", "<!-- end of scenes -->\n"
 
 
 def run(scene, program, folder):
@@ -39,14 +43,18 @@ def cropped(image):
     """The image without the white margin around it."""
     image = image.convert("RGB")
     box = ImageChops.difference(image, Image.new("RGB", image.size, "white")).getbbox()
-    return image.crop(box) if box else image
+    if not box:
+        return image
+    margin = 12
+    return image.crop((max(0, box[0] - margin), max(0, box[1] - margin),
+                       min(image.width, box[2] + margin), min(image.height, box[3] + margin)))
 
 
 def save(image, name, width=None, height=None):
     """Scaled to the width or height, with few colours."""
     scale = width / image.width if width else height / image.height
     size = (round(image.width * scale), round(image.height * scale))
-    small = image.resize(size, Image.LANCZOS).quantize(COLORS, dither=Image.NONE)
+    small = image.resize(size, Image.LANCZOS).quantize(256, kmeans=2, dither=Image.NONE)
     FIGURES.mkdir(exist_ok=True)
     small.save(FIGURES / f"{name}.png", optimize=True)
     print(f"doc/figures/{name}.png: {(FIGURES / f'{name}.png').stat().st_size / 1000:.0f} kB")
@@ -55,7 +63,44 @@ def save(image, name, width=None, height=None):
 def picture(figures):
     """The last figure of the temperature; of a bar its line."""
     found = sorted(figures.glob("temperature*.png")) or [figures / "line.png"]
-    return cropped(Image.open(found[-1]))
+    image = cropped(Image.open(found[-1]))
+    if image.height > image.width:  # a body in 3D: its outer faces and the first slice
+        image = image.crop((0, 0, image.width, round(0.47 * image.height)))
+    return image
+
+
+def description(scene):
+    """Title and first sentence of the comment of a scene."""
+    text = scene.read_text(encoding="utf-8")
+    title = re.search(r"^\s*set\s+Title\s*=\s*(.*?)\s*$", text, re.MULTILINE)
+    comment = []
+    for line in text.splitlines():
+        words = line.strip().lstrip("#").strip()
+        if not line.strip().startswith("#") or (not words and comment):
+            break
+        if words and not re.match("SPDX|Copyright", words):
+            comment.append(words)
+    # A full stop that ends a sentence: not that of an abbreviation such as J. Comput. Phys.
+    sentence = re.match(r".*?[a-z0-9)]{3}\.(?= [A-Z][a-z]* [a-z]|$)", " ".join(comment))
+    return (title.group(1) if title else scene.stem,
+            sentence.group(0) if sentence else " ".join(comment))
+
+
+def write_table():
+    """The table of scenes in the README, between its marks."""
+    rows = ["| scene | |\n", "|---|---|\n"]
+    for scene in sorted((ROOT / "prm").rglob("*.prm"),
+                        key=lambda s: (s.parent != ROOT / "prm", s.as_posix())):
+        title, text = description(scene)
+        where = os.path.relpath(scene, ROOT)
+        shown = FIGURES / f"{scene.stem}.png"
+        image = f'<br><img src="doc/figures/{shown.name}" height="100" alt="{title}">' \
+            if shown.exists() else ""
+        rows.append(f"| [{scene.stem}]({where}){image} | **{title}.** {text} |\n")
+    page = ROOT / "README.md"
+    text = page.read_text(encoding="utf-8")
+    begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
+    page.write_text(text[:begin] + "\n" + "".join(rows) + "\n" + text[end:], encoding="utf-8")
 
 
 def main():
@@ -64,7 +109,11 @@ def main():
     parser.add_argument("scenes", nargs="*", type=Path)
     parser.add_argument("--program", default=str(ROOT / "build/release/applications/perideal"))
     parser.add_argument("--all", action="store_true", help="also those that are up to date")
+    parser.add_argument("--table", action="store_true", help="only the table in the README")
     options = parser.parse_args()
+    if options.table:
+        write_table()
+        return 0
     scenes = [s.resolve() for s in options.scenes] or sorted((ROOT / "prm").rglob("*.prm"))
     failed = False
     for scene in scenes:
@@ -81,6 +130,7 @@ def main():
         save(image, scene.stem, height=THUMBNAIL_HEIGHT)
         if scene.stem == "quick_start":
             save(image, "quick_start_wide", width=WIDE_WIDTH)
+    write_table()
     return 1 if failed else 0
 
 

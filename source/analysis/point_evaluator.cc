@@ -48,9 +48,7 @@ namespace PeriDeal
     , n_points(static_cast<unsigned int>(coordinates.size()))
     , n_slots(1u << dim)
   {
-    std::vector<CrackGeometry<dim>> geometries;
-    for (const auto &corners : cracks.cracks)
-      geometries.emplace_back(corners);
+    const std::vector<CrackGeometry<dim>> geometries = make_crack_geometries(cracks.cracks);
     const bool   at_centers = dofs.get_fe().n_dofs_per_vertex() == 0;
     const bool   on_lattice = nodes != nullptr && nodes->lattice() && !nodes->has_doubled_nodes();
     const double shift      = at_centers || cracks.mesh == CrackMesh::faces ?
@@ -206,11 +204,7 @@ namespace PeriDeal
     const FiniteElement<dim> &fe = dofs.get_fe();
     n_slots                      = fe.n_dofs_per_cell();
     std::vector<types::global_dof_index> indices(n_slots);
-    IndexSet                             relevant;
-    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
-    const Utilities::MPI::Partitioner partitioner(dofs.locally_owned_dofs(),
-                                                  relevant,
-                                                  communicator);
+    std::vector<double>                  own; // slot, dof, weight, slot, dof, weight, ...
     for (unsigned int k = 0; k < points.size(); ++k)
       if (first[k] == me)
         {
@@ -220,9 +214,21 @@ namespace PeriDeal
                                                                     &dofs);
           cell->get_dof_indices(indices);
           for (unsigned int v = 0; v < n_slots; ++v)
-            parts.push_back({k * n_slots + v,
-                             partitioner.global_to_local(indices[v]),
-                             fe.shape_value(v, places[k].second)});
+            own.insert(own.end(),
+                       {static_cast<double>(k * n_slots + v),
+                        static_cast<double>(indices[v]),
+                        fe.shape_value(v, places[k].second)});
+        }
+    // Each part goes to the owner of its dof: what ghosts a vector has, and in which order, depends on the model.
+    const IndexSet &owned = dofs.locally_owned_dofs();
+    for (const std::vector<double> &list : Utilities::MPI::all_gather(communicator, own))
+      for (std::size_t i = 0; i < list.size(); i += 3)
+        {
+          const auto dof = static_cast<types::global_dof_index>(list[i + 1]);
+          if (owned.is_element(dof))
+            parts.push_back({static_cast<unsigned int>(list[i]),
+                             static_cast<unsigned int>(owned.index_within_set(dof)),
+                             list[i + 2]});
         }
   }
 

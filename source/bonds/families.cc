@@ -28,8 +28,7 @@ namespace PeriDeal
     , delta(scene.horizon())
     , on_lattice(nodes.lattice().has_value() && !nodes.has_doubled_nodes())
   {
-    for (const auto &corners : scene.cracks.cracks)
-      cracks.emplace_back(corners);
+    cracks = make_crack_geometries(scene.cracks.cracks);
     find_weights(scene);
     // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away than any bond.
     const double layer = parameters.flux_treatment == FluxTreatment::layer_extrapolation ?
@@ -138,6 +137,14 @@ namespace PeriDeal
             high[d] = i == 0 ? site[d] : std::max(high[d], site[d]);
           }
       }
+    for (const FamilyMember<dim> &member : members)
+      {
+        int n_steps = 0;
+        for (unsigned int d = 0; d < dim; ++d)
+          n_steps += std::abs(member.offset[d]);
+        if (n_steps == 1)
+          nearest.push_back(member);
+      }
     std::size_t n_sites = 1;
     for (unsigned int d = 0; d < dim; ++d)
       {
@@ -238,20 +245,24 @@ namespace PeriDeal
       {
         if (!crack.is_near(own_nodes->position(node), farthest))
           continue;
-        const auto test = [&](const Point<dim> &a, const Point<dim> &b) {
+        double     fraction = 1.;
+        const auto test     = [&](const Point<dim> &a, const Point<dim> &b) {
           if (!crack.separates(a, b))
             return;
           cut = true;
-          kept *= contact_conductance < 0. ?
-                    transmission :
-                    contact_fraction(contact_conductance,
-                                     std::abs((b - a) * crack.normal()),
-                                     bond_conductivity(node, neighbor));
+          // A bond may meet a crack and its mirror image, most often where the crack ends on a side: that is one crossing.
+          fraction = std::min(fraction,
+                              contact_conductance < 0. ?
+                                    transmission :
+                                    contact_fraction(contact_conductance,
+                                                 std::abs((b - a) * crack.normal()),
+                                                 bond_conductivity(node, neighbor)));
         };
         if (neighbor < own_nodes->n_local())
           test(own_nodes->crack_point(node), own_nodes->crack_point(neighbor));
         else
           test_images(node, outside[neighbor - own_nodes->n_local()], test);
+        kept *= fraction;
       }
     return kept;
   }
@@ -307,10 +318,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Families<dim>::bonds_on_lattice(const unsigned int node, std::vector<Bond> &bonds) const
+  void Families<dim>::bonds_on_lattice(const unsigned int                    node,
+                                       const std::vector<FamilyMember<dim>> &offsets,
+                                       std::vector<Bond>                    &bonds) const
   {
     const auto site = own_nodes->lattice()->index(own_nodes->position(node));
-    for (const FamilyMember<dim> &member : members)
+    for (const FamilyMember<dim> &member : offsets)
       {
         typename Lattice<dim>::Index other = site;
         for (unsigned int d = 0; d < dim; ++d)
@@ -375,11 +388,22 @@ namespace PeriDeal
     AssertIndexRange(node, own_nodes->n_owned());
     bonds.clear();
     if (on_lattice)
-      bonds_on_lattice(node, bonds);
+      bonds_on_lattice(node, members, bonds);
     else
       bonds_off_lattice(node, bonds);
     if (with_self_term && !self_additions.empty())
       add_self_term(node, bonds);
+  }
+
+
+  template <int dim>
+  void Families<dim>::nearest_bonds_of(const unsigned int node, std::vector<Bond> &bonds) const
+  {
+    bonds.clear();
+    if (on_lattice)
+      bonds_on_lattice(node, nearest, bonds);
+    else
+      bonds_off_lattice(node, bonds);
   }
 
 
@@ -440,8 +464,10 @@ namespace PeriDeal
   template <int dim>
   bool Families<dim>::near_crack(const unsigned int node) const
   {
+    // Crack-side scaling changes the bonds of the nodes that have a bond cut: those reach once farther.
+    const double radius = factors.empty() ? farthest : 2. * farthest;
     return std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
-      return crack.is_near(own_nodes->position(node), farthest);
+      return crack.is_near(own_nodes->position(node), radius);
     });
   }
 

@@ -247,8 +247,7 @@ namespace PeriDeal
   {
     std::vector<CrackGeometry<dim>> cut;
     if (cracks.mesh == CrackMesh::faces)
-      for (const auto &corners : cracks.cracks)
-        cut.emplace_back(corners);
+      cut = make_crack_geometries(cracks.cracks);
 
     CoarseMesh<dim>  coarse;
     BoundaryIds      ids;

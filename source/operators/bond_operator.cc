@@ -112,7 +112,7 @@ namespace PeriDeal
   template <int dim>
   void BondOperator<dim>::scale_crack_sides()
   {
-    // DESIGN 1, crack-side scaling: the trace of a full interior family is 2 d kappa, what the cut family lacks is made up for.
+    // Crack-side scaling (doc/theory.md): the trace of a full interior family is 2 d kappa, what the cut family lacks is made up for.
     const Nodes<dim> &nodes = bonds.nodes();
     Vector            factors;
     initialize_vector(factors);

@@ -67,16 +67,17 @@ namespace PeriDeal
     std::vector<unsigned int>                    starts{0};
     std::vector<double>                          outside(nodes.n_owned(), 0.);
     std::vector<std::pair<unsigned int, double>> entries;
+    std::vector<types::global_dof_index>         columns;
+    std::vector<double>                          values;
     TrilinosWrappers::SparsityPattern            pattern(owned,
                                               nodes.communicator(),
                                               nodes.lattice() ? 2 * dim + 1 : 12);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        const auto row = nodes.partitioner()->local_to_global(i);
-        pattern.add(row, row);
+        columns.assign(1, nodes.partitioner()->local_to_global(i));
         if (free_nodes.local_element(i) > 0.)
           {
-            bonds.bonds_of(i, family);
+            bonds.nearest_bonds_of(i, family);
             for (const auto &bond : family)
               if (const double c =
                     neighbor_conductance(bonds, scene.material.interface_rule, i, bond);
@@ -89,9 +90,10 @@ namespace PeriDeal
                       continue;
                     }
                   entries.emplace_back(bond.neighbor, c);
-                  pattern.add(row, nodes.partitioner()->local_to_global(bond.neighbor));
+                  columns.push_back(nodes.partitioner()->local_to_global(bond.neighbor));
                 }
           }
+        pattern.add_entries(columns[0], columns.begin(), columns.end());
         starts.push_back(static_cast<unsigned int>(entries.size()));
       }
     pattern.compress();
@@ -101,18 +103,19 @@ namespace PeriDeal
       convection[node] += h;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        const auto row  = nodes.partitioner()->local_to_global(i);
-        double     diag = convection[i] + outside[i];
+        double diag = convection[i] + outside[i];
+        columns.assign(1, nodes.partitioner()->local_to_global(i));
+        values.assign(1, 0.);
         for (unsigned int k = starts[i]; k < starts[i + 1]; ++k)
           {
             const auto [j, c] = entries[k];
             diag += c;
-            matrix.set(row,
-                       nodes.partitioner()->local_to_global(j),
-                       free_nodes.local_element(j) > 0. ? -c : 0.);
+            columns.push_back(nodes.partitioner()->local_to_global(j));
+            values.push_back(free_nodes.local_element(j) > 0. ? -c : 0.);
           }
         // A node without near neighbours keeps its own diagonal, so that the matrix stays regular.
-        matrix.set(row, row, diag > 0. ? diag : bond_diagonal.local_element(i));
+        values[0] = diag > 0. ? diag : bond_diagonal.local_element(i);
+        matrix.set(columns[0], columns.size(), columns.data(), values.data());
       }
     matrix.compress(VectorOperation::insert);
   }

@@ -184,7 +184,7 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::find_crack_factors(CellData &data)
   {
-    // DESIGN 1, crack-side scaling: g_i = d kappa V_i / (-(1/2) sum_j K_ij r_ij^2) on the vertices of cut cells.
+    // Crack-side scaling (doc/theory.md): g_i = d kappa V_i / (-(1/2) sum_j K_ij r_ij^2) on the vertices of cut cells.
     Vector marked, trace, expected;
     for (Vector *v : {&marked, &trace, &expected})
       initialize_vector(*v);

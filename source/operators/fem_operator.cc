@@ -22,8 +22,7 @@ namespace PeriDeal
     : dofs(dof_handler)
     , scene(scene)
   {
-    for (const auto &corners : scene.cracks.cracks)
-      cracks.emplace_back(corners);
+    cracks = make_crack_geometries(scene.cracks.cracks);
     check_material();
     find_cut_cells();
     find_prescribed();

@@ -4,6 +4,7 @@
 #include <deal.II/base/hdf5.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
+#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/full_matrix.h>
 
 #include <perideal/output/field_writer.h>
@@ -74,6 +75,21 @@ namespace PeriDeal
     const bool                           at_vertices = dofs.get_fe().n_dofs_per_vertex() > 0;
     const unsigned int                   n_vertices  = GeometryInfo<dim>::vertices_per_cell;
     std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
+    // The ghosts of a model's own vectors need not be those of the mesh.
+    IndexSet relevant;
+    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    const auto partitioner =
+      std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
+                                                          relevant,
+                                                          dofs.get_communicator());
+    std::vector<Vector> values;
+    for (const OutputField &field : fields)
+      for (const Vector &component : field.components)
+        {
+          values.emplace_back(partitioner);
+          std::copy(component.begin(), component.end(), values.back().begin());
+          values.back().update_ghost_values();
+        }
     patches.clear();
     patches.reserve(dofs.get_triangulation().n_active_cells());
     for (const auto &cell : dofs.active_cell_iterators())
@@ -88,15 +104,10 @@ namespace PeriDeal
           for (unsigned int v = 0; v < n_vertices; ++v)
             patch.vertices[v] = cell->vertex(v);
           cell->get_dof_indices(indices);
-          unsigned int row = 0;
-          for (const OutputField &field : fields)
-            for (const Vector &component : field.components)
-              {
-                // In FE_Q the first dofs of a cell are those of its vertices.
-                for (unsigned int v = 0; v < n_vertices; ++v)
-                  patch.data(row, v) = component(indices[at_vertices ? v : 0]);
-                ++row;
-              }
+          // In FE_Q the first dofs of a cell are those of its vertices.
+          for (unsigned int row = 0; row < values.size(); ++row)
+            for (unsigned int v = 0; v < n_vertices; ++v)
+              patch.data(row, v) = values[row](indices[at_vertices ? v : 0]);
         }
   }
 

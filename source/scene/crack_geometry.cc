@@ -46,6 +46,7 @@ namespace PeriDeal
         }
     size       = lowest.distance(highest);
     tolerance  = on_crack * size;
+    margins.assign(corners.size(), edge * size);
     first_axis = corners[1] - corners[0];
     first_axis /= first_axis.norm();
     if constexpr (dim == 2)
@@ -75,11 +76,10 @@ namespace PeriDeal
   bool CrackGeometry<dim>::plane_point_inside(const Point<dim> &p) const
   {
     const Tensor<1, dim> from_start = p - corner_points[0];
-    const double         margin     = edge * size;
     if constexpr (dim == 2)
       {
         const double along = from_start * first_axis;
-        return along >= -margin && along <= content + margin;
+        return along >= -margins[0] && along <= content + margins[1];
       }
     else if constexpr (dim == 3)
       {
@@ -96,7 +96,7 @@ namespace PeriDeal
             const double length_square = ex * ex + ey * ey;
             const double along =
               std::clamp(((x - ax) * ex + (y - ay) * ey) / length_square, 0., 1.);
-            if (std::hypot(ax + along * ex - x, ay + along * ey - y) <= margin)
+            if (std::hypot(ax + along * ex - x, ay + along * ey - y) <= margins[i])
               return true;
             if ((ay > y) != (by > y) && x < ax + (y - ay) / ey * ex)
               inside = !inside;
@@ -161,6 +161,43 @@ namespace PeriDeal
     return corner_points;
   }
 
+  template <int dim>
+  void CrackGeometry<dim>::close_joints(const CrackGeometry &other)
+  {
+    constexpr double   reach = 4.;
+    const unsigned int n     = static_cast<unsigned int>(corner_points.size());
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const Point<dim> &a = corner_points[i], &b = corner_points[(i + 1) % n];
+        if (other.contains(a) &&
+            (dim == 2 || (other.contains(b) && other.contains(a + 0.5 * (b - a)))))
+          margins[i] = std::max(margins[i], reach * std::max(tolerance, other.tolerance));
+      }
+  }
+
+
+  template <int dim>
+  std::vector<CrackGeometry<dim>> make_crack_geometries(
+    const std::vector<std::vector<Point<dim>>> &cracks)
+  {
+    std::vector<CrackGeometry<dim>> list, alone;
+    for (const auto &corners : cracks)
+      alone.emplace_back(corners);
+    list = alone;
+    for (std::size_t i = 0; i < list.size(); ++i)
+      for (std::size_t j = 0; j < list.size(); ++j)
+        if (i != j)
+          list[i].close_joints(alone[j]);
+    return list;
+  }
+
+
+  template std::vector<CrackGeometry<1>> make_crack_geometries(
+    const std::vector<std::vector<Point<1>>> &);
+  template std::vector<CrackGeometry<2>> make_crack_geometries(
+    const std::vector<std::vector<Point<2>>> &);
+  template std::vector<CrackGeometry<3>> make_crack_geometries(
+    const std::vector<std::vector<Point<3>>> &);
   template class CrackGeometry<1>;
   template class CrackGeometry<2>;
   template class CrackGeometry<3>;

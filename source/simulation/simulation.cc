@@ -133,14 +133,14 @@ namespace PeriDeal
         known.push_back(std::to_string(id));
     const auto check = [&](const std::string &entry, const std::vector<SideCondition> &list) {
       for (const SideCondition &condition : list)
-        AssertThrow(condition.id < all.size() && all[condition.id] > 0,
-                    UserError("'" + entry + "' in section 'Boundary conditions' names the side '" +
-                              condition.name +
-                              (scene.domain.shape == Shape::mesh_file ?
-                                 "', which the mesh '" + scene.domain.mesh_file +
-                                   "' does not have. Its boundary ids are: " + join_names(known) +
-                                   "." :
-                                 "', but the hole in section 'Domain' leaves nothing of it.")));
+        AssertThrow(
+          condition.id < all.size() && all[condition.id] > 0,
+          UserError("'" + entry + "' in section 'Boundary conditions' names the side '" +
+                    condition.name +
+                    (scene.domain.shape == Shape::mesh_file ?
+                       "', which the mesh '" + scene.domain.mesh_file +
+                         "' does not have. Its boundary ids are: " + join_names(known) + "." :
+                       "', but the hole in section 'Domain' leaves nothing of it.")));
     };
     check("Dirichlet", conditions.dirichlet);
     check("Flux", conditions.flux);
@@ -421,81 +421,16 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  void Simulation<dim>::dry_run()
-  {
-    build();
-    make_steppers();
-    for (const auto &model : models)
-      {
-        std::ostringstream out;
-        out << model->name() << ":";
-        progress.line(out.str());
-        if (scene.time.steady)
-          {
-            progress.line("  steady: one linear solve, about 20 iterations");
-            continue;
-          }
-        const Spectrum spectrum = model->op().spectrum();
-        out.str("");
-        out << "  largest eigenvalue: sharp bound " << spectrum.sharp << ", safe bound "
-            << spectrum.safe << "\n"
-            << "  stable steps (sharp / safe): euler " << stable_step("euler", spectrum.sharp)
-            << " / " << stable_step("euler", spectrum.safe) << ", rk4 "
-            << stable_step("rk4", spectrum.sharp) << " / " << stable_step("rk4", spectrum.safe)
-            << "\n"
-            << "  stepper: " << model->stepper->name();
-        progress.line(out.str());
-        const double n = expected_applications(*model);
-        if (n > 0.)
-          progress.line("  estimated: " + readable_count(static_cast<unsigned long long>(n)) +
-                        " operator applications, " +
-                        readable_duration(n * time_of_application(*model)));
-      }
-    for (const std::string &note : record->notes)
-      progress.note(note);
-    progress.line("The scene is valid. Nothing was computed.");
-  }
-
-
-  template <int dim>
-  double Simulation<dim>::expected_applications(const ModelRun<dim> &model) const
-  {
-    double n = 0., t = 0.;
-    for (const double next : output_times())
-      {
-        n += next > t ? model.stepper->expected_applications(next - t) : 0.;
-        t = next;
-      }
-    return n;
-  }
-
-
-  template <int dim>
-  double Simulation<dim>::time_of_application(const ModelRun<dim> &model) const
-  {
-    Vector x, y;
-    model.op().initialize_vector(x);
-    model.op().initialize_vector(y);
-    Timings                trial;
-    constexpr unsigned int n_trials = 5;
-    model.op().apply(y, x);
-    for (unsigned int k = 0; k < n_trials; ++k)
-      {
-        Timings::Scope scope(trial, "apply");
-        model.op().apply(y, x);
-      }
-    return trial.total() / n_trials;
-  }
-
-#define PERIDEAL_INSTANTIATE(dim)                          \
-  template Simulation<dim>::Simulation(const Scene<dim> &, \
-                                       const SceneText &,  \
-                                       const MPI_Comm,     \
-                                       const bool);        \
-  template Simulation<dim>::~Simulation();                 \
-  template void Simulation<dim>::run();                    \
-  template void Simulation<dim>::dry_run();
+#define PERIDEAL_INSTANTIATE(dim)                                     \
+  template Simulation<dim>::Simulation(const Scene<dim> &,            \
+                                       const SceneText &,             \
+                                       const MPI_Comm,                \
+                                       const bool);                   \
+  template Simulation<dim>::~Simulation();                            \
+  template void                Simulation<dim>::build();              \
+  template void                Simulation<dim>::make_steppers();      \
+  template std::vector<double> Simulation<dim>::output_times() const; \
+  template void                Simulation<dim>::run();
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

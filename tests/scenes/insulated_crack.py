@@ -119,7 +119,7 @@ def peridynamics(cells=(60, 120, 240)):
     _, orders = convergence_table("Peridynamics, m = 3, crack between node rows, steady", shifted, found, STEADY)
     for n, value in zip(shifted, found):
         check_close(value[0], -value[1], relative=0.03 / n, what=f"{n} cells: T(0, 0.1) = -T(0, -0.1) but for the bonds through the tips")
-    check(min(orders) > 0.7, f"delta-convergence of order {orders}")
+    check(min(orders) > 0.5, f"delta-convergence of order {orders}")
 
     found = []
     for n in cells[:3]:

@@ -79,6 +79,21 @@ class Run:
             found.append(row)
         return found
 
+    def along_line(self, model, time=None, column="value"):
+        """The numbers of line.csv from its start to its end; without a time at the last one written."""
+        rows = self.rows(model, time=time, table="line.csv")
+        if not rows:
+            raise SystemExit(f"no row for {model} at time {time} in {self.folder}/line.csv")
+        last = rows[-1]["time"]
+        return [row[column] for row in rows if row["time"] == last]
+
+    def error(self, model, time=None, kind="relative l2"):
+        """The error against the exact solution; without a time at the last one written."""
+        for when, value in reversed(self.model(model)["errors"][kind]):
+            if time is None or math.isclose(when, time, rel_tol=1e-9, abs_tol=1e-12):
+                return value
+        raise SystemExit(f"no error of {model} at time {time} in {self.folder}/summary.json")
+
     def probe(self, model, point, time=None, column="value"):
         """One number of probes.csv; without a time the last one written."""
         rows = self.rows(model, point, time)
@@ -197,6 +212,44 @@ def check_less(value, limit, what="value"):
 def observed_orders(sizes, errors):
     """The orders of convergence between neighbours: log(e1/e2)/log(h1/h2)."""
     return [math.log(errors[k] / errors[k + 1]) / math.log(sizes[k] / sizes[k + 1]) for k in range(len(sizes) - 1)]
+
+
+def fitted_order(sizes, errors):
+    """The order of convergence by least squares through all points, as papers report it."""
+    x, y = [math.log(size) for size in sizes], [math.log(error) for error in errors]
+    mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
+    return sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / sum((a - mean_x) ** 2 for a in x)
+
+
+def relative_difference(found, exact):
+    """|found - exact| / |exact| in the 2-norm, every number counting alike (equation 13 of Bobaru and Duangpanya 2012)."""
+    return math.sqrt(sum((a - b) ** 2 for a, b in zip(found, exact))) / math.sqrt(sum(b * b for b in exact))
+
+
+class Comparison:
+    """A table of what was obtained and what it was compared with, printed at the end; each row is checked."""
+
+    def __init__(self, title):
+        self.title = title
+        self.rows = []
+
+    def add(self, what, obtained, reference, relative=None, absolute=None):
+        """Obtained and reference differ by less than a share of the reference, or by less than a number."""
+        gap = obtained - reference if relative is None else obtained / reference - 1
+        bound = absolute if relative is None else relative
+        if not check(abs(gap) <= bound, f"{what}: {obtained:.10g} where {reference:.10g} was expected"):
+            what += "  <- FAILED"
+        kind = "" if relative is None else " rel."
+        self.rows.append((what, f"{obtained:.8g}", f"{reference:.8g}", f"{gap:+.1e}{kind}", f"{bound:.1e}"))
+
+    def add_limit(self, what, obtained, limit):
+        """Obtained is not negative and less than a number."""
+        if not check(0 <= obtained <= limit, f"{what}: {obtained:.10g}, allowed {limit:.10g}"):
+            what += "  <- FAILED"
+        self.rows.append((what, f"{obtained:.3e}", "0", f"{obtained:.1e}", f"{limit:.1e}"))
+
+    def show(self):
+        print_table(self.title, ("what", "obtained", "reference", "gap", "bound"), self.rows)
 
 
 def print_table(title, columns, rows):

@@ -31,14 +31,14 @@ namespace PeriDeal
                    const std::vector<std::vector<double>> &points,
                    const std::string                      &entry);
 
-    /** One value per point, on all processes. u needs up-to-date ghosts. Collective. */
+    /** One value per point, on all processes. Needs no ghosts. Collective. */
     std::vector<double> evaluate(const Vector &u) const;
 
   private:
     struct Part
     {
       unsigned int slot; // of the gathered numbers
-      unsigned int dof;  // local index
+      unsigned int dof;  // local index of an owned dof
       double       weight;
     };
 

@@ -50,6 +50,9 @@ namespace PeriDeal
                   std::vector<Bond> &bonds,
                   const bool         with_self_term = true) const;
 
+    /** On a lattice only: the bonds to neighbours one spacing away along an axis, without self term. Else as bonds_of(). */
+    void nearest_bonds_of(const unsigned int node, std::vector<Bond> &bonds) const;
+
     /** Relative position of a neighbour. */
     dealii::Tensor<1, dim> bond_vector(const unsigned int node, const unsigned int neighbor) const;
 
@@ -76,13 +79,13 @@ namespace PeriDeal
     /** The nodes lie on a lattice, one per site. */
     bool has_unique_sites() const;
 
-    /** Some bond of this node may cross a crack. */
+    /** Some bond of this node may cross a crack, or be scaled for one. */
     bool near_crack(const unsigned int node) const;
 
     /** Local number of the real node at a lattice site, or numbers::invalid_unsigned_int. Only without doubled nodes. */
     unsigned int node_at(const typename Lattice<dim>::Index &site) const;
 
-    /** Crack-side scaling (DESIGN 1): factors of owned nodes and ghosts from the given rows; bonds_of() uses their pair means from now on. */
+    /** Crack-side scaling (doc/theory.md): factors of owned nodes and ghosts from the given rows; bonds_of() uses their pair means from now on. */
     void set_node_factors(std::vector<double> factors);
 
     /** Whether W is symmetric. */
@@ -102,7 +105,9 @@ namespace PeriDeal
                     const unsigned int neighbor,
                     const double       w,
                     std::vector<Bond> &bonds) const;
-    void   bonds_on_lattice(const unsigned int node, std::vector<Bond> &bonds) const;
+    void   bonds_on_lattice(const unsigned int                    node,
+                            const std::vector<FamilyMember<dim>> &offsets,
+                            std::vector<Bond>                    &bonds) const;
     void   bonds_off_lattice(const unsigned int node, std::vector<Bond> &bonds) const;
     double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const;
     template <typename Test>
@@ -121,7 +126,7 @@ namespace PeriDeal
     double                           transmission, contact_conductance;
     double                           delta, farthest = 0., factor = 1.;
     bool                             on_lattice = false, uniform = true;
-    std::vector<FamilyMember<dim>>   members, self_additions;
+    std::vector<FamilyMember<dim>>   members, nearest, self_additions;
     std::vector<double>              conductivities, factors;
     std::vector<FictitiousNode<dim>> outside;
     typename Lattice<dim>::Index     corner, extent; // of the table of sites

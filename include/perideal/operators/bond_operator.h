@@ -12,7 +12,7 @@
 namespace PeriDeal
 {
   /**
-   * Peridynamic diffusion: rho c V_i dT_i/dt = sum_j W_ij (T_j - T_i) + loads (DESIGN 3, Bobaru 2012 eq 12 times the node's volume).
+   * Peridynamic diffusion: rho c V_i dT_i/dt = sum_j W_ij (T_j - T_i) + loads (Bobaru 2012 eq 12 times the node's volume).
    *
    * Loads are the volume source, the natural flux through the node's share of a side, and convection as a surface source h A (T_inf - T).
    * Vectors have the horizon-wide halo of the nodes.

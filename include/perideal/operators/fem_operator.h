@@ -20,7 +20,7 @@ namespace PeriDeal
    *
    * Cracks: `faces` are in the mesh already (doubled vertices). `pairs` (Q1): in each cell with a pair of vertices that a crack separates, the
    * cell matrix is replaced by the pair conductances w_ab = max(0, -K_ab) of the pairs that are not separated; a separated pair keeps the
-   * crack's transmission (DESIGN 1). With `Surface correction = crack scaling` the cell matrices next to cracks are multiplied by the mean of their vertices' factors.
+   * crack's transmission (doc/theory.md). With `Surface correction = crack scaling` the cell matrices next to cracks are multiplied by the mean of their vertices' factors.
    * `removed`: cut cells conduct nothing.
    *
    * Vectors have the locally relevant dofs as ghosts.

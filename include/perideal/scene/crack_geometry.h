@@ -43,6 +43,12 @@ namespace PeriDeal
 
     const std::vector<dealii::Point<dim>> &corners() const;
 
+    /**
+     * Extend the ends (3D: the edges) that lie on another crack by a few tolerances, so that cracks that meet leave no gap: each acts
+     * from an infinitesimal distance beside its line, and bonds through the very joint would else slip through between them.
+     */
+    void close_joints(const CrackGeometry &other);
+
   private:
     bool plane_point_inside(const dealii::Point<dim> &p) const;
 
@@ -50,5 +56,11 @@ namespace PeriDeal
     dealii::Point<dim>              lowest, highest;
     dealii::Tensor<1, dim>          unit_normal, first_axis, second_axis;
     double                          size = 0., tolerance = 0., content = 0.;
+    std::vector<double>             margins; // of each end (2D) or edge (3D), beyond which points are off the crack
   };
+
+  /** The cracks of a scene, given by their corners, with closed joints. */
+  template <int dim>
+  std::vector<CrackGeometry<dim>> make_crack_geometries(
+    const std::vector<std::vector<dealii::Point<dim>>> &cracks);
 } // namespace PeriDeal

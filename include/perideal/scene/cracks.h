@@ -12,7 +12,7 @@
 
 namespace PeriDeal
 {
-  /** What FEM and the mesh do with a crack (SCENE_FORMAT: Cracks / Mesh). */
+  /** What FEM and the mesh do with a crack (entry `Mesh` of section `Cracks`). */
   enum class CrackMesh
   {
     pairs,

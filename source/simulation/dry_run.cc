@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/simulation/simulation.h>
+
+#include <sstream>
+
+#include "result_record.h"
+
+namespace PeriDeal
+{
+  template <int dim>
+  void Simulation<dim>::dry_run()
+  {
+    build();
+    make_steppers();
+    for (const auto &model : models)
+      {
+        std::ostringstream out;
+        out << model->name() << ":";
+        progress.line(out.str());
+        if (scene.time.steady)
+          {
+            progress.line("  steady: one linear solve, about 20 iterations");
+            continue;
+          }
+        const Spectrum spectrum = model->op().spectrum();
+        out.str("");
+        out << "  largest eigenvalue: sharp bound " << spectrum.sharp << ", safe bound "
+            << spectrum.safe << "\n"
+            << "  stable steps (sharp / safe): euler " << stable_step("euler", spectrum.sharp)
+            << " / " << stable_step("euler", spectrum.safe) << ", rk4 "
+            << stable_step("rk4", spectrum.sharp) << " / " << stable_step("rk4", spectrum.safe)
+            << "\n"
+            << "  stepper: " << model->stepper->name();
+        progress.line(out.str());
+        const double n = expected_applications(*model);
+        if (n > 0.)
+          progress.line("  estimated: " + readable_count(static_cast<unsigned long long>(n)) +
+                        " operator applications, " +
+                        readable_duration(n * time_of_application(*model)));
+      }
+    for (const std::string &note : record->notes)
+      progress.note(note);
+    progress.line("The scene is valid. Nothing was computed.");
+  }
+
+
+  template <int dim>
+  double Simulation<dim>::expected_applications(const ModelRun<dim> &model) const
+  {
+    double n = 0., t = 0.;
+    for (const double next : output_times())
+      {
+        n += next > t ? model.stepper->expected_applications(next - t) : 0.;
+        t = next;
+      }
+    return n;
+  }
+
+
+  template <int dim>
+  double Simulation<dim>::time_of_application(const ModelRun<dim> &model) const
+  {
+    Vector x, y;
+    model.op().initialize_vector(x);
+    model.op().initialize_vector(y);
+    Timings                trial;
+    constexpr unsigned int n_trials = 5;
+    model.op().apply(y, x);
+    for (unsigned int k = 0; k < n_trials; ++k)
+      {
+        Timings::Scope scope(trial, "apply");
+        model.op().apply(y, x);
+      }
+    return trial.total() / n_trials;
+  }
+
+
+  template void Simulation<1>::dry_run();
+  template void Simulation<2>::dry_run();
+  template void Simulation<3>::dry_run();
+} // namespace PeriDeal

@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Results on 1, 2 and 4 processes.
+
+Peridynamics with steps of a fixed size (euler, rk4, rkc2 with a given step) and with chebyshev: the same digits in probes.csv and line.csv.
+Finite elements: 1e-12 of the largest value, since their sums are taken in another order. Adaptive and implicit steps and steady
+states: 1e-8 at a solver tolerance of 1e-12.
+
+    ranks.py [plates] [bodies] [others] [implicit] [quick]
+"""
+
+import os
+import sys
+import tempfile
+
+from scene_test import check, finish, print_table, run_scene
+
+PLATE = """
+set Dimension = 2
+subsection Domain
+  set Lower corner = 0, 0
+  set Upper corner = 1.2, 1
+  set Cells        = 24, 20
+end
+subsection Material
+  set Conductivity = 1.5
+end
+subsection Initial and source
+  set Initial value = x*y
+  set Source        = 3*x
+end
+subsection Boundary conditions
+  set Dirichlet  = top: 1 + x; left: 2*y
+  set Flux       = right: 0.5*y
+  set Convection = bottom: 2, 0.3
+end
+subsection Cracks
+  set Segments = 0.2,0.31 ; 0.9,0.73
+end
+subsection Output
+  set Fields = none
+  set Probes = 0.3,0.35 ; 0.31,0.62 ; 1.17,0.04
+  set Line   = 0,0.5 ; 1.2,0.47 ; 23
+end
+subsection Solver
+  set Tolerance = 1e-12
+end
+subsection Time
+  set End time  = 0.02
+  set Tolerance = 1e-6
+end
+"""
+
+BODY = """
+set Dimension = 3
+subsection Domain
+  set Lower corner = 0, 0, 0
+  set Upper corner = 1, 1, 0.8
+  set Cells        = 10, 10, 8
+end
+subsection Boundary conditions
+  set Dirichlet = top: 1 + x; bottom: 0
+  set Flux      = front: x
+end
+subsection Cracks
+  set Polygons = 0.21,0.5,0.2 ; 0.81,0.5,0.2 ; 0.81,0.5,0.63 ; 0.21,0.5,0.63
+end
+subsection Peridynamics
+  set Horizon ratio = 2
+end
+subsection Output
+  set Fields = none
+  set Probes = 0.5,0.52,0.33 ; 0.9,0.1,0.7
+  set Line   = 0.5,0,0.4 ; 0.5,1,0.4 ; 11
+end
+subsection Solver
+  set Tolerance = 1e-12
+end
+subsection Time
+  set End time  = 0.02
+  set Tolerance = 1e-6
+end
+"""
+
+BAR = """
+set Dimension = 1
+subsection Domain
+  set Upper corner = 2
+  set Cells        = 80
+end
+subsection Initial and source
+  set Source = sin(x)
+end
+subsection Boundary conditions
+  set Dirichlet = left: 1
+  set Flux      = right: 2
+end
+subsection Output
+  set Fields = none
+  set Probes = 0.333 ; 1.9
+  set Line   = 0 ; 2 ; 31
+end
+subsection Time
+  set End time  = 0.1
+  set Tolerance = 1e-6
+end
+"""
+
+FIXED = {"euler": {"Time/Stepper": "euler", "Time/Time step": "2e-4"},
+         "rk4": {"Time/Stepper": "rk4", "Time/Time step": "3e-4"},
+         "rkc2, fixed": {"Time/Stepper": "rkc2", "Time/Time step": "0.002"},
+         "chebyshev": {"Time/Stepper": "chebyshev"}}
+ADAPTIVE = {"rkc2, adaptive": {"Time/Stepper": "rkc2"}, "sdirk2": {"Time/Stepper": "sdirk2", "Time/Tolerance": "1e-4"},
+            "bdf2": {"Time/Stepper": "bdf2", "Time/Time step": "0.001"},
+            "crank nicolson": {"Time/Stepper": "crank nicolson", "Time/Time step": "0.001"}, "steady": {"Time/Steady": "true"}}
+
+ROWS = []
+
+
+def texts(run, model):
+    """The rows of a model in probes.csv and line.csv, as they stand there."""
+    lines = []
+    for name in ("probes.csv", "line.csv"):
+        with open(os.path.join(run.folder, name)) as file:
+            lines += [line.strip() for line in file if f",{model}," in line]
+    return lines
+
+
+def gap(first, second):
+    """Largest difference of the values over the largest value."""
+    a = [float(line.rsplit(",", 1)[1]) for line in first]
+    b = [float(line.rsplit(",", 1)[1]) for line in second]
+    return max(abs(x - y) for x, y in zip(a, b)) / max(abs(x) for x in a)
+
+
+def compare(what, scene, overrides, bounds, form=None, ranks=(2, 4)):
+    """Run on one and on several processes; bounds: largest gap for each model, 0 for the same digits."""
+    alone = run_scene(scene, {"Models": ", ".join(bounds), **overrides})
+    if form is not None:
+        found = alone.model("peridynamics")["operator form"]
+        check(found == form, f"{what}: the operator form is {found}, not {form}")
+    for n in ranks:
+        run = run_scene(scene, {"Models": ", ".join(bounds), **overrides}, ranks=n)
+        for model, bound in bounds.items():
+            here, there = texts(alone, model), texts(run, model)
+            equal = here == there and len(here) > 0
+            difference = 0.0 if equal else gap(here, there)
+            ok = equal if bound == 0 else difference <= bound
+            check(ok, f"{what}, {model}, {n} processes: {'other digits, ' if bound == 0 else ''}relative gap {difference:.3g}")
+            ROWS.append((what, model, str(n), "same digits" if equal else f"{difference:.2g}",
+                         "same digits" if bound == 0 else f"{bound:.0e}"))
+
+
+BOTH = {"peridynamics": 0, "finite elements": 1e-12}
+
+
+def plates(only=None):
+    for name, choice in FIXED.items():
+        for place in ("vertices", "cell centers"):
+            for form in ("lattice", "stored"):
+                if only and (name, place, form) not in only:
+                    continue
+                compare(f"plate, {name}, {place}, {form}", PLATE,
+                        {**choice, "Domain/Nodes": place, "Peridynamics/Operator form": form}, BOTH, form)
+
+
+def bodies():
+    for name in ("euler", "chebyshev"):
+        choice = dict(FIXED[name])
+        if name == "euler":
+            choice["Time/Time step"] = "1e-3"
+        for place in ("vertices", "cell centers"):
+            for form in ("lattice", "stored"):
+                compare(f"3D, {name}, {place}, {form}", BODY,
+                        {**choice, "Domain/Nodes": place, "Peridynamics/Operator form": form}, BOTH, form)
+
+
+def mesh_file(folder, n=9):
+    """A Gmsh file of n x n distorted quadrilaterals on the unit square; boundary ids 1 left, 2 right, 3 bottom, 4 top."""
+    def place(i, j):
+        x, y = i / n, j / n
+        bump = 0.3 / n * (16 * x * (1 - x) * y * (1 - y))
+        return x + bump * ((7 * i + 3 * j) % 5 - 2) / 2, y + bump * ((3 * i + 5 * j) % 7 - 3) / 3
+    node = [[1 + i + (n + 1) * j for j in range(n + 1)] for i in range(n + 1)]
+    elements = []
+    for k in range(n):
+        elements += [f"1 2 1 1 {node[0][k]} {node[0][k + 1]}", f"1 2 2 2 {node[n][k]} {node[n][k + 1]}",
+                     f"1 2 3 3 {node[k][0]} {node[k + 1][0]}", f"1 2 4 4 {node[k][n]} {node[k + 1][n]}"]
+    for j in range(n):
+        for i in range(n):
+            elements.append(f"3 2 9 9 {node[i][j]} {node[i + 1][j]} {node[i + 1][j + 1]} {node[i][j + 1]}")
+    path = os.path.join(folder, "distorted.msh")
+    with open(path, "w") as file:
+        file.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n" % (n + 1) ** 2)
+        for j in range(n + 1):
+            for i in range(n + 1):
+                file.write("%d %.16g %.16g 0\n" % (node[i][j], *place(i, j)))
+        file.write("$EndNodes\n$Elements\n%d\n" % len(elements))
+        for k, element in enumerate(elements):
+            file.write(f"{k + 1} {element}\n")
+        file.write("$EndElements\n")
+    return path
+
+
+def others():
+    for form in ("lattice", "stored"):
+        compare(f"bar, euler, {form}", BAR, {**FIXED["euler"], "Peridynamics/Operator form": form}, BOTH, form)
+        compare(f"bar, chebyshev, {form}", BAR, {**FIXED["chebyshev"], "Peridynamics/Operator form": form}, BOTH, form)
+    compare("bar, layer extrapolation, rkc2, fixed", BAR,
+            {**FIXED["rkc2, fixed"], "Peridynamics/Flux treatment": "layer extrapolation"}, {"peridynamics": 1e-11})
+    for place in ("vertices", "cell centers"):
+        mirror = {"Peridynamics/Boundary treatment": "fictitious mirror", "Domain/Nodes": place}
+        compare(f"plate, mirror, chebyshev, {place}", PLATE, {**FIXED["chebyshev"], **mirror}, {"peridynamics": 0})
+        compare(f"plate, mirror, rk4, {place}, graded", PLATE,
+                {**FIXED["rk4"], **mirror, "Material/Conductivity": "1 + x/2"}, {"peridynamics": 0})
+        compare(f"3D, mirror, chebyshev, {place}", BODY, {**FIXED["chebyshev"], **mirror}, {"peridynamics": 0})
+    # slaves are a small system of their own, solved by iterations: as accurate as those
+    slaves = {"Peridynamics/Boundary treatment": "fictitious mirror", "Peridynamics/Flux treatment": "extrapolation",
+              "Domain/Nodes": "cell centers"}
+    compare("plate, mirror, flux extrapolation, rkc2, fixed", PLATE, {**FIXED["rkc2, fixed"], **slaves}, {"peridynamics": 1e-11})
+    compare("plate, moving values, euler", PLATE,
+            {**FIXED["euler"], "Boundary conditions/Dirichlet": "top: cos(40*t) + x; left: 2*y"}, BOTH)
+    compare("plate, crack on faces, chebyshev", PLATE,
+            {**FIXED["chebyshev"], "Cracks/Mesh": "faces", "Cracks/Segments": "0.2,0.5 ; 0.9,0.5"}, BOTH)
+    compare("plate with a hole, chebyshev", PLATE,
+            {**FIXED["chebyshev"], "Domain/Shape": "plate with hole", "Domain/Hole center": "0.6, 0.5", "Domain/Hole radius": "0.22",
+             "Output/Line": "", "Output/Probes": "0.1,0.35 ; 0.11,0.62 ; 1.17,0.04", "Output/Line": "0,0.9 ; 1.2,0.9 ; 9",
+             "Cracks/Segments": "0.2,0.21 ; 0.9,0.13"}, BOTH)
+    folder = tempfile.mkdtemp(prefix="perideal_")
+    mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": mesh_file(folder), "Peridynamics/Horizon": "0.35", "Cracks/Segments": "",
+            "Boundary conditions/Dirichlet": "4: 1 + x; 1: 2*y", "Boundary conditions/Flux": "2: 0.5*y",
+            "Boundary conditions/Convection": "3: 2, 0.3", "Output/Probes": "0.3,0.35 ; 0.91,0.62", "Output/Line": "0,0.5 ; 1,0.47 ; 23"}
+    compare("mesh file, chebyshev, vertices", PLATE, {**FIXED["chebyshev"], **mesh}, BOTH, "stored")
+    compare("mesh file, euler, cell centers", PLATE, {**FIXED["euler"], **mesh, "Domain/Nodes": "cell centers"}, BOTH, "stored")
+    compare("mesh file, steady", PLATE, {**ADAPTIVE["steady"], **mesh}, {"peridynamics": 1e-8, "finite elements": 1e-8})
+    return folder
+
+
+def implicit():
+    bounds = {"peridynamics": 1e-8, "finite elements": 1e-8}
+    for name, choice in ADAPTIVE.items():
+        for place in ("vertices", "cell centers"):
+            compare(f"plate, {name}, {place}", PLATE, {**choice, "Domain/Nodes": place}, bounds)
+    for form in ("lattice", "stored"):
+        compare(f"3D, steady, {form}", BODY, {**ADAPTIVE["steady"], "Peridynamics/Operator form": form}, bounds, form)
+    compare("3D, sdirk2", BODY, ADAPTIVE["sdirk2"], bounds)
+    compare("bar, steady", BAR, {**ADAPTIVE["steady"], "Solver/Tolerance": "1e-12"}, bounds)
+
+
+def quick():
+    """One of each kind."""
+    plates({("chebyshev", "vertices", "lattice"), ("euler", "cell centers", "stored")})
+    compare("3D, chebyshev", BODY, FIXED["chebyshev"], BOTH, ranks=(2,))
+    compare("plate, steady", PLATE, ADAPTIVE["steady"], {"peridynamics": 1e-8, "finite elements": 1e-8}, ranks=(2,))
+
+
+def main():
+    parts = {"plates": plates, "bodies": bodies, "others": others, "implicit": implicit, "quick": quick}
+    folders = [parts[name]() for name in sys.argv[1:] or ("plates", "bodies", "others", "implicit")]
+    print_table("Differences from the run on one process", ("case", "model", "processes", "difference", "allowed"), ROWS)
+    finish(*[folder for folder in folders if folder])
+
+
+if __name__ == "__main__":
+    main()
