@@ -242,7 +242,8 @@ namespace PeriDeal
       mass.reinit(pattern);
     initialize_vector(capacity);
 
-    CellData data(dofs.get_fe());
+    cell_data      = std::make_shared<CellData>(dofs.get_fe());
+    CellData &data = *cell_data;
     if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling &&
         scene.cracks.mesh == CrackMesh::pairs && !cracks.empty())
       find_crack_factors(data);
@@ -277,7 +278,7 @@ namespace PeriDeal
   {
     const Expression &source     = scene.initial_and_source.source;
     const bool        any_source = !source.is_constant() || source.value(Point<dim>()) != 0.;
-    CellData          data(dofs.get_fe());
+    CellData         &data       = *cell_data;
     loads = 0.;
     for (const auto &cell : dofs.active_cell_iterators())
       {
@@ -326,7 +327,7 @@ namespace PeriDeal
   {
     const Expression   &source     = scene.initial_and_source.source;
     const bool          any_source = !source.is_constant() || source.value(Point<dim>()) != 0.;
-    CellData            data(dofs.get_fe());
+    CellData           &data       = *cell_data;
     std::vector<double> temperature(data.face_values.n_quadrature_points);
     u.update_ghost_values();
     for (const auto &cell : dofs.active_cell_iterators())

@@ -23,7 +23,12 @@ namespace PeriDeal
     : dofs(dofs)
     , directory(directory)
     , series(series)
-  {}
+  {
+    // The default compression takes ten times as long for files that are a tenth smaller.
+    DataOutBase::VtkFlags flags;
+    flags.compression_level = DataOutBase::VtkFlags::best_speed;
+    this->set_flags(flags);
+  }
 
 
   template <int dim>
@@ -88,8 +93,9 @@ namespace PeriDeal
         {
           values.emplace_back(partitioner);
           std::copy(component.begin(), component.end(), values.back().begin());
-          values.back().update_ghost_values();
         }
+    for (const Vector &value : values) // copies of vectors lose their ghosts, so only now
+      value.update_ghost_values();
     patches.clear();
     patches.reserve(dofs.get_triangulation().n_active_cells());
     for (const auto &cell : dofs.active_cell_iterators())

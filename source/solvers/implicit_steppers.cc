@@ -24,6 +24,7 @@ namespace PeriDeal
         , fixed(options.time_step > 0.)
         , dt(fixed ? options.time_step : 0.)
         , tolerance(options.tolerance)
+        , third_order_tolerance(local_tolerance(options.tolerance))
         , solver(op, options.solver_tolerance, options.max_iterations)
       {
         for (Vector *v : {&next, &error, &residual, &change, &offset})
@@ -64,8 +65,8 @@ namespace PeriDeal
               {
                 op.clear_constrained(error);
                 const double level = std::max(capacity_norm(op, u), capacity_norm(op, next));
-                const double size  = level == 0. ? 0. :
-                                                   capacity_norm(op, error) / (tolerance * level);
+                const double bound = (order == 3 ? third_order_tolerance : tolerance) * level;
+                const double size  = level == 0. ? 0. : capacity_norm(op, error) / bound;
                 AssertThrow(std::isfinite(size), UserError(unstable_message(t)));
                 growth = std::clamp(0.85 * std::pow(std::max(size, 1e-12), -1. / order), 0.2, 2.); // BDF2 is stable for ratios up to 1 + sqrt 2
                 if (size > 1.)
@@ -151,7 +152,7 @@ namespace PeriDeal
       const std::string method;
       const bool        fixed;
       double            dt;
-      const double      tolerance;
+      const double      tolerance, third_order_tolerance; // of the estimated errors of a step
       LinearSolver      solver;
       Vector            residual, change, offset;
     };

@@ -60,7 +60,7 @@ namespace PeriDeal
         : op(op)
         , fixed(options.time_step > 0.)
         , dt(fixed ? options.time_step : 0.)
-        , tolerance(options.tolerance)
+        , tolerance(local_tolerance(options.tolerance))
       {
         for (Vector *v : {&rate, &stage_rate, &before, &last, &now})
           op.initialize_vector(*v);

@@ -57,6 +57,12 @@ namespace PeriDeal
   }
 
 
+  double local_tolerance(const double tolerance)
+  {
+    return std::min(tolerance, 10. * tolerance * std::sqrt(tolerance));
+  }
+
+
   void check_finite(const Vector &u, const std::string &stepper, const double t)
   {
     if (std::isfinite(u.l1_norm()))

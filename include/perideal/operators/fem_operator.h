@@ -11,6 +11,7 @@
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/scene.h>
 
+#include <memory>
 #include <vector>
 
 namespace PeriDeal
@@ -86,6 +87,7 @@ namespace PeriDeal
     dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
     Vector                                 capacity, stiffness_diagonal, constant_loads;
     mutable Vector                         scratch;
+    std::shared_ptr<CellData>              cell_data; // memory of the cell loops
     std::vector<Prescribed>                prescribed;
     std::vector<bool>                      cut; // by active cell index
     Vector                                 crack_factors;

@@ -23,6 +23,12 @@ namespace PeriDeal
   /** sqrt(sum C_i v_i^2 / sum C_i): the root mean square in the measure of the capacity. Collective. */
   double capacity_norm(const Operator &op, const Vector &v);
 
+  /**
+   * Bound of the error of one step, relative to the solution, of methods whose steps are wrong by O(h^3). Their n steps come to n = O(bound^(-1/3)), and their errors
+   * add up to O(bound^(2/3)): so it goes with the power 3/2 of the accuracy wanted at the end.
+   */
+  double local_tolerance(const double tolerance);
+
   /** Throws a UserError that says what to change if u is not finite. Collective. */
   void check_finite(const Vector &u, const std::string &stepper, const double t);
 

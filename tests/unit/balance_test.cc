@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/solvers/linear_solver.h>
+
+#include "operator_test_tools.h"
+
+namespace PeriDeal
+{
+  using namespace OperatorTests;
+  using dealii::Point;
+
+  namespace
+  {
+    const Settings plate{{"Domain/Cells", "20, 16"},
+                         {"Domain/Upper corner", "1, 0.8"},
+                         {"Initial and source/Source", "2 - 7*x*y"}};
+    const Settings sides{{"Boundary conditions/Dirichlet", "left: 1 + y ; bottom: cos(3*x)"},
+                         {"Boundary conditions/Flux", "top: 3*x"},
+                         {"Boundary conditions/Convection", "right: 4 + y, 2"}};
+    const Settings crack{{"Cracks/Segments", "0,0.41 ; 0.43,0.55 ; 0.55,0 ; 0.71,0.3"}};
+    const Settings symmetric{{"Boundary conditions/Dirichlet", "left: 1 + y ; bottom: cos(3*x)"},
+                             {"Boundary conditions/Symmetry", "right, top"}};
+
+
+    /** Nothing is lost: in a field that is no solution at all, and in a steady one, to 1e-12 of what flows. */
+    template <int dim>
+    void expect_balance(const std::string &what,
+                        const Settings    &settings,
+                        const Model        model = Model::peridynamics)
+    {
+      const Problem<dim> problem(settings, model);
+      ASSERT_TRUE(problem.op().symmetric()) << what;
+      Vector u = problem.values(bumpy<dim>);
+      problem.op().distribute(u, 0.7);
+      const Balance moving = problem.op().balance(u, 0.7, false);
+      double        size   = std::abs(moving.stored) + std::abs(moving.sources);
+      for (const auto &[name, heat] : moving.sides)
+        size += std::abs(heat);
+      EXPECT_GT(size, 0.1) << what;
+      EXPECT_LT(std::abs(moving.imbalance()), 1e-12 * size) << what;
+
+      solve_steady(problem.op(), u, 0., 1e-14, 1000);
+      const Balance steady = problem.op().balance(u, 0., true);
+      EXPECT_GT(steady.throughput(), 0.1) << what;
+      EXPECT_LT(std::abs(steady.imbalance()), 1e-12 * steady.throughput()) << what;
+    }
+  } // namespace
+
+
+  TEST(Balance, peridynamics)
+  {
+    for (const std::string placement : {"vertices", "cell centers"})
+      for (const std::string treatment : {"none", "layer", "fictitious mirror", "fictitious constant"})
+        {
+          const Settings base =
+            plate + Settings{{"Domain/Nodes", placement},
+                             {"Peridynamics/Boundary treatment", treatment},
+                             {"Peridynamics/Layer rows", "3"}};
+          const std::string what = placement + ", " + treatment;
+          if (placement == "cell centers" && treatment == "none")
+            continue; // the row of cells on the side is prescribed: nothing new
+          expect_balance<2>(what, base + sides);
+          expect_balance<2>(what + ", cracks", base + sides + crack);
+          expect_balance<2>(what + ", symmetry", base + symmetric);
+          expect_balance<2>(what + ", symmetry, cracks",
+                            base + symmetric + crack +
+                              Settings{{"Peridynamics/Surface correction", "crack scaling"},
+                                       {"Cracks/Transmission", "0.2"}});
+        }
+  }
+
+
+  TEST(Balance, peridynamics_other_dimensions)
+  {
+    expect_balance<1>("bar",
+                      {{"Domain/Cells", "30"},
+                       {"Peridynamics/Boundary treatment", "fictitious mirror"},
+                       {"Boundary conditions/Dirichlet", "left: 1"},
+                       {"Boundary conditions/Flux", "right: 3"},
+                       {"Initial and source/Source", "x"}});
+    expect_balance<3>("brick",
+                      {{"Domain/Cells", "7, 6, 5"},
+                       {"Peridynamics/Horizon", "0.41"},
+                       {"Boundary conditions/Dirichlet", "left: 1"},
+                       {"Boundary conditions/Convection", "front: 3, 2"},
+                       {"Initial and source/Source", "x"}});
+    expect_balance<2>("varying conductivity",
+                      plate + sides + crack +
+                        Settings{{"Material/Conductivity", "1 + x + 4*(y > 0.4)"},
+                                 {"Material/Interface rule", "harmonic"}});
+  }
+
+
+  TEST(Balance, finite_elements)
+  {
+    for (const std::string mesh : {"pairs", "removed"})
+      expect_balance<2>(mesh,
+                        plate + sides + Settings{{"Cracks/Mesh", mesh},
+                                                 {"Cracks/Segments", "0.21,0.41 ; 0.43,0.55"}},
+                        Model::finite_elements);
+    expect_balance<2>("scaled",
+                      plate + sides + crack +
+                        Settings{{"Peridynamics/Surface correction", "crack scaling"}},
+                      Model::finite_elements);
+    expect_balance<2>("faces",
+                      plate + sides + Settings{{"Cracks/Mesh", "faces"},
+                                               {"Cracks/Segments", "-1,0.4 ; 0.5,0.4"}},
+                      Model::finite_elements);
+    for (const std::string degree : {"2", "3"})
+      expect_balance<2>("Q" + degree,
+                        plate + sides + Settings{{"Finite elements/Degree", degree}},
+                        Model::finite_elements);
+    expect_balance<1>("bar",
+                      {{"Domain/Cells", "30"},
+                       {"Boundary conditions/Dirichlet", "left: 1"},
+                       {"Boundary conditions/Convection", "right: 3, 5"},
+                       {"Initial and source/Source", "x"}},
+                      Model::finite_elements);
+    expect_balance<3>("brick",
+                      {{"Domain/Cells", "5, 4, 3"},
+                       {"Boundary conditions/Dirichlet", "left: 1"},
+                       {"Boundary conditions/Convection", "right: 3, 5"},
+                       {"Initial and source/Source", "x"}},
+                      Model::finite_elements);
+  }
+
+
+  TEST(Balance, bar_carries_what_enters)
+  {
+    // Steady bar: flux 3 in on the right, source x, temperature 1 on the left: everything leaves on the left.
+    for (const Model model : {Model::peridynamics, Model::finite_elements})
+      {
+        const Problem<1> problem({{"Domain/Cells", "40"},
+                                  {"Material/Conductivity", "2"},
+                                  {"Boundary conditions/Dirichlet", "left: 1"},
+                                  {"Boundary conditions/Flux", "right: 3"},
+                                  {"Initial and source/Source", "x"}},
+                                 model);
+        Vector           u = problem.vector();
+        solve_steady(problem.op(), u, 0., 1e-13, 1000);
+        const Balance balance = problem.op().balance(u, 0., true);
+        EXPECT_NEAR(balance.sides.at("right"), 3., 1e-12);
+        EXPECT_NEAR(balance.sources, 0.5, 1e-12);
+        // The natural side of the prescribed node holds no source of its own in PD: it is not counted either.
+        EXPECT_NEAR(balance.sides.at("left"), -3.5, 1e-9);
+        EXPECT_NEAR(balance.throughput(), 3.5, 1e-12);
+        if (model == Model::finite_elements)
+          {
+            // Exact at the vertices: 2 T'' = -x, 2 T'(1) = 3.
+            const Vector exact = problem.values([](const Point<1> &p) {
+              return 1. + 1.75 * p[0] - p[0] * p[0] * p[0] / 12.;
+            });
+            EXPECT_LT(largest_difference(u, exact), 1e-11);
+          }
+      }
+  }
+} // namespace PeriDeal
