@@ -38,12 +38,12 @@ namespace PeriDeal
     {
       const D d;
       V       w = hn::Set(d, 0.99), c = hn::Set(d, 0.01);
-      V       a0 = c, a1 = c, a2 = c, a3 = c, a4 = c, a5 = c, a6 = c, a7 = c, a8 = c, a9 = c, a10 = c,
+      V a0 = c, a1 = c, a2 = c, a3 = c, a4 = c, a5 = c, a6 = c, a7 = c, a8 = c, a9 = c, a10 = c,
         a11 = c;
       for (long i = 0; i < n; ++i)
         {
-#define PERIDEAL_STEP(a)      \
-  a = hn::MulAdd(a, w, c);    \
+#define PERIDEAL_STEP(a)   \
+  a = hn::MulAdd(a, w, c); \
   PERIDEAL_HOLD(a)
           PERIDEAL_STEP(a0);
           PERIDEAL_STEP(a1);
@@ -70,10 +70,10 @@ namespace PeriDeal
       for (long k = 0; k < n; ++k)
         for (long i = 0; i < length; i += 8 * lanes)
           {
-#define PERIDEAL_LOAD(j)                          \
-  {                                               \
-    V v = hn::LoadU(d, p + i + j * lanes);        \
-    PERIDEAL_HOLD(v);                             \
+#define PERIDEAL_LOAD(j)                   \
+  {                                        \
+    V v = hn::LoadU(d, p + i + j * lanes); \
+    PERIDEAL_HOLD(v);                      \
   }
             PERIDEAL_LOAD(0)
             PERIDEAL_LOAD(1)
@@ -156,16 +156,42 @@ namespace PeriDeal
       return HWY_DYNAMIC_DISPATCH(load)(small.get() + 1, length, 10000);
     });
 
-    constexpr long n = 16 << 20;
-    const auto     a = hwy::AllocateAligned<double>(n), b = hwy::AllocateAligned<double>(n),
-               c = hwy::AllocateAligned<double>(n);
-    std::fill_n(a.get(), n, 0.);
-    std::fill_n(b.get(), n, 1.);
-    std::fill_n(c.get(), n, 2.);
-    improve(limits.triad, 10, [&] {
-      HWY_DYNAMIC_DISPATCH(triad)(a.get(), b.get(), c.get(), n);
-      return 24. * n;
+    Triad triad;
+    for (unsigned int k = 0; k < 10; ++k)
+      limits.triad = std::max(limits.triad, triad.rate());
+  }
+
+
+  struct Triad::Arrays
+  {
+    static constexpr long n = 16 << 20;
+
+    hwy::AlignedFreeUniquePtr<double[]> a = hwy::AllocateAligned<double>(n),
+                                        b = hwy::AllocateAligned<double>(n),
+                                        c = hwy::AllocateAligned<double>(n);
+  };
+
+
+  Triad::Triad()
+    : arrays(std::make_unique<Arrays>())
+  {
+    std::fill_n(arrays->a.get(), Arrays::n, 0.);
+    std::fill_n(arrays->b.get(), Arrays::n, 1.);
+    std::fill_n(arrays->c.get(), Arrays::n, 2.);
+  }
+
+
+  Triad::~Triad() = default;
+
+
+  double Triad::rate()
+  {
+    double best = 0.;
+    improve(best, 1, [&] {
+      HWY_DYNAMIC_DISPATCH(triad)(arrays->a.get(), arrays->b.get(), arrays->c.get(), Arrays::n);
+      return 24. * Arrays::n;
     });
+    return best;
   }
 } // namespace PeriDeal
 #endif

@@ -35,6 +35,33 @@ namespace PeriDeal
           p += shift * crack.normal();
       return p;
     }
+
+
+    /** The first of this process's cells that holds the point. */
+    template <int dim>
+    bool find_by_looking_everywhere(
+      const DoFHandler<dim>                                                           &dofs,
+      const Mapping<dim>                                                              &mapping,
+      const Point<dim>                                                                &point,
+      std::pair<typename Triangulation<dim>::active_cell_iterator, Point<dim>> &place)
+    {
+      constexpr double slack = 1e-8;
+      for (const auto &cell : dofs.get_triangulation().active_cell_iterators())
+        if (cell->is_locally_owned() &&
+            cell->bounding_box().point_inside(point, slack * cell->diameter()))
+          try
+            {
+              const Point<dim> unit = mapping.transform_real_to_unit_cell(cell, point);
+              if (GeometryInfo<dim>::is_inside_unit_cell(unit, slack))
+                {
+                  place = {cell, unit};
+                  return true;
+                }
+            }
+          catch (const typename Mapping<dim>::ExcTransformationFailed &)
+            {}
+      return false;
+    }
   } // namespace
 
 
@@ -200,6 +227,11 @@ namespace PeriDeal
               places[k] = place;
             }
       }
+    Utilities::MPI::min(finder, communicator, first);
+    // The search starts from the nearest vertex. Where that is doubled it may be the one across the crack, from which no way leads to the point.
+    for (unsigned int k = 0; k < points.size(); ++k)
+      if (first[k] == nobody && find_by_looking_everywhere(dofs, mapping, points[k], places[k]))
+        finder[k] = me;
     Utilities::MPI::min(finder, communicator, first);
     const FiniteElement<dim> &fe = dofs.get_fe();
     n_slots                      = fe.n_dofs_per_cell();

@@ -34,8 +34,11 @@ namespace PeriDeal
           to[i] = v[i] * from[i];
       }
 
-      PERIDEAL_CLONES void
-      combine_constant(Out y, In u, const double v, const double d, const std::size_t n)
+      PERIDEAL_CLONES void combine_constant(Out               y,
+                                            In                u,
+                                            const double      v,
+                                            const double      d,
+                                            const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           y[i] = v * (d * u[i] - y[i]);
@@ -59,8 +62,12 @@ namespace PeriDeal
           y[i] = load[i] - y[i];
       }
 
-      PERIDEAL_CLONES void
-      advance_all(Out next, In u, In s, In r, const double a, const std::size_t n)
+      PERIDEAL_CLONES void advance_all(Out               next,
+                                       In                u,
+                                       In                s,
+                                       In                r,
+                                       const double      a,
+                                       const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           next[i] = u[i] + a * (s[i] * r[i]);
@@ -117,14 +124,12 @@ namespace PeriDeal
       scale_varying(to, from, v, n);
     }
 
-    void
-    combine(double *y, const double *u, const double v, const double d, const std::size_t n)
+    void combine(double *y, const double *u, const double v, const double d, const std::size_t n)
     {
       combine_constant(y, u, v, d, n);
     }
 
-    void
-    combine(double *y, const double *u, const double *v, const double *d, const std::size_t n)
+    void combine(double *y, const double *u, const double *v, const double *d, const std::size_t n)
     {
       combine_varying(y, u, v, d, n);
     }
@@ -170,13 +175,13 @@ namespace PeriDeal
       chebyshev_all(last, sum, now, s, r, a, c, n);
     }
 
-    void rkc_stage(double           *next,
-                   const double     *u,
-                   const double     *last,
-                   const double     *before,
-                   const double     *s,
-                   const double     *r,
-                   const double     *rate,
+    void rkc_stage(double       *next,
+                   const double *u,
+                   const double *last,
+                   const double *before,
+                   const double *s,
+                   const double *r,
+                   const double *rate,
                    const double (&a)[5],
                    const std::size_t n)
     {

@@ -99,6 +99,7 @@ namespace PeriDeal
     double     sum = 0., n_full = 0.;
     LinearAlgebra::distributed::Vector<double>   at_boundary(own_nodes->partitioner());
     std::vector<std::pair<unsigned int, double>> found;
+    const double                                 tiny = 1e-10 * own_nodes->smallest_spacing();
     for (const BoundaryShare &share : own_nodes->boundary_shares())
       at_boundary.local_element(share.node) = 1.;
     at_boundary.update_ghost_values();
@@ -114,7 +115,7 @@ namespace PeriDeal
           continue;
         double moment = 0.;
         for (const auto &[neighbor, square] : found)
-          if (neighbor != i)
+          if (square > tiny * tiny) // not the node itself, nor its twin across a crack
             moment += off_lattice_weight(std::sqrt(square)) * own_nodes->volume(neighbor) * square;
         sum += moment / (2. * dim);
         n_full += 1.;

@@ -208,12 +208,11 @@ namespace PeriDeal
                                          const unsigned int begin,
                                          const unsigned int end) const
   {
-    for (auto entry = std::lower_bound(convection_diagonal.begin(),
-                                       convection_diagonal.end(),
-                                       begin,
-                                       [](const auto &a, const unsigned int b) {
-                                         return a.first < b;
-                                       });
+    for (auto entry =
+           std::lower_bound(convection_diagonal.begin(),
+                            convection_diagonal.end(),
+                            begin,
+                            [](const auto &a, const unsigned int b) { return a.first < b; });
          entry != convection_diagonal.end() && entry->first < end;
          ++entry)
       y.local_element(entry->first) += entry->second * x.local_element(entry->first);

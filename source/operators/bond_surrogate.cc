@@ -86,7 +86,8 @@ namespace PeriDeal
                   if (bond.neighbor >= nodes.n_local())
                     {
                       // A fictitious node holds its neighbours as far as it does not follow its mirror.
-                      outside[i] += (1. - bonds.fictitious()[bond.neighbor - nodes.n_local()].sign) * c;
+                      outside[i] +=
+                        (1. - bonds.fictitious()[bond.neighbor - nodes.n_local()].sign) * c;
                       continue;
                     }
                   entries.emplace_back(bond.neighbor, c);

@@ -200,9 +200,9 @@ namespace PeriDeal
       {
         if (families.self_members().empty())
           return bond.intact;
-        const std::uint32_t j      = bond.neighbor;
-        const double        volume = j < n_local ? families.nodes().volume(j) :
-                                                   families.fictitious()[j - n_local].volume;
+        const std::uint32_t  j      = bond.neighbor;
+        const double         volume = j < n_local ? families.nodes().volume(j) :
+                                                    families.fictitious()[j - n_local].volume;
         const Tensor<1, dim> xi     = families.bond_vector(i, j);
         double               weight = 0.;
         for (const auto *list : {&families.lattice_members(), &families.self_members()})
@@ -258,7 +258,8 @@ namespace PeriDeal
         for (std::size_t c = correction_starts[row]; c < correction_starts[row + 1]; ++c)
           {
             const std::uint32_t j = corrections[c].column;
-            sum += corrections[c].coefficient * (u - (j < n_local ? values[j] : outside[j - n_local]));
+            sum +=
+              corrections[c].coefficient * (u - (j < n_local ? values[j] : outside[j - n_local]));
           }
         return sum;
       }
@@ -280,8 +281,11 @@ namespace PeriDeal
       void combine(const LatticePiece &piece, const double *values, double *y) const
       {
         if (piece.varying == LatticePiece::none)
-          NodeLoops::combine(
-            y + piece.node, values + piece.node, piece.volume, piece.family_sum, piece.n);
+          NodeLoops::combine(y + piece.node,
+                             values + piece.node,
+                             piece.volume,
+                             piece.family_sum,
+                             piece.n);
         else
           NodeLoops::combine(y + piece.node,
                              values + piece.node,
@@ -335,8 +339,8 @@ namespace PeriDeal
       std::vector<OutsideNode>                outside_nodes;
       std::vector<std::size_t>                emptied_slots;
       std::vector<std::uint32_t>              corrected_rows;
-      std::vector<std::size_t>                correction_starts, correction_ends; // of rows; of groups
-      std::vector<Correction>                 corrections;
+      std::vector<std::size_t> correction_starts, correction_ends; // of rows; of groups
+      std::vector<Correction>  corrections;
     };
   } // namespace
 

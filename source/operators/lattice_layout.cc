@@ -152,8 +152,8 @@ namespace PeriDeal
         pieces.push_back(piece);
         first_nodes.push_back(piece.node);
 
-        constexpr std::ptrdiff_t block = StencilKernel::block_rows;
-        const bool goes_on = dim > 1 && k > 0 && run.z == runs[k - 1].z &&
+        constexpr std::ptrdiff_t block   = StencilKernel::block_rows;
+        const bool               goes_on = dim > 1 && k > 0 && run.z == runs[k - 1].z &&
                              run.y / block == runs[k - 1].y / block;
         if (!goes_on)
           groups.emplace_back();
@@ -188,8 +188,8 @@ namespace PeriDeal
     std::size_t               k = 0;
     for (Group &group : groups)
       {
-        const std::ptrdiff_t z       = runs[k].z;
-        std::ptrdiff_t       x_begin = runs[k].x, x_end = x_begin, y_begin = runs[k].y, y_end = y_begin;
+        const std::ptrdiff_t z = runs[k].z;
+        std::ptrdiff_t x_begin = runs[k].x, x_end = x_begin, y_begin = runs[k].y, y_end = y_begin;
         for (; k < group.runs; ++k)
           {
             x_begin = std::min(x_begin, runs[k].x);

@@ -20,8 +20,9 @@ namespace PeriDeal
 
     std::size_t   slot; // in the padded grid
     std::uint32_t node, n;
-    std::uint32_t varying = none; // where the values begin in the lists of varying values, or none: then
-    double        volume = 0., family_sum = 0.; // all nodes of the piece have these
+    std::uint32_t varying =
+      none; // where the values begin in the lists of varying values, or none: then
+    double volume = 0., family_sum = 0.; // all nodes of the piece have these
   };
 
 
@@ -59,22 +60,24 @@ namespace PeriDeal
 
     double volume(const LatticePiece &piece, const std::uint32_t k) const
     {
-      return piece.varying == LatticePiece::none ? piece.volume : varying_volumes[piece.varying + k];
+      return piece.varying == LatticePiece::none ? piece.volume :
+                                                   varying_volumes[piece.varying + k];
     }
 
     double family_sum(const LatticePiece &piece, const std::uint32_t k) const
     {
-      return piece.varying == LatticePiece::none ? piece.family_sum : varying_sums[piece.varying + k];
+      return piece.varying == LatticePiece::none ? piece.family_sum :
+                                                   varying_sums[piece.varying + k];
     }
 
     std::size_t memory_consumption() const;
 
-    std::vector<Group>                                   groups;
-    std::vector<LatticePiece>                            fills;  // owned nodes and ghosts, to be copied into the grid
-    std::vector<LatticePiece>                            pieces; // owned nodes
-    std::vector<StencilKernel::Run>                      runs;   // owned nodes; `out` is not set
-    std::vector<std::uint32_t>                           first_nodes; // of the runs
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges;      // of owned nodes: begin, end
+    std::vector<Group>              groups;
+    std::vector<LatticePiece>       fills;  // owned nodes and ghosts, to be copied into the grid
+    std::vector<LatticePiece>       pieces; // owned nodes
+    std::vector<StencilKernel::Run> runs;   // owned nodes; `out` is not set
+    std::vector<std::uint32_t>      first_nodes;                 // of the runs
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges; // of owned nodes: begin, end
     std::vector<double>                                  varying_volumes, varying_sums;
 
   private:

@@ -19,6 +19,7 @@ namespace PeriDeal
     double lanczos(const Operator &op, Vector &now)
     {
       constexpr unsigned int n_max = 60;
+      constexpr double       margin = 4e-3;
       std::vector<double>    alpha, beta;
       Vector                 inverse_root(op.lumped_capacity()), last(now), x(now), y(now);
       for (double &c : inverse_root)
@@ -46,8 +47,9 @@ namespace PeriDeal
           ritz.computeFromTridiagonal(diagonal, side);
           const Eigen::Index end      = diagonal.size() - 1;
           const double       residual = norm * std::abs(ritz.eigenvectors()(end, end));
-          bound                       = ritz.eigenvalues()[end] + residual;
-          if (residual < 5e-3 * bound || norm <= 1e-12 * bound)
+          // Some eigenvalue is as near as the residual; where several lie close together the largest may be a little above it.
+          bound = ritz.eigenvalues()[end] + std::max(residual, margin * ritz.eigenvalues()[end]);
+          if (residual < margin * bound || norm <= 1e-12 * bound)
             break;
           beta.push_back(norm);
           y /= norm;

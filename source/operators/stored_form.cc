@@ -47,7 +47,8 @@ namespace PeriDeal
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
       constexpr std::uintptr_t page  = 4096;
       const std::uintptr_t     start = reinterpret_cast<std::uintptr_t>(begin),
-                           first = (start + page - 1) / page * page, last = (start + bytes) / page * page;
+                           first     = (start + page - 1) / page * page,
+                           last      = (start + bytes) / page * page;
       if (last > first + 1024 * page)
         madvise(reinterpret_cast<void *>(first), last - first, MADV_HUGEPAGE);
 #else

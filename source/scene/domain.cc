@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -142,6 +143,20 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Domain<dim>::require_countable(const std::string &entry) const
+  {
+    double n_nodes = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      n_nodes *= cells[d] + 1.;
+    if (n_nodes > std::numeric_limits<types::global_dof_index>::max())
+      error(entry,
+            "gives " + number_text(n_nodes) + " nodes, more than the " +
+              std::to_string(std::numeric_limits<types::global_dof_index>::max()) +
+              " that this deal.II can number.");
+  }
+
+
+  template <int dim>
   void Domain<dim>::parse_cells()
   {
     if (text("Node spacing").empty())
@@ -157,6 +172,7 @@ namespace PeriDeal
             if (cells[d] == 0)
               error("Cells", "found 0, needs at least one cell in each direction.");
           }
+        require_countable("Cells");
         return;
       }
     if (is_given("Cells"))
@@ -175,6 +191,7 @@ namespace PeriDeal
         fits     = fits && std::abs(n - n_cells) <= 1e-6 * n_cells;
         cells[d] = static_cast<unsigned int>(n_cells);
       }
+    require_countable("Node spacing");
     if (fits)
       return;
     const double nearest = nearest_fitting_spacing<dim>(upper - lower, wanted);

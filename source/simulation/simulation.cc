@@ -33,6 +33,24 @@ namespace PeriDeal
               << p << "). It has to be 0 or more on the whole side.";
       return message.str();
     }
+
+
+    /** Refuse what a stepper would never finish. @p stiffness is the end time times the largest eigenvalue. */
+    void check_stepper(const std::string &name, const TimeControl &time, const double stiffness)
+    {
+      constexpr double longest = 1e12, finest = 1e-11;
+      const bool       implicit = name == "sdirk2" || name == "bdf2" || name == "crank nicolson";
+      std::ostringstream message;
+      if (!implicit && stiffness > longest)
+        message << "'End time' in section 'Time' is " << time.end_time << ", " << stiffness
+                << " times the shortest decay time of this mesh: too long for the explicit stepper '"
+                << name << "'. Choose 'Steady = true' or 'Stepper = sdirk2'.";
+      if (name == "rkc2" && time.time_step < 0. && time.tolerance < finest)
+        message << "'Tolerance' in section 'Time' is " << time.tolerance
+                << ", which round-off does not allow 'rkc2' to reach; it needs " << finest
+                << " or more. 'chebyshev' and a fixed 'Time step' reach more.";
+      AssertThrow(message.str().empty(), UserError(message.str()));
+    }
   } // namespace
 
 
@@ -77,6 +95,14 @@ namespace PeriDeal
       mesh = build_mesh(scene.domain, scene.cracks, communicator, record->notes);
     }
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
+    unsigned int n_own_cells = 0;
+    for (const auto &cell : mesh->active_cell_iterators())
+      n_own_cells += cell->is_locally_owned() ? 1 : 0;
+    AssertThrow(Utilities::MPI::min(n_own_cells, communicator) > 0,
+                UserError("A mesh of " + std::to_string(mesh->n_global_active_cells()) +
+                          " cells leaves some of the " + std::to_string(n_proc) +
+                          " processes without any. Use fewer processes or more 'Cells' (section "
+                          "'Domain')."));
     with_formulas([&] { check_sides(); });
     for (const Model model : scene.general.models)
       {
@@ -214,6 +240,9 @@ namespace PeriDeal
         Timings::Scope scope(model->timings, "stepper");
         with_formulas(
           [&] { model->stepper = make_stepper(scene.time.stepper, model->op(), options); });
+        check_stepper(model->stepper->name(),
+                      scene.time,
+                      model->op().spectrum().sharp * scene.time.end_time);
         std::ostringstream line;
         line << model->name() << ": stepper " << model->stepper->name();
         if (model->stepper->current_step() > 0.)

@@ -91,7 +91,8 @@ namespace PeriDeal
 
       void advance(Vector &u, const double t, const double t_end) override
       {
-        const unsigned long long n = dt > 0. ? n_equal_steps(t_end - t, dt) : 1;
+        const unsigned long long n =
+          dt > 0. ? n_equal_steps(t_end - t, dt) : n_expansions(t_end - t);
         for (unsigned long long k = 0; k < n; ++k)
           step(u, t, (t_end - t) / static_cast<double>(n));
         op.distribute(u, t_end);
@@ -105,8 +106,9 @@ namespace PeriDeal
 
       double expected_applications(const double time_span) const override
       {
-        return static_cast<double>(
-          expansion(spectral_bound() * time_span, 1e-2 * tolerance).size());
+        const auto n = static_cast<double>(n_expansions(time_span));
+        return n * static_cast<double>(
+                     expansion(spectral_bound() * time_span / n, 1e-2 * tolerance).size());
       }
 
       std::size_t memory_consumption() const override
@@ -120,6 +122,14 @@ namespace PeriDeal
       {
         const Spectrum spectrum = op.spectrum();
         return std::min(1.01 * spectrum.sharp, spectrum.safe);
+      }
+
+
+      /** Finding the coefficients takes the square of the degree: some 1e4 of them at once. */
+      unsigned long long n_expansions(const double span) const
+      {
+        constexpr double longest = 1e7; // times the largest eigenvalue
+        return n_equal_steps(span, longest / spectral_bound());
       }
 
 

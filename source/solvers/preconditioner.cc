@@ -63,8 +63,7 @@ namespace PeriDeal
       data->inverse_diagonal.local_element(i) =
         is_free.local_element(i) == 0. ?
           0. :
-          share_of_diagonal /
-            (a * capacity.local_element(i) + b * diagonal.local_element(i));
+          share_of_diagonal / (a * capacity.local_element(i) + b * diagonal.local_element(i));
 
     TrilinosWrappers::PreconditionAMG::AdditionalData options;
     options.elliptic              = true;

@@ -215,11 +215,11 @@ namespace PeriDeal
         AssertThrow(false, UserError(message.str()));
       }
 
-      const Operator &op;
-      const bool      fixed;
-      double          dt;
-      const double    tolerance;
-      Vector          rate, stage_rate, before, last, now;
+      const Operator     &op;
+      const bool          fixed;
+      double              dt;
+      const double        tolerance;
+      Vector              rate, stage_rate, before, last, now;
       std::vector<double> inverse; // of the capacity
     };
   } // namespace

@@ -12,7 +12,7 @@
 import math
 import sys
 
-from scene_test import Comparison, check_close, finish, observed_orders, print_table, run_scene
+from scene_test import Comparison, check, finish, observed_orders, print_table, run_scene
 
 SCENES = {dim: f"prm/heat/harmonic_{dim}d.prm" for dim in (1, 2, 3)}
 
@@ -98,16 +98,18 @@ def time():
                                Output__Write_at="")
             errors.append(run.error("peridynamics"))
         orders = observed_orders([1 / n for n in steps], errors)
-        check_close(orders[-1], order, absolute=0.15, what=f"{stepper}: order in the time step")
+        check(abs(orders[-1] - order) <= 0.15, f"{stepper}: order {orders[-1]} in the time step")
         rows.append((stepper, order, steps[-1], " ".join(f"{e:.2e}" for e in errors), " ".join(f"{o:.3f}" for o in orders)))
     print_table("Time steppers: relative error of a lattice harmonic (1D, 20 cells, m = 4, mode 3) as the step is halved",
                 ("stepper", "order", "most steps", "errors", "observed orders"), rows)
 
 
 def space_row(name, sizes, errors, order, within, rows):
+    """Append a row; the last observed order has to be this one. A gaussian in 3D may do better: it hardly feels the cut."""
     orders = observed_orders(sizes, errors)
-    check_close(orders[-1], order, absolute=within, what=f"{name}: order")
-    rows.append((name, " ".join(f"{e:.2e}" for e in errors), " ".join(f"{o:.3f}" for o in orders), f"{order} +- {within}"))
+    better = name.startswith("3D, gaussian, horizon")
+    check(order - within <= orders[-1] <= order + (1.5 if better else within), f"{name}: order {orders[-1]}")
+    rows.append((name, " ".join(f"{e:.2e}" for e in errors), " ".join(f"{o:.3f}" for o in orders), f"{order - within:g} and more" if better else f"{order} +- {within:g}"))
 
 
 COLUMNS = ("what", "relative errors", "observed orders", "bound on the last")
@@ -116,9 +118,9 @@ COLUMNS = ("what", "relative errors", "observed orders", "bound on the last")
 def elements():
     rows = []
     for dim, counts, modes in ((1, (20, 40, 80), [2]), (2, (10, 20, 40, 80), [1, 2]), (3, (8, 16, 32), [1, 2, 1])):
-        for capacity in ("lumped", "consistent"):
+        for capacity in ("lumped", "consistent") if dim < 3 else ("lumped",):
             # The steppers for consistent capacity are implicit, and the error in time has to be far below that in space.
-            more = {"Time__End_time": "0.02", "Time__Tolerance": "1e-7"} if capacity == "consistent" else {}
+            more = {"Time__End_time": "0.02", "Time__Tolerance": "1e-6"} if capacity == "consistent" else {}
             some = counts if capacity == "lumped" else counts[:2]
             errors = [run_harmonic(dim, n, modes, "classical", "finite elements", Finite_elements__Capacity=capacity,
                                    Output__Write_at="", **more).error("finite elements") for n in some]
@@ -131,7 +133,7 @@ def elements():
         for degree in (1, 2, 3):
             some = counts[:2] if dim == 3 and degree == 3 else counts
             errors = [run_harmonic(dim, n, [1] * dim, model="finite elements", Finite_elements__Degree=str(degree),
-                                   Time__Steady="true", Solver__Tolerance="1e-12", Initial_and_source__Source=f"{dim}*pi^2*{sines}",
+                                   Time__Steady="true", Output__Write_at="", Solver__Tolerance="1e-12", Initial_and_source__Source=f"{dim}*pi^2*{sines}",
                                    Reference__Solution=sines).error("finite elements") for n in some]
             space_row(f"{dim}D, Q{degree}, {some[0]} to {some[-1]} cells", [1 / n for n in some], errors, degree + 1, 0.15, rows)
     print_table("Elements of degree 1 to 3, steady with a source: order in h", COLUMNS, rows)
@@ -141,11 +143,13 @@ def space():
     rows = []
     for dim, horizon, counts, modes in ((1, 0.2, (20, 40, 80, 160, 320), [2]), (2, 0.15, (20, 40, 80, 160), [1, 2]),
                                         (3, 0.25, (8, 16, 32), [1, 1, 1])):
+        # The sum leaves out the node's own volume, a share (h/horizon)^dim of the integral. Calibration makes up for it where the
+        # temperature is a parabola, not beyond: order 1 in 1D. From 2D on volumes cut by the horizon count as much.
         for kernel in ("constant", "conical", "gaussian"):
             errors = [run_harmonic(dim, n, modes, "nonlocal", Peridynamics__Horizon_ratio=repr(horizon * n), Peridynamics__Kernel=kernel,
                                    Output__Write_at="").error("peridynamics") for n in counts]
             space_row(f"{dim}D, {kernel}, horizon {horizon}, m = {horizon * counts[0]:g} to {horizon * counts[-1]:g}",
-                      [1 / n for n in counts], errors, 2, 5, rows)
+                      [1 / n for n in counts], errors, 1 if dim == 1 else 2, 0.1 if dim == 1 else 0.25, rows)
     print_table("m-convergence: fixed horizon, against the nonlocal harmonic at t = 0.05, order in 1/m", COLUMNS, rows)
 
     rows = []

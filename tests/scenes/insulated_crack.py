@@ -94,6 +94,13 @@ def finite_elements():
         check_less(sizes[-1], 0.13, "error at 240 cells")
         if steady:
             check_close(run.model("finite elements")["boundary flux"]["top"], FLUX, relative=2e-3, what="heat through the top")
+    # A crack from side to side: points on it and beside it belong to the right half.
+    for ranks in (1, 2):
+        run = run_scene(SCENE, {**settings(20, True, Cracks__Mesh="faces", Cracks__Segments="-1,0 ; 1,0"), "Output/Probes": "0.3,0 ; 0.3,-0.001 ; 1,0"},
+                        ranks=ranks)
+        for model in ("finite elements", "peridynamics"):
+            for point, wanted in (((0.3, 0), 100), ((0.3, -0.001), -100), ((1, 0), 100)):
+                check_close(run.probe(model, point), wanted, relative=1e-9, what=f"{model}, body cut in two, {ranks} process(es), T{point}")
     # Peridynamics on the same doubled nodes, each with the volume of its side.
     found = [solve(cells, True, "peridynamics", Cracks__Mesh="faces")[1] for cells in (60, 120, 240)]
     _, orders = convergence_table("Peridynamics, m = 3, on doubled nodes, steady", (60, 120, 240), found, STEADY)

@@ -78,6 +78,16 @@ def mesh_scene(folder, name, text, more=()):
             "Boundary conditions/Dirichlet": "3: 0; 4: 1", "Domain/Lower corner": "0, 0", **dict(more)}
 
 
+def box_faces(low, high):
+    """The six faces of a cube as polygons."""
+    corners = [(a, b) for a, b in ((low, low), (high, low), (high, high), (low, high))]
+    faces = []
+    for axis in range(3):
+        for level in (low, high):
+            faces.append(" ; ".join(",".join(str(x) for x in (*pair[:axis], level, *pair[axis:])) for pair in corners))
+    return faces
+
+
 def scene_mistakes(folder):
     """(name, overrides or text of a scene, words of the message)."""
     whole = QUADS.format(n=8, cells=CELLS)
@@ -100,6 +110,7 @@ def scene_mistakes(folder):
         ("m below 1", {"Peridynamics/Horizon ratio": "0.9"}, ["'Horizon ratio'", "1 or more"]),
         ("horizon below the spacing", {"Peridynamics/Horizon": "0.05"}, ["'Horizon'", "shorter than the node spacing"]),
         ("no cells", {"Domain/Cells": "0, 12"}, ["'Cells'", "at least one"]),
+        ("cells beyond number", {"Domain/Cells": "100000, 100000"}, ["'Cells'", "nodes"]),
         ("corners exchanged", {"Domain/Upper corner": "-1, 1"}, ["'Upper corner'", "'Lower corner'"]),
         ("spacing that does not divide", {"Domain/Node spacing": "0.3", "Domain/Cells": "20, 20"},
          ["'Node spacing'", "0.333"]),
@@ -195,6 +206,15 @@ def scene_mistakes(folder):
         ("boundary value becomes nan", {"Boundary conditions/Dirichlet": "top: sqrt(0.004 - t); bottom: 0"},
          ["is not finite", "'Dirichlet'"]),
         ("scene file in the way", {"Output directory": folder}, ["'Output directory'", "scene file", "Choose a directory"]),
+        ("closed crack around a node in 3D",
+         {**STEADY, "Dimension": "3", "Models": "peridynamics", "Output/Probes": "", "Peridynamics/Horizon ratio": "1.4",
+          "Domain/Lower corner": "0, 0, 0", "Domain/Upper corner": "1, 1, 1", "Domain/Cells": "4, 4, 4",
+          "Cracks/Polygons": " | ".join(box_faces(0.4, 0.6))}, ["isolated", "'Cracks'"]),
+        ("too few cells", {"Domain/Cells": "1, 1", "Output/Probes": ""}, ["'Cells'", "fewer processes"]),
+        ("endless run", {"Time/End time": "1e30"}, ["'End time'", "'Steady = true'"]),
+        ("tolerance below round-off", {"Time/Tolerance": "1e-13", "Time/Stepper": "rkc2"}, ["'Tolerance'", "'Time'", "round-off"]),
+        ("mirror wider than the body", {"Peridynamics/Horizon ratio": "20", "Peridynamics/Boundary treatment": "fictitious mirror"},
+         ["'Boundary treatment'", "'Horizon'"]),
         ("side cut away by the hole", {"Domain/Shape": "plate with hole", "Domain/Hole center": "0, 0.5", "Domain/Hole radius": "0.6",
                                        "Output/Probes": "", "Boundary conditions/Dirichlet": "left: 1; bottom: 0"},
          ["'Dirichlet'", "'left'", "hole"]),
@@ -270,6 +290,9 @@ def main():
         arguments = ["run", scene_here]
         for entry, value in settings.items():
             arguments += ["-s", f"{entry}={value}"]
+        if name == "too few cells":
+            attempt(name, arguments, words, 2, results)
+            continue
         for ranks in (1, 2) if number >= len(changed) or number % 4 == 0 else (1,):
             attempt(name, arguments, words, ranks, results)
     for name, text, words in texts:

@@ -21,18 +21,10 @@ namespace PeriDeal
     void scale(double *to, const double *from, const double *v, const std::size_t n);
 
     /** y_i = v (d u_i - y_i). */
-    void combine(double           *y,
-                 const double     *u,
-                 const double      v,
-                 const double      d,
-                 const std::size_t n);
+    void combine(double *y, const double *u, const double v, const double d, const std::size_t n);
 
     /** y_i = v_i (d_i u_i - y_i). */
-    void combine(double           *y,
-                 const double     *u,
-                 const double     *v,
-                 const double     *d,
-                 const std::size_t n);
+    void combine(double *y, const double *u, const double *v, const double *d, const std::size_t n);
 
     /** y_i = -y_i. */
     void negate(double *y, const std::size_t n);
@@ -66,13 +58,13 @@ namespace PeriDeal
                         const std::size_t n);
 
     /** next_i = a[0] u_i + a[1] last_i + a[2] before_i + a[3] s_i r_i + a[4] rate_i: a stage of RKC2. */
-    void rkc_stage(double           *next,
-                   const double     *u,
-                   const double     *last,
-                   const double     *before,
-                   const double     *s,
-                   const double     *r,
-                   const double     *rate,
+    void rkc_stage(double       *next,
+                   const double *u,
+                   const double *last,
+                   const double *before,
+                   const double *s,
+                   const double *r,
+                   const double *rate,
                    const double (&a)[5],
                    const std::size_t n);
   } // namespace NodeLoops

@@ -97,17 +97,17 @@ namespace PeriDeal
     struct Search; // neighbours off the lattice
 
     const FamilyMember<dim> *find_member(const dealii::Tensor<1, dim> &xi) const;
-    void   find_weights(const Scene<dim> &scene);
-    void   index_lattice();
-    void   calibrate_off_lattice(const Scene<dim> &scene);
-    void   find_conductivities(const Scene<dim> &scene);
-    void   add_bond(const unsigned int node,
-                    const unsigned int neighbor,
-                    const double       w,
-                    std::vector<Bond> &bonds) const;
-    void   bonds_on_lattice(const unsigned int                    node,
-                            const std::vector<FamilyMember<dim>> &offsets,
-                            std::vector<Bond>                    &bonds) const;
+    void                     find_weights(const Scene<dim> &scene);
+    void                     index_lattice();
+    void                     calibrate_off_lattice(const Scene<dim> &scene);
+    void                     find_conductivities(const Scene<dim> &scene);
+    void                     add_bond(const unsigned int node,
+                                      const unsigned int neighbor,
+                                      const double       w,
+                                      std::vector<Bond> &bonds) const;
+    void                     bonds_on_lattice(const unsigned int                    node,
+                                              const std::vector<FamilyMember<dim>> &offsets,
+                                              std::vector<Bond>                    &bonds) const;
     void   bonds_off_lattice(const unsigned int node, std::vector<Bond> &bonds) const;
     double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const;
     template <typename Test>

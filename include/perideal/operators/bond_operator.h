@@ -27,11 +27,11 @@ namespace PeriDeal
     void          initialize_vector(Vector &vector) const override;
     void          apply(Vector &y, const Vector &x) const override;
     void          residual(Vector &r, const Vector &u, const double t) const override;
-    void apply_then(Vector &y, const Vector &x, const RowsAction &finish) const override;
-    void residual_then(Vector           &r,
-                       const Vector     &u,
-                       const double      t,
-                       const RowsAction &finish) const override;
+    void          apply_then(Vector &y, const Vector &x, const RowsAction &finish) const override;
+    void          residual_then(Vector           &r,
+                                const Vector     &u,
+                                const double      t,
+                                const RowsAction &finish) const override;
     void          distribute(Vector &u, const double t) const override;
     void          distribute_homogeneous(Vector &x) const override;
     void          clear_constrained(Vector &y) const override;
@@ -70,7 +70,10 @@ namespace PeriDeal
     void find_diagonal();
     void scale_crack_sides();
     void sum_bonds(Vector &y, const Vector &x, const double *outside) const;
-    void add_convection(Vector &y, const Vector &x, const unsigned int begin, const unsigned int end) const;
+    void add_convection(Vector            &y,
+                        const Vector      &x,
+                        const unsigned int begin,
+                        const unsigned int end) const;
     void clear_held(Vector &y, const unsigned int begin, const unsigned int end) const;
     void add_loads(Vector &r, const double t) const;
     void add_loads_now(Vector &r, const double t) const;

@@ -80,6 +80,7 @@ namespace PeriDeal
   private:
     /** Cells or Node spacing. */
     void parse_cells();
+    void require_countable(const std::string &entry) const;
 
     void parse_hole();
 

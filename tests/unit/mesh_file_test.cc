@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/solvers/linear_solver.h>
+
+#include "operator_test_tools.h"
+#include "scene_test_tools.h"
+
+namespace PeriDeal
+{
+  using namespace OperatorTests;
+  using dealii::Point;
+
+  namespace
+  {
+    Settings file(const std::string &name, const std::string &horizon = "0.3")
+    {
+      return {{"Domain/Shape", "mesh file"},
+              {"Domain/Mesh file", std::string(PERIDEAL_SOURCE_DIR) + "/tests/data/" + name},
+              {"Peridynamics/Horizon", horizon}};
+    }
+
+
+    template <int dim>
+    void expect_measures(const Settings                       &settings,
+                         const double                          volume,
+                         const std::map<unsigned int, double> &sides)
+    {
+      for (const std::string placement : {"vertices", "cell centers"})
+        {
+          const Problem<dim>  problem(settings + Settings{{"Domain/Nodes", placement}});
+          std::vector<double> sums(257, 0.), all(257);
+          for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)
+            sums[256] += problem.nodes->volume(i);
+          for (const BoundaryShare &share : problem.nodes->boundary_shares())
+            sums[share.id] += share.area;
+          dealii::Utilities::MPI::sum(sums, MPI_COMM_WORLD, all);
+          EXPECT_NEAR(all[256], volume, 1e-12) << placement;
+          for (const auto &[id, measure] : sides)
+            EXPECT_NEAR(all[id], measure, 1e-12) << placement << ", side " << id;
+          EXPECT_FALSE(problem.nodes->lattice().has_value());
+          EXPECT_EQ(problem.op().size().form, "stored");
+        }
+    }
+
+
+    Settings insulated_crack(const std::string &mesh)
+    {
+      return file("quads.msh") + Settings{{"Cracks/Segments", "0,0.5 ; 2,0.5"},
+                                          {"Cracks/Mesh", mesh},
+                                          {"Boundary conditions/Dirichlet", "3: 0 ; 4: 1"}};
+    }
+  } // namespace
+
+
+  TEST(MeshFile, volumes_and_sides)
+  {
+    expect_measures<2>(file("quads.msh"), 2., {{1, 1.}, {2, 1.}, {3, 2.}, {4, 2.}});
+    expect_measures<3>(file("hexes.msh", "0.7"), 0.6, {{5, 1.}, {6, 1.}});
+  }
+
+
+  TEST(MeshFile, conserves_heat_on_irregular_nodes)
+  {
+    for (const std::string placement : {"vertices", "cell centers"})
+      for (const std::string fraction : {"linear", "none"})
+        {
+          const Problem<3> problem(file("hexes.msh", "0.7") +
+                                   Settings{{"Domain/Nodes", placement},
+                                            {"Peridynamics/Volume fraction", fraction}});
+          const DenseProperties matrix(problem.op());
+          EXPECT_LT(matrix.asymmetry, 1e-14);
+          EXPECT_GT(matrix.smallest, -1e-12 * matrix.largest);
+          Vector one = problem.vector(), y = problem.vector();
+          one        = 1.;
+          problem.op().apply(y, one);
+          EXPECT_LT(y.linfty_norm(), 1e-13 * matrix.entry);
+        }
+  }
+
+
+  TEST(MeshFile, conducts_about_as_much_as_it_should)
+  {
+    // A linear temperature between top and bottom; calibrated on the mean of the full families, so exact up to their scatter and, most of all, the cut families on
+    // the sides.
+    const Settings sides{{"Boundary conditions/Dirichlet", "3: 0 ; 4: 1"}};
+    for (const Model model : {Model::finite_elements, Model::peridynamics})
+      {
+        const Problem<2> problem(file("quads.msh", "0.12") + sides, model);
+        Vector           u = problem.vector();
+        solve_steady(problem.op(), u, 0., 1e-12, 1000);
+        const double heat = problem.op().balance(u, 0., true).sides.at("4");
+        EXPECT_NEAR(heat, 2., model == Model::finite_elements ? 1e-10 : 0.4);
+      }
+  }
+
+
+  TEST(MeshFile, cut_along_faces)
+  {
+    // The line y = 1/2 consists of faces: cut right through nothing is conducted any more.
+    for (const Model model : {Model::finite_elements, Model::peridynamics})
+      {
+        const Problem<2> problem(insulated_crack("faces"), model);
+        Vector           u = problem.vector();
+        solve_steady(problem.op(), u, 0., 1e-12, 1000);
+        EXPECT_NEAR(problem.op().balance(u, 0., true).sides.at("4"), 0., 1e-10);
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          EXPECT_NEAR(u.local_element(i), problem.sides[i][1] > 0.5 ? 1. : 0., 1e-9);
+      }
+    SceneTests::expect_parts(SceneTests::message_of([] {
+                               Problem<2>(file("quads.msh") +
+                                          Settings{{"Cracks/Segments", "0.3,0.4 ; 1.7,0.6"},
+                                                   {"Cracks/Mesh", "faces"}});
+                             }),
+                             {"'Mesh = faces'", "cell faces"});
+  }
+
+
+  TEST(MeshFile, same_on_every_number_of_processes)
+  {
+    for (const std::string mesh : {"faces", "pairs"})
+      for (const Model model : {Model::finite_elements, Model::peridynamics})
+        {
+          const Problem<2> all(insulated_crack(mesh), model),
+            alone(insulated_crack(mesh), model, MPI_COMM_SELF);
+          Vector u = all.values(bumpy<2>), v = alone.values(bumpy<2>), r = all.vector(),
+                 s = alone.vector();
+          all.op().residual(r, u, 0.);
+          alone.op().residual(s, v, 0.);
+          EXPECT_LT(difference(all, r, alone, s), 1e-12 * s.linfty_norm());
+          EXPECT_EQ(all.op().size().bonds, alone.op().size().bonds);
+        }
+  }
+
+
+  TEST(MeshFile, mistakes)
+  {
+    for (const std::string name : {"triangles.msh", "broken.msh", "hexes.msh", "missing.msh"})
+      {
+        const std::string message = SceneTests::message_of([&] { Problem<2>(file(name)); });
+        SceneTests::expect_parts(message, {"'Mesh file' in section 'Domain'", name});
+      }
+  }
+} // namespace PeriDeal
