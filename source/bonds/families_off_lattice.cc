@@ -95,9 +95,9 @@ namespace PeriDeal
   template <int dim>
   void Families<dim>::calibrate_off_lattice(const Scene<dim> &)
   {
-    double     smallest_count = std::numeric_limits<double>::max();
-    double     sum = 0., n_full = 0.;
-    LinearAlgebra::distributed::Vector<double>   at_boundary(own_nodes->partitioner());
+    double                                     smallest_count = std::numeric_limits<double>::max();
+    double                                     sum = 0., n_full = 0.;
+    LinearAlgebra::distributed::Vector<double> at_boundary(own_nodes->partitioner());
     std::vector<std::pair<unsigned int, double>> found;
     const double                                 tiny = 1e-10 * own_nodes->smallest_spacing();
     for (const BoundaryShare &share : own_nodes->boundary_shares())

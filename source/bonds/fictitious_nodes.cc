@@ -104,8 +104,9 @@ namespace PeriDeal
           continue;
         AssertThrow(
           lattice.n_sites[side / 2] > reach[side / 2],
-          UserError("'Boundary treatment' and 'Symmetry': the body is narrower than the horizon, so that one mirror image "
-                    "does not fill a family. Choose a smaller 'Horizon' in section 'Peridynamics'."));
+          UserError(
+            "'Boundary treatment' and 'Symmetry': the body is narrower than the horizon, so that one mirror image "
+            "does not fill a family. Choose a smaller 'Horizon' in section 'Peridynamics'."));
         const auto add_image = [&](const FictitiousNode<dim> &original) {
           const int inside = depth(lattice, original.site, side);
           if (inside < 0 || inside > reach[side / 2] ||

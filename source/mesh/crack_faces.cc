@@ -53,9 +53,10 @@ namespace PeriDeal
       for (const unsigned int v : face)
         center += (p[v] - Point<dim>()) / static_cast<double>(face.size());
       // The centre too: all corners of a face may touch the edge of a crack that is not convex.
-      return crack.contains(center) && std::all_of(face.begin(), face.end(), [&](const unsigned int v) {
-        return crack.contains(p[v]);
-      });
+      return crack.contains(center) &&
+             std::all_of(face.begin(), face.end(), [&](const unsigned int v) {
+               return crack.contains(p[v]);
+             });
     }
 
 

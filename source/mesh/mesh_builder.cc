@@ -222,10 +222,10 @@ namespace PeriDeal
             Triangulation<1>::none,
             false,
             parallel::shared::Triangulation<1>::partition_custom_signal);
-          parallel::shared::Triangulation<1> *pointer = mesh.get();
-          const auto partition = [pointer, communicator]() {
+          parallel::shared::Triangulation<1> *pointer   = mesh.get();
+          const auto                          partition = [pointer, communicator]() {
             const std::size_t n_proc = Utilities::MPI::n_mpi_processes(communicator);
-            std::size_t       n      = 0;
+            std::size_t       n = 0;
             for (const auto &cell : pointer->active_cell_iterators())
               cell->set_subdomain_id(n++ * n_proc / pointer->n_active_cells());
           };
@@ -249,9 +249,9 @@ namespace PeriDeal
     if (cracks.mesh == CrackMesh::faces)
       cut = make_crack_geometries(cracks.cracks);
 
-    CoarseMesh<dim>  coarse;
-    BoundaryIds      ids;
-    unsigned int     n_refinements = 0;
+    CoarseMesh<dim> coarse;
+    BoundaryIds     ids;
+    unsigned int    n_refinements = 0;
     if (domain.shape == Shape::mesh_file)
       coarse = read_mesh_file<dim>(domain.mesh_file, ids);
     else if (domain.shape == Shape::plate_with_hole)

@@ -279,7 +279,7 @@ namespace PeriDeal
     const Expression &source     = scene.initial_and_source.source;
     const bool        any_source = !source.is_constant() || source.value(Point<dim>()) != 0.;
     CellData         &data       = *cell_data;
-    loads = 0.;
+    loads                        = 0.;
     for (const auto &cell : dofs.active_cell_iterators())
       {
         if (!cell->is_locally_owned() || !(any_source || cell->at_boundary()))

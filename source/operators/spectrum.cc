@@ -18,7 +18,7 @@ namespace PeriDeal
      */
     double lanczos(const Operator &op, Vector &now)
     {
-      constexpr unsigned int n_max = 60;
+      constexpr unsigned int n_max  = 60;
       constexpr double       margin = 4e-3;
       std::vector<double>    alpha, beta;
       Vector                 inverse_root(op.lumped_capacity()), last(now), x(now), y(now);

@@ -68,7 +68,9 @@ namespace PeriDeal
                 const double bound = (order == 3 ? third_order_tolerance : tolerance) * level;
                 const double size  = level == 0. ? 0. : capacity_norm(op, error) / bound;
                 AssertThrow(std::isfinite(size), UserError(unstable_message(t)));
-                growth = std::clamp(0.85 * std::pow(std::max(size, 1e-12), -1. / order), 0.2, 2.); // BDF2 is stable for ratios up to 1 + sqrt 2
+                growth = std::clamp(0.85 * std::pow(std::max(size, 1e-12), -1. / order),
+                                    0.2,
+                                    2.); // BDF2 is stable for ratios up to 1 + sqrt 2
                 if (size > 1.)
                   {
                     ++spent.rejected;

@@ -51,12 +51,12 @@ namespace PeriDeal
   TEST(Balance, peridynamics)
   {
     for (const std::string placement : {"vertices", "cell centers"})
-      for (const std::string treatment : {"none", "layer", "fictitious mirror", "fictitious constant"})
+      for (const std::string treatment :
+           {"none", "layer", "fictitious mirror", "fictitious constant"})
         {
-          const Settings base =
-            plate + Settings{{"Domain/Nodes", placement},
-                             {"Peridynamics/Boundary treatment", treatment},
-                             {"Peridynamics/Layer rows", "3"}};
+          const Settings    base = plate + Settings{{"Domain/Nodes", placement},
+                                                 {"Peridynamics/Boundary treatment", treatment},
+                                                 {"Peridynamics/Layer rows", "3"}};
           const std::string what = placement + ", " + treatment;
           if (placement == "cell centers" && treatment == "none")
             continue; // the row of cells on the side is prescribed: nothing new
@@ -95,17 +95,18 @@ namespace PeriDeal
   TEST(Balance, finite_elements)
   {
     for (const std::string mesh : {"pairs", "removed"})
-      expect_balance<2>(mesh,
-                        plate + sides + Settings{{"Cracks/Mesh", mesh},
-                                                 {"Cracks/Segments", "0.21,0.41 ; 0.43,0.55"}},
-                        Model::finite_elements);
+      expect_balance<2>(
+        mesh,
+        plate + sides +
+          Settings{{"Cracks/Mesh", mesh}, {"Cracks/Segments", "0.21,0.41 ; 0.43,0.55"}},
+        Model::finite_elements);
     expect_balance<2>("scaled",
                       plate + sides + crack +
                         Settings{{"Peridynamics/Surface correction", "crack scaling"}},
                       Model::finite_elements);
     expect_balance<2>("faces",
-                      plate + sides + Settings{{"Cracks/Mesh", "faces"},
-                                               {"Cracks/Segments", "-1,0.4 ; 0.5,0.4"}},
+                      plate + sides +
+                        Settings{{"Cracks/Mesh", "faces"}, {"Cracks/Segments", "-1,0.4 ; 0.5,0.4"}},
                       Model::finite_elements);
     for (const std::string degree : {"2", "3"})
       expect_balance<2>("Q" + degree,
@@ -148,9 +149,8 @@ namespace PeriDeal
         if (model == Model::finite_elements)
           {
             // Exact at the vertices: 2 T'' = -x, 2 T'(1) = 3.
-            const Vector exact = problem.values([](const Point<1> &p) {
-              return 1. + 1.75 * p[0] - p[0] * p[0] * p[0] / 12.;
-            });
+            const Vector exact = problem.values(
+              [](const Point<1> &p) { return 1. + 1.75 * p[0] - p[0] * p[0] * p[0] / 12.; });
             EXPECT_LT(largest_difference(u, exact), 1e-11);
           }
       }

@@ -69,7 +69,7 @@ namespace PeriDeal
     const Settings transmission{{"Cracks/Transmission", "0.25"}};
     for (const Settings &placement : {Settings(), centers})
       {
-        const Settings base = plate + placement;
+        const Settings    base  = plate + placement;
         const std::string where = placement.empty() ? "vertices" : "cell centers";
         expect_same_forms<2>(where, base);
         expect_same_forms<2>(where + ", crack", base + crack);
@@ -79,10 +79,9 @@ namespace PeriDeal
         expect_same_forms<2>(where + ", hole, crack", base + hole + crack + scaling);
         expect_same_forms<2>(where + ", mirror", base + mirror);
         expect_same_forms<2>(where + ", mirror, crack", base + mirror + crack + scaling);
-        expect_same_forms<2>(where + ", constant layer",
-                             base + mirror +
-                               Settings{{"Peridynamics/Boundary treatment",
-                                         "fictitious constant"}});
+        expect_same_forms<2>(
+          where + ", constant layer",
+          base + mirror + Settings{{"Peridynamics/Boundary treatment", "fictitious constant"}});
         expect_same_forms<2>(where + ", layer",
                              base + Settings{{"Peridynamics/Boundary treatment", "layer"},
                                              {"Peridynamics/Layer rows", "2"},
@@ -93,15 +92,14 @@ namespace PeriDeal
                              base + Settings{{"Peridynamics/Self term", "paper"}} + crack);
         expect_same_forms<2>(where + ", self term, mirror",
                              base + Settings{{"Peridynamics/Self term", "paper"}} + mirror);
-        expect_same_forms<2>(where + ", slaves",
-                             base + Settings{{"Peridynamics/Flux treatment", "extrapolation"},
-                                             {"Boundary conditions/Dirichlet", "left: 1"},
-                                             {"Boundary conditions/Flux",
-                                              "right: 2 ; bottom: 0 ; top: y"}});
-        expect_same_forms<2>(where + ", oblong cells",
-                             base + crack +
-                               Settings{{"Domain/Cells", "21, 54"},
-                                        {"Peridynamics/Horizon", "0.17"}});
+        expect_same_forms<2>(
+          where + ", slaves",
+          base + Settings{{"Peridynamics/Flux treatment", "extrapolation"},
+                          {"Boundary conditions/Dirichlet", "left: 1"},
+                          {"Boundary conditions/Flux", "right: 2 ; bottom: 0 ; top: y"}});
+        expect_same_forms<2>(
+          where + ", oblong cells",
+          base + crack + Settings{{"Domain/Cells", "21, 54"}, {"Peridynamics/Horizon", "0.17"}});
         for (const std::string kernel : {"constant", "gaussian"})
           expect_same_forms<2>(where + ", " + kernel,
                                base + Settings{{"Peridynamics/Kernel", kernel},
@@ -127,17 +125,18 @@ namespace PeriDeal
                                           {"Boundary conditions/Dirichlet", "left: 1 + t"},
                                           {"Boundary conditions/Symmetry", "right"}});
           expect_same_forms<1>("layer extrapolation",
-                               bar + Settings{{"Peridynamics/Flux treatment", "layer extrapolation"},
-                                              {"Boundary conditions/Flux", "right: 1"},
-                                              {"Boundary conditions/Dirichlet", "left: 1"}});
+                               bar +
+                                 Settings{{"Peridynamics/Flux treatment", "layer extrapolation"},
+                                          {"Boundary conditions/Flux", "right: 1"},
+                                          {"Boundary conditions/Dirichlet", "left: 1"}});
         }
   }
 
 
   TEST(BondOperator, lattice_form_is_stored_form_3D)
   {
-    const Settings square{{"Cracks/Polygons",
-                           "0.2,0.2,0.52 ; 0.8,0.2,0.52 ; 0.8,0.8,0.61 ; 0.2,0.8,0.61"}};
+    const Settings square{
+      {"Cracks/Polygons", "0.2,0.2,0.52 ; 0.8,0.2,0.52 ; 0.8,0.8,0.61 ; 0.2,0.8,0.61"}};
     for (const Settings &placement : {Settings(), centers})
       {
         const Settings brick = placement + Settings{{"Domain/Cells", "10, 9, 8"},
@@ -145,12 +144,12 @@ namespace PeriDeal
                                                     {"Peridynamics/Horizon ratio", "2"}};
         expect_same_forms<3>("brick", brick);
         expect_same_forms<3>("crack", brick + square + scaling);
-        expect_same_forms<3>("mirror",
-                             brick + square +
-                               Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"},
-                                        {"Boundary conditions/Dirichlet",
-                                         "left: 1 ; bottom: 2 ; front: x"},
-                                        {"Boundary conditions/Symmetry", "top"}});
+        expect_same_forms<3>(
+          "mirror",
+          brick + square +
+            Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"},
+                     {"Boundary conditions/Dirichlet", "left: 1 ; bottom: 2 ; front: x"},
+                     {"Boundary conditions/Symmetry", "top"}});
       }
   }
 
@@ -188,18 +187,18 @@ namespace PeriDeal
   {
     /** Largest |K u - expected V| / V among nodes with a full family, relative to the size of the terms. */
     template <int dim>
-    double interior_defect(const Settings                                     &settings,
+    double interior_defect(const Settings                                  &settings,
                            const std::function<double(const Point<dim> &)> &field,
-                           const double                                        expected)
+                           const double                                     expected)
     {
       const Problem<dim> problem(settings);
       const auto        &scene = problem.scene;
       Vector             u = problem.values(field), y = problem.vector();
       problem.op().apply(y, u);
-      double         largest = 0.;
-      unsigned int   n       = 0;
-      const double   size    = u.linfty_norm();
-      const double   reach   = problem.bonds->families().reach() * (1. + 1e-9);
+      double       largest = 0.;
+      unsigned int n       = 0;
+      const double size    = u.linfty_norm();
+      const double reach   = problem.bonds->families().reach() * (1. + 1e-9);
       for (unsigned int i = 0; i < y.locally_owned_size(); ++i)
         {
           bool inside = true;
@@ -210,11 +209,10 @@ namespace PeriDeal
             continue;
           ++n;
           const double volume = problem.nodes->volume(i);
-          largest             = std::max(
-            largest,
-            std::abs(y.local_element(i) - expected * volume) /
-              (size * problem.op().diagonal().local_element(i) * 1e-3 +
-               std::abs(expected) * volume));
+          largest             = std::max(largest,
+                             std::abs(y.local_element(i) - expected * volume) /
+                               (size * problem.op().diagonal().local_element(i) * 1e-3 +
+                                std::abs(expected) * volume));
         }
       EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 10u);
       return dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD);
@@ -228,34 +226,57 @@ namespace PeriDeal
     for (const std::string kernel : {"constant", "conical", "gaussian"})
       for (const Settings &placement : {Settings(), centers})
         {
-          const Settings common = placement + Settings{{"Peridynamics/Kernel", kernel},
-                                                       {"Material/Conductivity", "1.7"}};
+          const Settings common =
+            placement + Settings{{"Peridynamics/Kernel", kernel}, {"Material/Conductivity", "1.7"}};
           const Settings bar    = common + Settings{{"Domain/Cells", "40"}},
                          square = common + Settings{{"Domain/Cells", "24, 24"},
                                                     {"Peridynamics/Horizon ratio", "3.6"}},
                          oblong = common + Settings{{"Domain/Cells", "12, 36"},
                                                     {"Peridynamics/Horizon", "0.26"}},
                          brick  = common + Settings{{"Domain/Cells", "9, 9, 9"},
-                                                    {"Peridynamics/Horizon ratio", "2"}};
-          EXPECT_LT(interior_defect<1>(bar, [](const auto &p) { return 3. * p[0]; }, 0.), 1e-12);
-          EXPECT_LT(interior_defect<1>(bar, [](const auto &p) { return p[0] * p[0]; }, -3.4),
+                                                   {"Peridynamics/Horizon ratio", "2"}};
+          EXPECT_LT(interior_defect<1>(
+                      bar,
+                      [](const auto &p) { return 3. * p[0]; },
+                      0.),
+                    1e-12);
+          EXPECT_LT(interior_defect<1>(
+                      bar,
+                      [](const auto &p) { return p[0] * p[0]; },
+                      -3.4),
                     1e-11);
           for (const Settings &plate : {square, oblong})
             {
               EXPECT_LT(interior_defect<2>(
-                          plate, [](const auto &p) { return 3. * p[0] - p[1]; }, 0.),
+                          plate,
+                          [](const auto &p) { return 3. * p[0] - p[1]; },
+                          0.),
                         1e-12);
-              EXPECT_LT(interior_defect<2>(plate, [](const auto &p) { return p[0] * p[0]; }, -3.4),
+              EXPECT_LT(interior_defect<2>(
+                          plate,
+                          [](const auto &p) { return p[0] * p[0]; },
+                          -3.4),
                         1e-11);
-              EXPECT_LT(interior_defect<2>(plate, [](const auto &p) { return p[1] * p[1]; }, -3.4),
+              EXPECT_LT(interior_defect<2>(
+                          plate,
+                          [](const auto &p) { return p[1] * p[1]; },
+                          -3.4),
                         1e-11);
-              EXPECT_LT(interior_defect<2>(plate, [](const auto &p) { return p[0] * p[1]; }, 0.),
+              EXPECT_LT(interior_defect<2>(
+                          plate,
+                          [](const auto &p) { return p[0] * p[1]; },
+                          0.),
                         1e-11);
             }
           EXPECT_LT(interior_defect<3>(
-                      brick, [](const auto &p) { return p[0] - p[1] + 2. * p[2]; }, 0.),
+                      brick,
+                      [](const auto &p) { return p[0] - p[1] + 2. * p[2]; },
+                      0.),
                     1e-12);
-          EXPECT_LT(interior_defect<3>(brick, [](const auto &p) { return p[2] * p[2]; }, -3.4),
+          EXPECT_LT(interior_defect<3>(
+                      brick,
+                      [](const auto &p) { return p[2] * p[2]; },
+                      -3.4),
                     1e-11);
         }
   }
@@ -266,8 +287,8 @@ namespace PeriDeal
     // On 30 x 30 nodes: each offset (a, b) of half a family gives (30 - a)(30 - b) bonds.
     for (const std::string form : {"lattice", "stored"})
       {
-        const Problem<2>   problem({{"Domain/Cells", "29, 29"},
-                                    {"Peridynamics/Operator form", form}});
+        const Problem<2> problem(
+          {{"Domain/Cells", "29, 29"}, {"Peridynamics/Operator form", form}});
         unsigned long long n = 0;
         for (int a = -4; a <= 4; ++a)
           for (int b = -4; b <= 4; ++b)

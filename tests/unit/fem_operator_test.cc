@@ -41,7 +41,7 @@ namespace PeriDeal
       EXPECT_LT(matrix.asymmetry, 1e-14) << what;
       EXPECT_GT(matrix.smallest, -1e-12 * matrix.largest) << what;
       Vector one = problem.vector(), y = problem.vector();
-      one        = 1.;
+      one = 1.;
       problem.op().apply(y, one);
       EXPECT_LT(y.linfty_norm(), 1e-13 * matrix.entry) << what;
       return dense(problem.op());
@@ -64,9 +64,9 @@ namespace PeriDeal
     for (const std::string height : {"0.47", "0.5"})
       {
         const Settings   settings{{"Domain/Cells", "8, 8"},
-                                  {"Cracks/Segments", "-1," + height + " ; 2," + height}};
+                                {"Cracks/Segments", "-1," + height + " ; 2," + height}};
         const Problem<2> problem(settings, Model::finite_elements);
-        Vector           above = problem.values([](const auto &p) { return p[1] > 0.49 ? 1. : 0.; }),
+        Vector above = problem.values([](const auto &p) { return p[1] > 0.49 ? 1. : 0.; }),
                y     = problem.vector();
         problem.op().apply(y, above);
         EXPECT_LT(y.linfty_norm(), 1e-14) << height;
@@ -114,11 +114,10 @@ namespace PeriDeal
 
   TEST(FiniteElements, faces_split_the_body)
   {
-    const Problem<2> halves({{"Domain/Cells", "8, 8"},
-                             {"Cracks/Mesh", "faces"},
-                             {"Cracks/Segments", "-1,0.5 ; 2,0.5"}},
-                            Model::finite_elements);
-    Vector           above = halves.vector(), y = halves.vector();
+    const Problem<2> halves(
+      {{"Domain/Cells", "8, 8"}, {"Cracks/Mesh", "faces"}, {"Cracks/Segments", "-1,0.5 ; 2,0.5"}},
+      Model::finite_elements);
+    Vector above = halves.vector(), y = halves.vector();
     for (unsigned int i = 0; i < above.locally_owned_size(); ++i)
       above.local_element(i) = halves.sides[i][1] > 0.5 ? 1. : 0.;
     EXPECT_NEAR(above.l1_norm(), 45., 1e-12);
@@ -162,7 +161,7 @@ namespace PeriDeal
                                   {"Finite elements/Capacity", kind}},
                                  Model::finite_elements);
         Vector           one = problem.vector(), y = problem.vector();
-        one                  = 1.;
+        one = 1.;
         problem.op().apply_capacity(y, one);
         EXPECT_NEAR(y.l1_norm(), 2.5, 1e-13);
         EXPECT_LT(largest_difference(y, problem.op().lumped_capacity()), 1e-15);
@@ -174,19 +173,20 @@ namespace PeriDeal
   TEST(FiniteElements, material_that_is_not_positive_is_an_error)
   {
     SceneTests::expect_parts(SceneTests::message_of([] {
-                               Problem<2>({{"Domain/Cells", "8, 8"},
-                                           {"Material/Conductivity", "x - 0.3"}},
-                                          Model::finite_elements);
+                               Problem<2>(
+                                 {{"Domain/Cells", "8, 8"}, {"Material/Conductivity", "x - 0.3"}},
+                                 Model::finite_elements);
                              }),
                              {"'Conductivity'", "positive"});
-    SceneTests::expect_parts(SceneTests::message_of([] {
-                               Problem<2>({{"Domain/Cells", "8, 8"},
-                                           {"Material/Conductivity", "x - 0.3"}});
-                             }),
-                             {"'Conductivity'", "positive"});
-    SceneTests::expect_parts(SceneTests::message_of([] {
-                               Problem<2>({{"Domain/Cells", "8, 8"}, {"Material/Density", "x - 0.3"}});
-                             }),
-                             {"'Density'", "positive"});
+    SceneTests::expect_parts(
+      SceneTests::message_of([] {
+        Problem<2>({{"Domain/Cells", "8, 8"}, {"Material/Conductivity", "x - 0.3"}});
+      }),
+      {"'Conductivity'", "positive"});
+    SceneTests::expect_parts(
+      SceneTests::message_of([] {
+        Problem<2>({{"Domain/Cells", "8, 8"}, {"Material/Density", "x - 0.3"}});
+      }),
+      {"'Density'", "positive"});
   }
 } // namespace PeriDeal

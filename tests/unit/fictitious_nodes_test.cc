@@ -76,10 +76,10 @@ namespace PeriDeal
       double largest = 0.;
       for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
         if (problem.op().diagonal().local_element(i) != 1. || r.local_element(i) != 0.)
-          largest = std::max(largest,
-                             std::abs(r.local_element(i) /
-                                        problem.op().lumped_capacity().local_element(i) +
-                                      lambda * u.local_element(i)));
+          largest =
+            std::max(largest,
+                     std::abs(r.local_element(i) / problem.op().lumped_capacity().local_element(i) +
+                              lambda * u.local_element(i)));
       return dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD) / lambda;
     }
 
@@ -109,11 +109,10 @@ namespace PeriDeal
                 const Problem<dim> problem(harmonic_box(dim, m, kernels[k], n, placement) +
                                            mirror_box(dim) +
                                            Settings{{"Peridynamics/Operator form", form}});
-                EXPECT_LT(eigenvector_residual(problem,
-                                               problem.values(sines<dim>),
-                                               lambda[k][n]),
+                EXPECT_LT(eigenvector_residual(problem, problem.values(sines<dim>), lambda[k][n]),
                           2e-13)
-                  << dim << "D, " << placement << ", " << kernels[k] << ", n = " << n << ", " << form;
+                  << dim << "D, " << placement << ", " << kernels[k] << ", n = " << n << ", "
+                  << form;
               }
     }
   } // namespace
@@ -148,13 +147,13 @@ namespace PeriDeal
       for (unsigned int k = 0; k < 3; ++k)
         {
           const Settings   box = harmonic_box(2, "3", kernels[k], 2, placement);
-          const Problem<2> all(box + Settings{{"Boundary conditions/Symmetry",
-                                               "left, right, bottom, top"}});
+          const Problem<2> all(
+            box + Settings{{"Boundary conditions/Symmetry", "left, right, bottom, top"}});
           EXPECT_LT(eigenvector_residual(all, all.values(both), lambda_2d[k][2]), 2e-13);
-          const Problem<2> two(
-            box + Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"},
-                           {"Boundary conditions/Dirichlet", "bottom: 0 ; top: 0"},
-                           {"Boundary conditions/Symmetry", "left, right"}});
+          const Problem<2> two(box +
+                               Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"},
+                                        {"Boundary conditions/Dirichlet", "bottom: 0 ; top: 0"},
+                                        {"Boundary conditions/Symmetry", "left, right"}});
           EXPECT_LT(eigenvector_residual(two, two.values(mixed), lambda_2d[k][2]), 2e-13);
         }
   }
@@ -230,23 +229,23 @@ namespace PeriDeal
     for (const std::string placement : {"vertices", "cell centers"})
       {
         const Settings   common{{"Domain/Nodes", placement},
-                                
-                                {"Peridynamics/Surface correction", "crack scaling"}};
-        const Problem<2> half(common + Settings{{"Domain/Cells", "8, 16"},
-                                                {"Domain/Upper corner", "0.5, 1"},
-                                                {"Boundary conditions/Symmetry", "left"},
-                                                {"Cracks/Segments",
-                                                 "0,0.28 ; 0.2,0.28 ; 0.05,0.47 ; 0.2,0.72"}});
-        const Problem<2> whole(
-          common + Settings{{"Domain/Cells", "16, 16"},
-                            {"Domain/Lower corner", "-0.5, 0"},
+
+                              {"Peridynamics/Surface correction", "crack scaling"}};
+        const Problem<2> half(
+          common + Settings{{"Domain/Cells", "8, 16"},
                             {"Domain/Upper corner", "0.5, 1"},
-                            {"Cracks/Segments",
-                             "-0.2,0.28 ; 0.2,0.28 ; 0.05,0.47 ; 0.2,0.72 ; -0.05,0.47 ; -0.2,0.72"}});
+                            {"Boundary conditions/Symmetry", "left"},
+                            {"Cracks/Segments", "0,0.28 ; 0.2,0.28 ; 0.05,0.47 ; 0.2,0.72"}});
+        const Problem<2> whole(
+          common +
+          Settings{{"Domain/Cells", "16, 16"},
+                   {"Domain/Lower corner", "-0.5, 0"},
+                   {"Domain/Upper corner", "0.5, 1"},
+                   {"Cracks/Segments",
+                    "-0.2,0.28 ; 0.2,0.28 ; 0.05,0.47 ; 0.2,0.72 ; -0.05,0.47 ; -0.2,0.72"}});
         const auto rates = [](const Problem<2> &problem) {
-          Vector u = problem.values([](const Point<2> &p) {
-            return std::cos(3. * p[0]) + p[1] * (1. + p[0] * p[0]);
-          });
+          Vector u = problem.values(
+            [](const Point<2> &p) { return std::cos(3. * p[0]) + p[1] * (1. + p[0] * p[0]); });
           Vector rate = problem.vector();
           problem.op().apply(rate, u);
           for (unsigned int i = 0; i < rate.locally_owned_size(); ++i)
@@ -254,7 +253,7 @@ namespace PeriDeal
           return gathered(problem, rate);
         };
         const auto   of_half = rates(half), of_whole = rates(whole);
-        unsigned int n       = 0;
+        unsigned int n = 0;
         for (const auto &[key, value] : of_whole)
           {
             // Nodes on the axis lie a little to the right in the half body, as seen from its cells.

@@ -65,14 +65,14 @@ namespace PeriDeal
     for (const std::string placement : {"vertices", "cell centers"})
       for (const std::string fraction : {"linear", "none"})
         {
-          const Problem<3> problem(file("hexes.msh", "0.7") +
-                                   Settings{{"Domain/Nodes", placement},
-                                            {"Peridynamics/Volume fraction", fraction}});
+          const Problem<3> problem(
+            file("hexes.msh", "0.7") +
+            Settings{{"Domain/Nodes", placement}, {"Peridynamics/Volume fraction", fraction}});
           const DenseProperties matrix(problem.op());
           EXPECT_LT(matrix.asymmetry, 1e-14);
           EXPECT_GT(matrix.smallest, -1e-12 * matrix.largest);
           Vector one = problem.vector(), y = problem.vector();
-          one        = 1.;
+          one = 1.;
           problem.op().apply(y, one);
           EXPECT_LT(y.linfty_norm(), 1e-13 * matrix.entry);
         }
@@ -107,12 +107,12 @@ namespace PeriDeal
         for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
           EXPECT_NEAR(u.local_element(i), problem.sides[i][1] > 0.5 ? 1. : 0., 1e-9);
       }
-    SceneTests::expect_parts(SceneTests::message_of([] {
-                               Problem<2>(file("quads.msh") +
-                                          Settings{{"Cracks/Segments", "0.3,0.4 ; 1.7,0.6"},
-                                                   {"Cracks/Mesh", "faces"}});
-                             }),
-                             {"'Mesh = faces'", "cell faces"});
+    SceneTests::expect_parts(
+      SceneTests::message_of([] {
+        Problem<2>(file("quads.msh") +
+                   Settings{{"Cracks/Segments", "0.3,0.4 ; 1.7,0.6"}, {"Cracks/Mesh", "faces"}});
+      }),
+      {"'Mesh = faces'", "cell faces"});
   }
 
 

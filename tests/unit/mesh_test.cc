@@ -18,8 +18,9 @@ namespace PeriDeal
   namespace
   {
     template <int dim>
-    std::unique_ptr<dealii::Triangulation<dim>> mesh_of(const Settings &settings,
-                                                        const MPI_Comm  communicator = MPI_COMM_WORLD)
+    std::unique_ptr<dealii::Triangulation<dim>> mesh_of(
+      const Settings &settings,
+      const MPI_Comm  communicator = MPI_COMM_WORLD)
     {
       Scene<dim> scene;
       set(scene, settings);
@@ -146,8 +147,7 @@ namespace PeriDeal
     EXPECT_EQ(n_vertices(*mesh), 81u + 2u + 2u + 3u);
     EXPECT_NEAR(boundary_measures(*mesh)[crack_boundary_id], 2., 1e-13);
     // A T: three copies of the vertex where they meet.
-    EXPECT_EQ(n_vertices(
-                *mesh_of<2>(square("8, 8", "0.25,0.5 ; 0.75,0.5 ; 0.5,0.5 ; 0.5,0.75"))),
+    EXPECT_EQ(n_vertices(*mesh_of<2>(square("8, 8", "0.25,0.5 ; 0.75,0.5 ; 0.5,0.5 ; 0.5,0.75"))),
               81u + 2u + 2u + 1u);
   }
 
@@ -155,23 +155,23 @@ namespace PeriDeal
   TEST(Mesh, square_crack_in_3D)
   {
     const Settings box{{"Domain/Cells", "4, 4, 4"}, {"Cracks/Mesh", "faces"}};
-    const auto     mesh = mesh_of<3>(
-      box + Settings{{"Cracks/Polygons",
-                          "0.25,0.25,0.5 ; 0.75,0.25,0.5 ; 0.75,0.75,0.5 ; 0.25,0.75,0.5"}});
+    const auto     mesh =
+      mesh_of<3>(box + Settings{{"Cracks/Polygons",
+                                 "0.25,0.25,0.5 ; 0.75,0.25,0.5 ; 0.75,0.75,0.5 ; 0.25,0.75,0.5"}});
     EXPECT_EQ(n_vertices(*mesh), 125u + 1u); // only the vertex in its middle is not on its edge
     EXPECT_NEAR(boundary_measures(*mesh)[crack_boundary_id], 0.5, 1e-13);
     // An L: all corners of the face in its notch lie on the crack's edge, and yet it stays whole.
-    const auto notched = mesh_of<3>(
-      box + Settings{{"Cracks/Polygons",
-                      "0,0,0.5 ; 1,0,0.5 ; 1,0.25,0.5 ; 0.5,0.25,0.5 ; 0.5,0.75,0.5 ; "
-                      "0.75,0.75,0.5 ; 0.75,0.5,0.5 ; 1,0.5,0.5 ; 1,1,0.5 ; 0,1,0.5"}});
+    const auto notched =
+      mesh_of<3>(box + Settings{{"Cracks/Polygons",
+                                 "0,0,0.5 ; 1,0,0.5 ; 1,0.25,0.5 ; 0.5,0.25,0.5 ; 0.5,0.75,0.5 ; "
+                                 "0.75,0.75,0.5 ; 0.75,0.5,0.5 ; 1,0.5,0.5 ; 1,1,0.5 ; 0,1,0.5"}});
     EXPECT_NEAR(boundary_measures(*notched)[crack_boundary_id], 2. * (1. - 0.125 - 0.0625), 1e-12);
   }
 
 
   TEST(Mesh, crack_off_the_faces_is_an_error)
   {
-    for (const std::string crack : {"0.25,0.5 ; 0.7,0.5",   // ends within a face
+    for (const std::string crack : {"0.25,0.5 ; 0.7,0.5",    // ends within a face
                                     "0.25,0.45 ; 0.75,0.45", // within cells
                                     "0.25,0.25 ; 0.75,0.75", // diagonal
                                     "0.5,0.5 ; 1.3,0.6"})
@@ -205,8 +205,8 @@ namespace PeriDeal
     for (unsigned int side = 0; side < 4; ++side)
       EXPECT_NEAR(measures.at(side), 1., 1e-12);
     // A crack that starts at the hole.
-    const auto cracked = mesh_of<2>(plate + Settings{{"Cracks/Segments", "0.5,0.5 ; 0.9,0.5"},
-                                                     {"Cracks/Mesh", "faces"}});
+    const auto cracked = mesh_of<2>(
+      plate + Settings{{"Cracks/Segments", "0.5,0.5 ; 0.9,0.5"}, {"Cracks/Mesh", "faces"}});
     EXPECT_EQ(n_vertices(*cracked), n_vertices(*mesh) + 4u);
     EXPECT_NEAR(boundary_measures(*cracked).at(crack_boundary_id), 2. * 0.2, 1e-12);
   }
@@ -216,8 +216,8 @@ namespace PeriDeal
   {
     /** Volumes add up to the body, shares of sides to their measure. */
     template <int dim>
-    void expect_full_measure(const Settings                        &settings,
-                             const double                           volume,
+    void expect_full_measure(const Settings                       &settings,
+                             const double                          volume,
                              const std::map<unsigned int, double> &expected_sides)
     {
       for (const std::string placement : {"vertices", "cell centers"})
@@ -246,11 +246,10 @@ namespace PeriDeal
     expect_full_measure<1>({{"Domain/Cells", "13"}, {"Domain/Upper corner", "2"}},
                            2.,
                            {{0, 1.}, {1, 1.}});
-    expect_full_measure<2>({{"Domain/Cells", "9, 14"},
-                            {"Domain/Upper corner", "3, 1"},
-                            {"Peridynamics/Horizon", "1"}},
-                           3.,
-                           {{0, 1.}, {1, 1.}, {2, 3.}, {3, 3.}});
+    expect_full_measure<2>(
+      {{"Domain/Cells", "9, 14"}, {"Domain/Upper corner", "3, 1"}, {"Peridynamics/Horizon", "1"}},
+      3.,
+      {{0, 1.}, {1, 1.}, {2, 3.}, {3, 3.}});
     expect_full_measure<3>({{"Domain/Cells", "6, 5, 4"},
                             {"Domain/Upper corner", "1, 2, 1"},
                             {"Peridynamics/Horizon", "0.6"}},
@@ -280,7 +279,7 @@ namespace PeriDeal
   TEST(Nodes, own_points_beside_a_crack)
   {
     // Doubled nodes know on which side they are; no bond of 0.5 < y reaches below.
-    const Problem<2>                          problem(square("16, 16", "-1,0.5 ; 2,0.5"));
+    const Problem<2>                        problem(square("16, 16", "-1,0.5 ; 2,0.5"));
     std::vector<typename Families<2>::Bond> bonds;
     EXPECT_TRUE(problem.nodes->has_doubled_nodes());
     for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)

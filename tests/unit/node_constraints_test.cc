@@ -29,10 +29,10 @@ namespace PeriDeal
     for (const Model model : {Model::peridynamics, Model::finite_elements})
       {
         const Settings   plate{{"Domain/Cells", "6, 6"}};
-        const Problem<2> first(plate + Settings{{"Boundary conditions/Dirichlet",
-                                                 "top: 1 ; left: 2 + t ; bottom: 3"}},
-                               model);
-        Vector           u = first.vector();
+        const Problem<2> first(
+          plate + Settings{{"Boundary conditions/Dirichlet", "top: 1 ; left: 2 + t ; bottom: 3"}},
+          model);
+        Vector u = first.vector();
         first.op().distribute(u, 0.5);
         EXPECT_EQ(value_at<2>(first, u, {0., 1.}), 1.);
         EXPECT_EQ(value_at<2>(first, u, {0., 0.5}), 2.5);
@@ -60,7 +60,7 @@ namespace PeriDeal
         for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
           {
             const Point<2> p    = problem.positions[i];
-            const bool     left = p[0] < 0.17, top = p[1] > 0.83;
+            const bool     left = p[0]<0.17, top = p[1]> 0.83;
             EXPECT_DOUBLE_EQ(u.local_element(i), left ? 1. + p[0] : top ? 5. + p[1] : 0.) << p;
           }
       }
@@ -79,8 +79,8 @@ namespace PeriDeal
                                     {"Peridynamics/Flux treatment", treatment},
                                     {"Boundary conditions/Flux", "left: -3 ; right: 3"}});
           EXPECT_FALSE(problem.op().symmetric());
-          const auto f = [](const Point<1> &p) { return 7. + 1.5 * p[0]; };
-          Vector     u = problem.values(f), r = problem.vector();
+          const auto   f = [](const Point<1> &p) { return 7. + 1.5 * p[0]; };
+          Vector       u = problem.values(f), r = problem.vector();
           const Vector exact(u);
           for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
             if (problem.positions[i][0] < 1e-9 || problem.positions[i][0] > 1. - 1e-9)
@@ -102,7 +102,8 @@ namespace PeriDeal
   TEST(NodeConstraints, coupled_slaves_meet_their_equations)
   {
     // T_b sum w L = sum w L T + q over the whole family, slaves included; a corner follows the side named first.
-    const std::vector<std::string> orders = {"right: 2 ; bottom: x ; top: y", "top: y ; bottom: x; right: 2"};
+    const std::vector<std::string> orders = {"right: 2 ; bottom: x ; top: y",
+                                             "top: y ; bottom: x; right: 2"};
     for (const std::string &order : orders)
       {
         const Problem<2> problem({{"Domain/Cells", "12, 12"},
@@ -118,12 +119,12 @@ namespace PeriDeal
         for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)
           {
             const Point<2> p     = problem.positions[i];
-            const bool     right = p[0] > 1. - 1e-9, bottom = p[1] < 1e-9, top = p[1] > 1. - 1e-9;
+            const bool     right = p[0] > 1. - 1e-9, bottom = p[1]<1e-9, top = p[1]> 1. - 1e-9;
             if (p[0] < 1e-9 || !(right || bottom || top))
               continue;
-            const bool         of_right = right && (order == orders[0] || !(top || bottom));
-            const double       q        = of_right ? 2. : bottom ? p[0] : p[1];
-            double             sum = 0., flux = 0.;
+            const bool   of_right = right && (order == orders[0] || !(top || bottom));
+            const double q        = of_right ? 2. : bottom ? p[0] : p[1];
+            double       sum = 0., flux = 0.;
             families.bonds_of(i, bonds, false);
             for (const auto &bond : bonds)
               {

@@ -122,14 +122,14 @@ namespace PeriDeal
       std::unique_ptr<BondOperator<dim>>          bonds;
       std::unique_ptr<FEMOperator<dim>>           fem;
       std::vector<dealii::Point<dim>>             positions; // of owned unknowns
-      std::vector<dealii::Point<dim>>             sides;     // the same, a little towards the unknown's own cells
+      std::vector<dealii::Point<dim>> sides; // the same, a little towards the unknown's own cells
 
     private:
       void find_positions()
       {
-        const auto   &fe    = handler.get_fe();
-        const auto   &owned = handler.locally_owned_dofs();
-        const auto    first = owned.is_empty() ? 0 : owned.nth_index_in_set(0);
+        const auto               &fe    = handler.get_fe();
+        const auto               &owned = handler.locally_owned_dofs();
+        const auto                first = owned.is_empty() ? 0 : owned.nth_index_in_set(0);
         std::vector<unsigned int> count(owned.n_elements(), 0);
         positions.resize(owned.n_elements());
         sides.resize(owned.n_elements());
@@ -145,7 +145,8 @@ namespace PeriDeal
                   const auto i = indices[v] - first;
                   if (count[i]++ == 0)
                     positions[i] = dealii::MappingQ1<dim>().transform_unit_to_real_cell(
-                      cell, fe.unit_support_point(v));
+                      cell,
+                      fe.unit_support_point(v));
                   sides[i] += cell->center();
                 }
           }

@@ -44,11 +44,9 @@ namespace PeriDeal
       };
       const double size = alone.op().diagonal().linfty_norm();
       EXPECT_LE(difference(all, residual(all), alone, residual(alone)), accuracy * size) << what;
-      EXPECT_LE(difference(all, all.op().diagonal(), alone, alone.op().diagonal()),
-                accuracy * size)
+      EXPECT_LE(difference(all, all.op().diagonal(), alone, alone.op().diagonal()), accuracy * size)
         << what;
-      EXPECT_LE(difference(
-                  all, all.op().lumped_capacity(), alone, alone.op().lumped_capacity()),
+      EXPECT_LE(difference(all, all.op().lumped_capacity(), alone, alone.op().lumped_capacity()),
                 accuracy)
         << what;
       if (all.op().capacity_is_diagonal())
@@ -79,8 +77,9 @@ namespace PeriDeal
     for (const std::string placement : {"vertices", "cell centers"})
       for (const std::string form : {"lattice", "stored"})
         {
-          const Settings    base = cracked + conditions + Settings{{"Domain/Nodes", placement},
-                                                                {"Peridynamics/Operator form", form}};
+          const Settings base =
+            cracked + conditions +
+            Settings{{"Domain/Nodes", placement}, {"Peridynamics/Operator form", form}};
           const std::string what = placement + ", " + form;
           expect_same<2>(what, base, 0.);
           expect_same<2>(what + ", mirror",
@@ -89,11 +88,10 @@ namespace PeriDeal
                                          {"Boundary conditions/Symmetry", "right"}},
                          0.);
           expect_same<2>(what + ", scaled, wide",
-                         base +
-                           Settings{{"Peridynamics/Surface correction", "crack scaling"},
-                                    {"Peridynamics/Horizon ratio", "5.3"},
-                                    {"Peridynamics/Boundary treatment", "layer"},
-                                    {"Peridynamics/Layer rows", "3"}},
+                         base + Settings{{"Peridynamics/Surface correction", "crack scaling"},
+                                         {"Peridynamics/Horizon ratio", "5.3"},
+                                         {"Peridynamics/Boundary treatment", "layer"},
+                                         {"Peridynamics/Layer rows", "3"}},
                          0.);
         }
   }
@@ -145,7 +143,8 @@ namespace PeriDeal
 
   TEST(RankIndependence, extrapolated_fluxes)
   {
-    for (const std::string order : {"right: 2 ; bottom: x ; top: 0", "top: 0 ; right: 2 ; bottom: x"})
+    for (const std::string order :
+         {"right: 2 ; bottom: x ; top: 0", "top: 0 ; right: 2 ; bottom: x"})
       expect_same<2>(order,
                      cracked + Settings{{"Peridynamics/Flux treatment", "extrapolation"},
                                         {"Boundary conditions/Dirichlet", "left: 1"},

@@ -33,9 +33,9 @@ namespace PeriDeal
     unsigned int iterations(const unsigned int cells, const Settings &more)
     {
       const std::string n = std::to_string(cells);
-      const Problem<2>  problem(more + Settings{{"Domain/Cells", n + "," + n},
-                                               {"Peridynamics/Horizon ratio", "6.5"}});
-      Vector            u = problem.vector();
+      const Problem<2>  problem(
+        more + Settings{{"Domain/Cells", n + "," + n}, {"Peridynamics/Horizon ratio", "6.5"}});
+      Vector u = problem.vector();
       return solve_steady(problem.op(), u, 0., 1e-10, 1000);
     }
   } // namespace
@@ -51,8 +51,8 @@ namespace PeriDeal
     for (const std::string kernel : {"constant", "conical", "gaussian"})
       for (const std::string placement : {"vertices", "cell centers"})
         {
-          const Settings base = plate + wide + Settings{{"Peridynamics/Kernel", kernel},
-                                                        {"Domain/Nodes", placement}};
+          const Settings base =
+            plate + wide + Settings{{"Peridynamics/Kernel", kernel}, {"Domain/Nodes", placement}};
           const std::string what = kernel + ", " + placement;
           expect_bounds<2>(what, base, 0.02);
           expect_bounds<2>(what + ", sides", base + sides, 0.02);
@@ -66,8 +66,12 @@ namespace PeriDeal
                            base + Settings{{"Boundary conditions/Convection", "left: 1000, 1"}},
                            0.02);
         }
-    expect_bounds<1>("bar", {{"Domain/Cells", "50"}, {"Boundary conditions/Dirichlet", "left: 0"}}, 0.02);
-    expect_bounds<3>("brick", {{"Domain/Cells", "6, 5, 5"}, {"Peridynamics/Horizon", "0.45"}}, 0.02);
+    expect_bounds<1>("bar",
+                     {{"Domain/Cells", "50"}, {"Boundary conditions/Dirichlet", "left: 0"}},
+                     0.02);
+    expect_bounds<3>("brick",
+                     {{"Domain/Cells", "6, 5, 5"}, {"Peridynamics/Horizon", "0.45"}},
+                     0.02);
     expect_bounds<2>("elements", plate + sides, 0.02, Model::finite_elements);
     expect_bounds<2>("elements, crack", plate + sides + crack, 0.02, Model::finite_elements);
     expect_bounds<2>("heavy on the right",
@@ -124,16 +128,17 @@ namespace PeriDeal
     const Settings centers{{"Domain/Nodes", "cell centers"}};
     for (const std::string treatment : {"layer", "fictitious mirror", "fictitious constant"})
       for (const Settings &placement : {Settings(), centers})
-        EXPECT_LE(iterations(60,
-                             sides + placement +
-                               Settings{{"Peridynamics/Boundary treatment", treatment}}),
-                  22u)
+        EXPECT_LE(
+          iterations(60,
+                     sides + placement + Settings{{"Peridynamics/Boundary treatment", treatment}}),
+          22u)
           << treatment;
-    EXPECT_LE(iterations(60,
-                         centers + Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"},
-                                            {"Boundary conditions/Dirichlet", "bottom: 1"},
-                                            {"Boundary conditions/Symmetry", "left, right, top"}}),
-              22u);
+    EXPECT_LE(
+      iterations(60,
+                 centers + Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"},
+                                    {"Boundary conditions/Dirichlet", "bottom: 1"},
+                                    {"Boundary conditions/Symmetry", "left, right, top"}}),
+      22u);
     EXPECT_LE(iterations(60, Settings{{"Boundary conditions/Convection", "left: 5, 3"}}), 25u);
     // A jump of conductivity by a thousand.
     for (const std::string rule : {"minimum", "arithmetic", "harmonic"})
@@ -155,15 +160,15 @@ namespace PeriDeal
   {
     const Problem<2> insulated(Settings{{"Domain/Cells", "8, 8"}});
     Vector           u = insulated.vector();
-    SceneTests::expect_parts(SceneTests::message_of(
-                               [&] { solve_steady(insulated.op(), u, 0., 1e-10, 100); }),
-                             {"'Steady = true'", "'Dirichlet'"});
-    const Problem<2> plate({{"Domain/Cells", "20, 20"},
-                            {"Boundary conditions/Dirichlet", "left: 0 ; right: y"}});
-    Vector           v = plate.vector();
-    SceneTests::expect_parts(SceneTests::message_of(
-                               [&] { solve_steady(plate.op(), v, 0., 1e-10, 2); }),
-                             {"'Tolerance'", "'Maximum iterations'", "'Solver'"});
+    SceneTests::expect_parts(
+      SceneTests::message_of([&] { solve_steady(insulated.op(), u, 0., 1e-10, 100); }),
+      {"'Steady = true'", "'Dirichlet'"});
+    const Problem<2> plate(
+      {{"Domain/Cells", "20, 20"}, {"Boundary conditions/Dirichlet", "left: 0 ; right: y"}});
+    Vector v = plate.vector();
+    SceneTests::expect_parts(
+      SceneTests::message_of([&] { solve_steady(plate.op(), v, 0., 1e-10, 2); }),
+      {"'Tolerance'", "'Maximum iterations'", "'Solver'"});
     // From the solution itself nothing is left to do.
     solve_steady(plate.op(), v = 0., 0., 1e-12, 100);
     const Vector once(v);

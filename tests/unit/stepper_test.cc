@@ -75,12 +75,12 @@ namespace PeriDeal
     struct Harmonic
     {
       explicit Harmonic(const unsigned int cells = 10)
-        : problem(Settings{{"Domain/Cells", std::to_string(cells) + "," + std::to_string(cells)},
-                           {"Domain/Nodes", "cell centers"},
-                           {"Peridynamics/Horizon ratio", "3"},
-                           {"Peridynamics/Boundary treatment", "fictitious mirror"},
-                           {"Boundary conditions/Dirichlet",
-                            "left: 0 ; right: 0 ; bottom: 0 ; top: 0"}})
+        : problem(
+            Settings{{"Domain/Cells", std::to_string(cells) + "," + std::to_string(cells)},
+                     {"Domain/Nodes", "cell centers"},
+                     {"Peridynamics/Horizon ratio", "3"},
+                     {"Peridynamics/Boundary treatment", "fictitious mirror"},
+                     {"Boundary conditions/Dirichlet", "left: 0 ; right: 0 ; bottom: 0 ; top: 0"}})
       {
         for (const auto &member : problem.bonds->families().lattice_members())
           lambda += member.weight / (cells * cells) *
@@ -158,9 +158,9 @@ namespace PeriDeal
   {
     // Q1 on a line of cells: cos(pi x) is a discrete harmonic of the consistent system, too, and so is its product with a constant.
     const unsigned int n = 16;
-    const Problem<2>   problem({{"Domain/Cells", "16, 4"},
-                                {"Finite elements/Capacity", "consistent"}},
-                             Model::finite_elements);
+    const Problem<2>   problem(
+      {{"Domain/Cells", "16, 4"}, {"Finite elements/Capacity", "consistent"}},
+      Model::finite_elements);
     EXPECT_FALSE(problem.op().capacity_is_diagonal());
     EXPECT_EQ(choose_stepper(problem.op()), "sdirk2");
     const double   c = std::cos(pi / n), lambda = 6. * n * n * (1. - c) / (2. + c);
@@ -170,10 +170,9 @@ namespace PeriDeal
     for (const std::string name : {"crank nicolson", "bdf2", "sdirk2"})
       EXPECT_NEAR(order(problem, exact, name, 0.005, 0.08), 2., 0.15) << name;
     for (const std::string name : {"euler", "rk4", "rkc2", "chebyshev"})
-      SceneTests::expect_parts(SceneTests::message_of([&] {
-                                 make_stepper(name, problem.op(), options_with(-1.));
-                               }),
-                               {name, "'Capacity = lumped'", "sdirk2"});
+      SceneTests::expect_parts(
+        SceneTests::message_of([&] { make_stepper(name, problem.op(), options_with(-1.)); }),
+        {name, "'Capacity = lumped'", "sdirk2"});
   }
 
 
@@ -203,8 +202,8 @@ namespace PeriDeal
         // A multiple of the step in one call or in eight: the same steps. One-step methods: the same numbers.
         auto   whole = make_stepper(name, harmonic.problem.op(), options_with(dt));
         auto   parts = make_stepper(name, harmonic.problem.op(), options_with(dt));
-        Vector u     = harmonic.problem.values(
-          [&](const auto &p) { return harmonic.solution()(p, 0.); });
+        Vector u =
+          harmonic.problem.values([&](const auto &p) { return harmonic.solution()(p, 0.); });
         Vector v(u);
         whole->advance(u, 0., 8. * dt);
         for (unsigned int k = 0; k < 8; ++k)
@@ -214,9 +213,9 @@ namespace PeriDeal
         EXPECT_LT(largest_difference(u, v), 1e-12 * u.linfty_norm()) << name;
         // Spans that are no multiple: lands all the same.
         const double span = 3.37 * dt;
-        EXPECT_LT(error_at_end(
-                    harmonic.problem, harmonic.solution(), name, options_with(0.02 * dt), span),
-                  0.01)
+        EXPECT_LT(
+          error_at_end(harmonic.problem, harmonic.solution(), name, options_with(0.02 * dt), span),
+          0.01)
           << name;
       }
     // Exponentials and adaptive methods: pieces agree within the tolerance.
@@ -240,11 +239,11 @@ namespace PeriDeal
       for (const double tolerance : {1e-3, 1e-4, 1e-5})
         {
           auto   stepper = make_stepper(name, harmonic.problem.op(), options_with(-1., tolerance));
-          Vector u       = harmonic.problem.values(
-            [&](const auto &p) { return harmonic.solution()(p, 0.); });
+          Vector u =
+            harmonic.problem.values([&](const auto &p) { return harmonic.solution()(p, 0.); });
           stepper->advance(u, 0., 0.05);
-          Vector end = harmonic.problem.values(
-            [&](const auto &p) { return harmonic.solution()(p, 0.05); });
+          Vector end =
+            harmonic.problem.values([&](const auto &p) { return harmonic.solution()(p, 0.05); });
           const double error = largest_difference(u, end) / end.linfty_norm();
           EXPECT_LT(error, 10. * tolerance) << name;
           EXPECT_GT(stepper->cost().steps, 2u);
@@ -318,9 +317,8 @@ namespace PeriDeal
         own += rate.local_element(i) * u.local_element(i);
       Vector weighted = problem.vector();
       problem.op().apply_capacity(weighted, u);
-      const double lambda =
-        dealii::Utilities::MPI::sum(own, MPI_COMM_WORLD) / (weighted * u);
-      auto stepper = make_stepper("chebyshev", problem.op(), options_with(-1., 1e-12));
+      const double lambda  = dealii::Utilities::MPI::sum(own, MPI_COMM_WORLD) / (weighted * u);
+      auto         stepper = make_stepper("chebyshev", problem.op(), options_with(-1., 1e-12));
       const Vector start(u);
       stepper->advance(u, 0., 0.1);
       u.add(-std::exp(-0.1 * lambda), start);
@@ -379,9 +377,9 @@ namespace PeriDeal
 
   TEST(Steppers, stability_bounds)
   {
-    const Problem<2> problem({{"Domain/Cells", "12, 12"},
-                              {"Boundary conditions/Dirichlet", "left: 0 ; right: 0"}});
-    const Spectrum   spectrum = problem.op().spectrum();
+    const Problem<2> problem(
+      {{"Domain/Cells", "12, 12"}, {"Boundary conditions/Dirichlet", "left: 0 ; right: 0"}});
+    const Spectrum spectrum = problem.op().spectrum();
     for (const std::string name : {"euler", "rk4"})
       {
         const double bound = stable_step(name, spectrum.sharp);
@@ -389,10 +387,9 @@ namespace PeriDeal
                                    make_stepper(name, problem.op(), options_with(1.001 * bound));
                                  }),
                                  {"'Time step'", name, "Lanczos", "Gershgorin", "auto"});
-        auto         stepper = make_stepper(name, problem.op(), options_with(0.999 * bound));
-        Vector       u       = problem.values([&](const auto &p) {
-          return std::sin(12.9898 * p[0] * 1e3 + 78.233 * p[1] * 1e3);
-        });
+        auto   stepper = make_stepper(name, problem.op(), options_with(0.999 * bound));
+        Vector u       = problem.values(
+          [&](const auto &p) { return std::sin(12.9898 * p[0] * 1e3 + 78.233 * p[1] * 1e3); });
         problem.op().distribute(u, 0.);
         const double start = u.linfty_norm();
         stepper->advance(u, 0., 2000. * 0.999 * bound);
