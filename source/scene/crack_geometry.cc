@@ -15,8 +15,9 @@ namespace PeriDeal
     /** Fraction of a crack's size within which a point counts as lying on it. */
     constexpr double on_crack = 1e-10;
 
-    /** Fraction of a crack's size by which its edge is extended, so that round-off never opens it. */
-    constexpr double edge = 1e-12;
+    /** Fraction of a crack's size by which its edge is extended: far more than on_crack, so that bonds through the very tip are cut
+     * whichever way they lean and on whichever side of the nodes the crack runs. */
+    constexpr double edge = 1e-7;
 
     /** Newell's vector: twice the area of a planar polygon times its right-hand normal. */
     template <int dim>

@@ -39,11 +39,11 @@ namespace PeriDeal
     EXPECT_FALSE(crack.separates(Point<2>(-1., 0.), Point<2>(3., 0.)));
     // Through the tip: the tip belongs to the crack; just beyond it does not.
     EXPECT_TRUE(crack.separates(Point<2>(2., 0.5), Point<2>(2., -0.5)));
-    // Obliquely through the tip: as with a crack an infinitesimal distance to the right.
-    EXPECT_FALSE(crack.separates(Point<2>(1.5, 0.5), Point<2>(2.5, -0.5)));
+    // Obliquely through the tip: cut, whichever way the bond leans.
+    EXPECT_TRUE(crack.separates(Point<2>(1.5, 0.5), Point<2>(2.5, -0.5)));
     EXPECT_TRUE(crack.separates(Point<2>(2.5, 0.5), Point<2>(1.5, -0.5)));
-    EXPECT_FALSE(crack.separates(Point<2>(2. + 1e-8, 0.5), Point<2>(2. + 1e-8, -0.5)));
-    EXPECT_FALSE(crack.separates(Point<2>(-1e-8, 0.5), Point<2>(-1e-8, -0.5)));
+    EXPECT_FALSE(crack.separates(Point<2>(2. + 1e-6, 0.5), Point<2>(2. + 1e-6, -0.5)));
+    EXPECT_FALSE(crack.separates(Point<2>(-1e-6, 0.5), Point<2>(-1e-6, -0.5)));
     EXPECT_TRUE(crack.contains(Point<2>(0., 0.)));
     EXPECT_TRUE(crack.contains(Point<2>(1., 0.)));
     EXPECT_FALSE(crack.contains(Point<2>(2.1, 0.)));
@@ -99,14 +99,6 @@ namespace PeriDeal
                   const Point<2> a(x, y), b(x + dx, y + dy);
                   const bool     cut = crack.separates(a, b);
                   n_cut += cut ? 1 : 0;
-                  // Bonds along the normal through a tip, and only those, depend on its round-off.
-                  const auto hits = [&](const Point<2> &tip) {
-                    const auto u = b - a, v = tip - a;
-                    return std::abs(u[0] * v[1] - u[1] * v[0]) < 1e-6 &&
-                           std::abs(u * (end - start)) < 1e-6;
-                  };
-                  if (hits(start) || hits(end))
-                    continue;
                   ASSERT_EQ(cut, shifted.separates(a, b))
                     << "(" << a << ") (" << b << ") crack (" << start << ") (" << end << ")";
                 }
@@ -144,7 +136,7 @@ namespace PeriDeal
     EXPECT_TRUE(cuts_at(1., 1.5));
     EXPECT_TRUE(cuts_at(1.5, 1.));
     EXPECT_TRUE(cuts_at(0., 1.));
-    EXPECT_FALSE(cuts_at(1. + 1e-8, 1. + 1e-8));
+    EXPECT_FALSE(cuts_at(1. + 1e-6, 1. + 1e-6));
     // Points on the polygon belong to the side of the right-hand normal; beyond it, nothing is cut.
     EXPECT_TRUE(crack.separates(Point<3>(0.5, 0.5, 1.), Point<3>(0.5, 0.5, 0.)));
     EXPECT_FALSE(crack.separates(Point<3>(0.5, 0.5, 1.), Point<3>(0.5, 0.5, 2.)));

@@ -24,7 +24,8 @@ namespace PeriDeal
     /** @param corners two points in 2D; three or more corners of a planar polygon in 3D. */
     explicit CrackGeometry(const std::vector<dealii::Point<dim>> &corners);
 
-    /** Whether the straight line between two points crosses the crack. Symmetric in its arguments. The tip belongs to the crack. */
+    /** Whether the straight line between two points crosses the crack. Symmetric in its arguments. The tip belongs to the
+     * crack, with all that passes within 1e-7 of the crack's size: mirror images of a bond about the crack or through a tip are treated alike. */
     bool separates(const dealii::Point<dim> &a, const dealii::Point<dim> &b) const;
 
     /** Signed distance to the crack's line or plane, positive on the left side; points on it count as positive. */
