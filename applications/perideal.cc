@@ -10,9 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <iostream>
-#include <thread>
 
 namespace
 {
@@ -156,26 +154,10 @@ namespace
   }
 
 
-  /** Whether every process has come here, too, within some seconds. */
-  bool everybody_failed()
-  {
-    MPI_Request request;
-    MPI_Ibarrier(MPI_COMM_WORLD, &request);
-    int done = 0;
-    for (unsigned int tenths = 0; tenths < 50 && done == 0; ++tenths)
-      {
-        MPI_Test(&request, &done, MPI_STATUS_IGNORE);
-        if (done == 0)
-          std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      }
-    return done != 0;
-  }
-
-
   /** One message, from rank 0 if everybody has it. The others must not wait forever for a process that failed alone. */
   int report(const std::string &message, const bool first_rank)
   {
-    const bool all = everybody_failed();
+    const bool all = all_processes_arrive(MPI_COMM_WORLD);
     if (first_rank || !all)
       std::cerr << "\nperideal: error: " << message << std::endl;
     if (!all)

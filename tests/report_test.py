@@ -5,7 +5,7 @@
 
     python3 tests/report_test.py                      runs the tests
     python3 tests/report_test.py --make CASE DIRECTORY [CELLS]   writes one made-up directory
-    (CASE: bar, bar steady, crack, centers, single, long, hole, cube)
+    (CASE: bar, bar steady, crack, centers, single, long, hole, ring, cube)
 """
 
 import base64
@@ -25,10 +25,18 @@ import numpy as np
 
 REPORT = Path(__file__).resolve().parent.parent / "applications" / "report"
 sys.path.insert(0, str(REPORT))
+import contours  # noqa: E402
+import difference  # noqa: E402
+import findings  # noqa: E402
+import flux  # noqa: E402
 import report  # noqa: E402
+import series  # noqa: E402
+import sketch  # noqa: E402
+import solids  # noqa: E402
 import style  # noqa: E402
+from crossings import crossed  # noqa: E402
 from raster import PixelMap, View, crosses  # noqa: E402
-from read_run import Mesh  # noqa: E402
+from read_run import Mesh, Run  # noqa: E402
 
 FEM, PD = "finite elements", "peridynamics"
 
@@ -85,10 +93,10 @@ def model_entry(model, times, exact):
     entry = {"unknowns": 14641, "nonzeros": 127449, "steps": 84, "operator applications": 1012,
              "iterations": 0, "stepper": "chebyshev",
              "operator form": "lattice" if pd else "matrix",
-             "settings": {"m": "6.5", "kernel": "conical", "volume fraction": "linear"} if pd else
+             "settings": {"m": "6.5", "kernel": "conical, exponent 2", "volume fraction": "linear"} if pd else
              {"degree": "1", "capacity": "lumped"},
              "wall time": {"setup": 0.21, "solve": 2.4 if pd else 0.8, "output": 0.1},
-             "peak memory": 412_000_000 if pd else 96_000_000,
+             "memory": 12_300_000 if pd else 4_500_000, "peak memory": 412_000_000,
              "stable step": {"sharp": 1.43e-4, "safe": 1.21e-4},
              "boundary flux": {"top": 12.3456, "bottom": -12.3449},
              "heat balance": {"throughput": 12.3456, "imbalance": 4e-12}}
@@ -127,7 +135,8 @@ def make_summary(directory, title, dimension, lower, upper, times, models, crack
         "reference": "bobaru 2012 example 1" if exact else ""}
     directory.mkdir(parents=True, exist_ok=True)
     (directory / "summary.json").write_text(json.dumps(summary, indent=1))
-    (directory / "scene.prm").write_text("set Title = made up\n")
+    (directory / "scene.prm").write_text(
+        "set Title = made up\nsubsection Initial and source\n  set Initial value = 7\nend\n")
 
 
 def make_bar(directory, steady=False):
@@ -205,6 +214,19 @@ def make_plate(directory, cells=60, models=(FEM, PD), centers=False, upper=(1.0,
     (directory / "totals.csv").write_text("\n".join(totals) + "\n")
 
 
+def make_ring(directory, cells=12):
+    """A quarter of a ring from r = 1 to 2, named with the unit square as its domain."""
+    make_summary(directory, "Quarter of a ring", 2, [0, 0], [1, 1], [0.0], [FEM, PD], steady=True,
+                 sides={"1": "Dirichlet 100", "2": "Dirichlet -3"})
+    polar, quads = box_mesh([1, 0], [2, np.pi / 2], [cells, 2 * cells])
+    nodes = polar[:, :1] * np.stack([np.cos(polar[:, 1]), np.sin(polar[:, 1])], axis=1)
+    fem = 100 * np.log(2 / polar[:, 0]) / np.log(2)
+    bump = np.all(np.isclose(polar, [1.75, np.pi / 4]), axis=1)
+    for model, values in ((FEM, fem), (PD, fem - 5.0 * bump)):
+        write_fields(directory / f"fields/{model.replace(' ', '_')}_0000.h5", nodes, quads,
+                     {"temperature": values, "heat_flux": np.pad(nodes, ((0, 0), (0, 1)))})
+
+
 def cube_values(model, time, points):
     """Temperature of the cube with a square crack in its middle."""
     x, y, z = points.T
@@ -242,6 +264,8 @@ def make(case, directory, cells=None):
     size = {} if cells is None else {"cells": int(cells)}
     if case in ("bar", "bar steady"):
         make_bar(directory, case == "bar steady")
+    elif case == "ring":
+        make_ring(directory, **size)
     elif case == "cube":
         make_cube(directory, **size)
     else:
@@ -345,7 +369,7 @@ class Pages(ReportCase):
                           "totals.png"])
         space = "\u202f"
         for number in (f"14{space}641", f"1{space}234{space}567", f"127{space}449", "84",
-                       "0.000143", "0.000121", "412 MB", "96 MB", "12.3456", "4×10⁻¹²",
+                       "0.000143", "0.000121", "12.3 MB", "4.5 MB", "12.3456", "4×10⁻¹²",
                        "0.01845", "0.00615", "0.0087", "3.21", "2.71 s", "1.11 s"):
             self.assertIn(number, page.cells)
         text = "".join(page.text)
@@ -356,12 +380,15 @@ class Pages(ReportCase):
         self.assertIn("0.87 % in the relative L2 norm", text)
         self.assertRegex(text, r"0\.615 % \(finite elements\) and 1\.8[45] % \(peridynamics\)")
         self.assertIn("bobaru 2012 example 1", text)
+        self.assertEqual(text.count("412 MB"), 1)
+        self.assertIn("conical kernel, n = 2", text)
+        self.assertIn("Dirichlet −100", page.cells)
 
     def test_bar(self):
         page = self.page("bar")
         # problem, temperature over the body, probes, heat flux
         self.assertEqual(len(page.images), 4)
-        self.assertIn("Dirichlet 100*(1-exp(-t))", page.cells)
+        self.assertIn("Dirichlet 100*(1−exp(−t))", page.cells)
 
     def test_steady_bar(self):
         page = self.page("bar steady")
@@ -384,6 +411,38 @@ class Pages(ReportCase):
         make_cube(self.directory, 8)
         page = self.page("cube")
         self.assertIn("Flux 3*t*sin(pi*x)", page.cells)
+
+    def test_mesh_that_leaves_the_unit_square(self):
+        page = self.page("ring")
+        run = Run(self.directory)
+        self.assertTrue(np.allclose(run.domain, [[0, 0], [2, 2]], atol=1e-12))
+        maps = contours.Maps(run)
+        self.assertTrue(np.allclose(maps.view().extent, [0, 2, 0, 2], atol=1e-12))
+        picture = maps.picture(0, FEM, run.field(0, FEM, "temperature"), [])
+        self.assertAlmostEqual(np.isfinite(picture).mean(), 3 / 4 * np.pi / 4, delta=5e-3)
+        drawn = sketch.problem_sketch(maps, style.Units({})).axes[0]
+        self.assertTrue(np.allclose([drawn.get_xlim(), drawn.get_ylim()], [0, 2], atol=1e-12))
+        text = "".join(page.text)
+        self.assertIn("Largest difference: −5 °C at (1.237, 1.237), marked by a circle", text)
+        self.assertIn("−3", "".join(page.cells))
+
+    def test_no_picture_of_zeros(self):
+        make_plate(self.directory, 8)
+        for path in (self.directory / "fields").iterdir():
+            with h5py.File(path, "a") as file:
+                file["heat_flux"][...] = 0
+                if "peridynamics_minus_finite_elements" in file:
+                    file["peridynamics_minus_finite_elements"][...] = 0
+        (self.directory / "totals.csv").write_text(
+            "time,model,quantity,value\n" + "".join(
+                f"{t},{m},{q},{v}\n" for t in (0.1, 0.2, 0.3) for m in (FEM, PD)
+                for q, v in (("heat content", 5), ("heat flow from sources", 0))))
+        page = self.page("")
+        self.assertEqual(len(page.images), 7)
+        text = "".join(page.text)
+        for sentence in ("The heat flux is zero everywhere.", "agree to round-off",
+                         "Zero at all times, not drawn: heat flow from sources."):
+            self.assertIn(sentence, text)
 
     def test_many_times_show_six(self):
         make_plate(self.directory, 8, times=[0.1 * k for k in range(1, 10)])
@@ -422,6 +481,96 @@ class Pages(ReportCase):
             model["heat balance"] = None
         (self.directory / "summary.json").write_text(json.dumps(summary))
         self.page("")
+
+
+class Parts(ReportCase):
+    """Numbers that pictures and sentences are made of."""
+
+    def test_largest_difference_is_that_of_a_node(self):
+        make_plate(self.directory, 10)
+        run = Run(self.directory)
+        found = difference.largest(run, 2)
+        nodes = run.mesh(2, PD).nodes
+        values = run.field(2, PD, "peridynamics_minus_finite_elements")
+        self.assertEqual(abs(found.value), np.abs(values).max())
+        self.assertLess(np.abs(nodes - found.at).max(axis=1).min(), 1e-15)
+        self.assertFalse(found.alone)  # there is a mirror image
+
+    def test_largest_difference_of_cell_centers_is_at_a_center(self):
+        make_plate(self.directory, 10, centers=True)
+        run = Run(self.directory)
+        mesh = run.mesh(2, PD)
+        centers = mesh.nodes[mesh.cells].mean(axis=1)
+        at = difference.largest(run, 2).at
+        self.assertLess(np.abs(centers - at).max(axis=1).min(), 1e-12)
+
+    def test_arrows_have_one_scale(self):
+        make_plate(self.directory, 20, cracks=[])
+        for model, size in ((FEM, 2.0), (PD, 1.0)):
+            path = self.directory / f"fields/{model.replace(' ', '_')}_0002.h5"
+            with h5py.File(path, "a") as file:
+                file["heat_flux"][...] = [size, 0, 0]
+        figure, text = flux.flux_figure(contours.Maps(Run(self.directory)), 2, style.Units({}))
+        self.assertIn("the longest stands for 2.", text)
+        lengths = [np.hypot(a.collections[0].U, a.collections[0].V).max()
+                   for a in figure.axes[:2]]
+        self.assertAlmostEqual(lengths[0], 1.0)
+        self.assertAlmostEqual(lengths[1], 0.5)
+
+    def test_probes_start_with_a_known_initial_value(self):
+        make_plate(self.directory, 8)
+        run = Run(self.directory)
+        self.assertEqual(run.initial_value(np.array([0.5, 0.1])), 7)
+        self.assertIsNone(run.initial_value(np.array([1.0, 0.1])))
+        figure, zero = series.probe_figure(run, style.Units({}))
+        self.assertEqual(zero, [])
+        start = figure.axes[0].lines[0]
+        self.assertEqual([list(start.get_xdata()), list(start.get_ydata())], [[0], [7]])
+        (self.directory / "scene.prm").unlink()
+        figure, _ = series.probe_figure(Run(self.directory), style.Units({}))
+        self.assertEqual(min(min(line.get_xdata()) for line in figure.axes[0].lines), 0.05)
+
+    def test_short_times_are_not_compared(self):
+        make_plate(self.directory, 8)
+        run = Run(self.directory)
+
+        def sentence(fem, pd):
+            for model, time in ((FEM, fem), (PD, pd)):
+                run.summary["models"][model]["wall time"] = {"solve": time}
+            return findings.what_it_cost(run)
+
+        self.assertEqual(sentence(0.02, 0.001),
+                         "Both models took less than 0.1 s of wall time on 1 process.")
+        self.assertEqual(sentence(0.5, 0.01), "The wall time was 0.5 s (finite elements) and less "
+                                              "than 0.1 s (peridynamics) on 1 process.")
+        self.assertIn("peridynamics cost 4 times as much", sentence(0.5, 2.0))
+
+    def test_slices_of_a_crack(self):
+        make_cube(self.directory, 8)  # nodes every 2/9, the crack between two rows
+        run = Run(self.directory)
+        position, remark = solids.slice_positions(run, 0)
+        self.assertEqual(list(remark), [1])
+        self.assertTrue(np.allclose(position, [0, 1 / 9, 0]))
+        crack = run.cracks(0)
+        self.assertEqual(len(solids.slice_segments(crack, 0, 0.49)), 1)
+        self.assertEqual(solids.slice_segments(crack, 0, 0.5), [])  # touched, not cut
+        self.assertEqual(len(solids.slice_outlines(crack, 0, 0.5, 1e-9)), 1)
+        self.assertEqual(len(solids.slice_outlines(crack, 1, 0.0, 1e-9)), 4)
+
+
+    def test_lines_are_broken_at_cracks(self):
+        y = np.linspace(-1, 1, 5)
+        line = np.stack([np.full(5, 0.2), y], axis=1)
+        crack = np.array([[-0.5, 0.0], [0.5, 0.0]])
+        self.assertEqual(crossed(line, [crack])[0].tolist(), [1])  # y = 0 is above
+        self.assertEqual(crossed(line, [crack[::-1]])[0].tolist(), [2])
+        self.assertEqual(crossed(line, [crack])[1].tolist(), [1.0])  # at y = 0
+        self.assertEqual(crossed(line, [crack[::-1]])[1].tolist(), [0.0])
+        self.assertEqual(crossed(line + [0.4, 0], [crack])[0].tolist(), [])
+        square = np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1.0]])  # normal: y
+        line = np.stack([np.full(5, 0.2), y, np.full(5, -0.3)], axis=1)
+        self.assertEqual(crossed(line, [square])[0].tolist(), [1])
+        self.assertEqual(crossed(line, [0.25 * square])[0].tolist(), [])
 
 
 class Faults(ReportCase):
@@ -561,6 +710,10 @@ class Formats(unittest.TestCase):
         self.assertEqual(style.plain(1.2345678e-7, 3), "1.23×10⁻⁷")
         self.assertEqual(style.plain(-0.5), "−0.5")
         self.assertEqual(style.plain(None), "–")
+        self.assertEqual(style.plain(268.3, 2), "270")
+        self.assertEqual(style.minus("exp(-t)-1e-9"), "exp(−t)−1e−9")
+        self.assertEqual(style.prose("well-known, 2e-4 or -3: 1 - exp(-2 x), option -s, a-3"),
+                         "well-known, 2e−4 or −3: 1 − exp(−2 x), option -s, a-3")
 
     def test_levels_cover_the_values(self):
         for low, high in ((0, 100), (-97.3, 12.1), (293.15, 293.16), (5, 5)):

@@ -8,7 +8,8 @@ from matplotlib.ticker import MaxNLocator
 
 import style
 from raster import PixelMap, View, dual_mesh, is_constant_per_cell
-from read_run import DIFFERENCE, Mesh
+from difference import difference_field
+from read_run import Mesh
 
 FEM, PD = "finite elements", "peridynamics"
 
@@ -82,9 +83,11 @@ def draw_isotherms(axes, view, picture, scale, segments):
 
 def draw_picture(axes, view, picture, scale, segments=(), isotherms=None):
     """One picture in its axes."""
+    picture = scale.clean(picture)
+    isotherms = picture if isotherms is None else scale.clean(isotherms)
     axes.imshow(picture, origin="lower", extent=view.extent, cmap=scale.colormap, norm=scale.norm,
                 interpolation="nearest", aspect="equal", zorder=2)
-    draw_isotherms(axes, view, picture if isotherms is None else isotherms, scale, segments)
+    draw_isotherms(axes, view, isotherms, scale, segments)
     draw_cracks(axes, segments)
     axes.set_xlim(view.extent[:2])
     axes.set_ylim(view.extent[2:])
@@ -190,17 +193,36 @@ def label_axes(axes, units, view, i, layout):
 
 
 def difference_picture(maps, index, segments, pictures):
-    """PD minus FEM: the field the run wrote, else the difference of the pictures."""
+    """PD minus FEM: the field of the nodes, else (two meshes) the difference of the pictures."""
     if FEM not in pictures or PD not in pictures:
         return None
-    values = maps.run.field(index, PD, DIFFERENCE, required=False)
+    values = difference_field(maps.run, index)
     if values is None:
         return pictures[PD] - pictures[FEM]
     return maps.picture(index, PD, values, segments)
 
 
-def temperature_figure(maps, index, units):
-    """All models at one written time and the difference; returns (figure, facts)."""
+def value_range(run, index):
+    """Lowest and highest temperature of all models at one written time, or None."""
+    found = [v[np.isfinite(v)] for v in (run.field(index, m, "temperature") for m in run.models)
+             if v is not None]
+    found = [v for v in found if len(v)]
+    return (min(v.min() for v in found), max(v.max() for v in found)) if found else None
+
+
+def common_scale(run, indices, least=0.3):
+    """One scale for all times, or None where at some time the values would fill little of it."""
+    ranges = [r for r in (value_range(run, i) for i in indices) if r is not None]
+    if len(ranges) < 2:
+        return None
+    low, high = min(r[0] for r in ranges), max(r[1] for r in ranges)
+    if min(r[1] - r[0] for r in ranges) < least * (high - low) or not high > low:
+        return None
+    return style.value_scale([np.array([low, high])])
+
+
+def temperature_figure(maps, index, units, largest=None, scale=None):
+    """All models at one written time and the difference, if there is one, with its largest."""
     run = maps.run
     segments = segments_of(run.cracks(index))
     view = maps.view()
@@ -210,23 +232,23 @@ def temperature_figure(maps, index, units):
         values = run.field(index, model, "temperature")
         pictures[model] = maps.picture(index, model, values, segments)
         smooth[model] = maps.isotherm_picture(index, model, values, segments)
-    difference = difference_picture(maps, index, segments, pictures)
+    difference = None if largest is not None and largest.zero else \
+        difference_picture(maps, index, segments, pictures)
     layout = Layout(len(models) + (difference is not None), view.extent, len(models))
-    scale = style.value_scale(list(pictures.values()))
+    scale = scale or style.value_scale(list(pictures.values()))
     for i, model in enumerate(models):
         axes = layout.panel(i)
         draw_picture(axes, view, pictures[model], scale, segments, smooth[model])
         axes.set_title(style.name(model), loc="left", pad=5)
         label_axes(axes, units, view, i, layout)
     layout.bar(0, len(models) - 1, scale, units.value())
-    facts = {}
     if difference is not None:
-        facts = draw_difference(layout, len(models), view, difference, segments, units)
-    return layout.figure, facts
+        draw_difference(layout, len(models), view, difference, segments, units, largest)
+    return layout.figure
 
 
-def draw_difference(layout, i, view, difference, segments, units):
-    """The panel PD - FEM; returns its extreme value and place."""
+def draw_difference(layout, i, view, difference, segments, units, largest):
+    """The panel PD - FEM with a circle at its largest value."""
     axes = layout.panel(i)
     scale = style.difference_scale([difference])
     draw_picture(axes, view, difference, scale, segments)
@@ -234,72 +256,6 @@ def draw_difference(layout, i, view, difference, segments, units):
                    fontsize=10 if layout.panel_width > 2.6 else 8.5)
     label_axes(axes, units, view, i, layout)
     layout.bar(i, i, scale, units.with_unit("Difference", units.temperature))
-    if not np.isfinite(difference).any():
-        return {}
-    row, column = np.unravel_index(np.nanargmax(np.abs(difference)), difference.shape)
-    x, y = view.centers()
-    axes.plot(x[column], y[row], marker="o", markersize=7, markerfacecolor="none",
-              markeredgecolor=style.INK, markeredgewidth=1.0, zorder=8, clip_on=False)
-    return {"extreme": float(difference[row, column]), "at": (float(x[column]), float(y[row]))}
-
-
-def flux_parts(run, index, model):
-    """The heat flux of a model at the vertices, (N x dim), or None."""
-    for name in ("heat_flux", "heat_flux_one_sided"):
-        values = run.field(index, model, name, required=False)
-        if values is not None:
-            values = values.reshape(len(values), -1)
-            return values[:, :run.dimension]
-    return None
-
-
-def draw_arrows(axes, view, x_part, y_part, n=16):
-    """Arrows of the flux on a coarse lattice; lengths grow with the root of the magnitude."""
-    rows, columns = view.shape
-    stride = max(rows, columns) / n
-    row = (np.arange(stride / 2, rows, stride)).astype(int)
-    column = (np.arange(stride / 2, columns, stride)).astype(int)
-    x, y = view.centers()
-    u, v = x_part[np.ix_(row, column)], y_part[np.ix_(row, column)]
-    size = np.hypot(u, v)
-    top = np.nanquantile(size, 0.98) if np.isfinite(size).any() else 0
-    if not top > 0:
-        return
-    with np.errstate(invalid="ignore", divide="ignore"):
-        factor = np.where(size > 1e-3 * top, np.minimum(size / top, 1) ** 0.6 / size, np.nan)
-    spacing = stride * view.pixel.max()
-    keep = np.isfinite(factor)
-    grid_x, grid_y = np.meshgrid(x[column], y[row])
-    axes.quiver(grid_x[keep], grid_y[keep], (u * factor)[keep], (v * factor)[keep], pivot="mid",
-                angles="xy", scale_units="xy", scale=1 / (1.0 * spacing), width=0.0042,
-                headwidth=4.2, headlength=4.8, headaxislength=4.3, minlength=0.1,
-                color="#1f2933", edgecolor="white", linewidth=0.3, zorder=5)
-
-
-def flux_figure(maps, index, units, view=None, segments=None, key=None):
-    """Magnitude and direction of the heat flux of all models, or None without such a field."""
-    run = maps.run
-    view = view or maps.view()
-    segments = segments_of(run.cracks(index)) if segments is None else segments
-    parts = {}
-    for model in run.models:
-        if run.field_file(index, model) is None:
-            continue
-        values = flux_parts(run, index, model)
-        if values is not None:
-            parts[model] = [maps.picture(index, model, values[:, d], segments, key, view)
-                            for d in range(run.dimension)]
-    if not parts:
-        return None
-    magnitude = {m: np.sqrt(sum(p ** 2 for p in part)) for m, part in parts.items()}
-    scale = style.value_scale(list(magnitude.values()), style.FLUX, n=10, parts=6, clip=0.995)
-    layout = Layout(len(parts), view.extent, len(parts))
-    for i, model in enumerate(parts):
-        axes = layout.panel(i)
-        shown = style.Scale(scale.levels, style.FLUX, [], scale.extend)
-        draw_picture(axes, view, magnitude[model], shown, segments)
-        draw_arrows(axes, view, parts[model][view.axes[0]], parts[model][view.axes[1]])
-        axes.set_title(style.name(model), loc="left", pad=5)
-        label_axes(axes, units, view, i, layout)
-    layout.bar(0, len(parts) - 1, scale, "Magnitude of the heat flux")
-    return layout.figure
+    if largest is not None:
+        axes.plot(*largest.at, marker="o", markersize=7, markerfacecolor="none",
+                  markeredgecolor=style.INK, markeredgewidth=1.0, zorder=8, clip_on=False)

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Line plots: along the line, over 1D bodies, at the probes, totals and errors over time."""
+"""Line plots: along the line and over 1D bodies."""
 
 import matplotlib
 import numpy as np
 from matplotlib.lines import Line2D
 
 import style
+from crossings import crossed
 from read_run import EXACT
 
 FEM, PD = "finite elements", "peridynamics"
@@ -31,6 +32,18 @@ def line_coordinate(points, units):
     ends = " to ".join("(" + ", ".join(style.plain(v) for v in p) + ")"
                        for p in (points[0], points[-1]))
     return distance, units.with_unit(f"Distance from {ends}", units.length)
+
+
+def broken(points, cracks, *columns):
+    """Columns of numbers with a gap wherever a crack lies between two points."""
+    gaps = crossed(points, cracks)[0] + 1
+    return [np.insert(c.astype(float), gaps, np.nan) for c in columns]
+
+
+def draw_cracks(axes, points, x, cracks):
+    """Thin upright lines where a line of points crosses cracks."""
+    for i, share in zip(*crossed(points, cracks)):
+        axes.axvline(x[i] + share * (x[i + 1] - x[i]), color="black", linewidth=0.9, zorder=1.5)
 
 
 def draw_curve(axes, x, y, model, color=None, label=None):
@@ -63,7 +76,7 @@ def model_legend(axes, models, colored, **kwargs):
     return axes.legend(handles=handles, **kwargs)
 
 
-def value_panel(axes, table, times, units, steady):
+def value_panel(axes, table, times, units, steady, cracks):
     """The values of all models at all times."""
     models, colors = table.models(), time_colors(len(times))
     for i, time in enumerate(times):
@@ -72,8 +85,10 @@ def value_panel(axes, table, times, units, steady):
                 continue
             points, values = table.at(model, time)
             x, label = line_coordinate(points, units)
-            draw_curve(axes, x, values, model, None if colors is None else colors[i])
+            draw_curve(axes, *broken(points, cracks, x, values), model,
+                       None if colors is None else colors[i])
             axes.set_xlabel(label)
+    draw_cracks(axes, points, x, cracks)
     axes.set_ylabel(units.value())
     style.tidy(axes)
     first = model_legend(axes, models, colors is None, loc="upper left",
@@ -85,46 +100,59 @@ def value_panel(axes, table, times, units, steady):
                     loc="lower left", bbox_to_anchor=(1.01, 0.0))
 
 
-def difference_panel(axes, table, times, units):
-    """Against the exact solution where there is one, else peridynamics minus finite elements."""
-    models, colors = table.models(), time_colors(len(times))
-    if EXACT in models:
-        pairs = [(m, EXACT) for m in models if m != EXACT]
-    elif FEM in models and PD in models:
-        pairs = [(PD, FEM)]
-    else:
+def difference_pairs(table):
+    """The pairs (model, what it is compared with) that differ by more than round-off."""
+    models = table.models()
+    pairs = [(m, EXACT) for m in models if m != EXACT] if EXACT in models else \
+        [(PD, FEM)] if FEM in models and PD in models else []
+
+    def differ(model, other):
+        for time, (_, values) in table.data[model].items():
+            compared = table.at(other, time)
+            if compared is not None and len(compared[1]) == len(values) \
+                    and not style.is_nothing(values - compared[1], values):
+                return True
         return False
+
+    return pairs if any(differ(*pair) for pair in pairs) else []
+
+
+def difference_panel(axes, table, times, units, cracks):
+    """Against the exact solution where there is one, else peridynamics minus finite elements."""
+    pairs, colors = difference_pairs(table), time_colors(len(times))
     for i, time in enumerate(times):
         for model, other in pairs:
             a, b = table.at(model, time), table.at(other, time)
             if a is None or b is None or len(a[1]) != len(b[1]):
                 continue
             x, label = line_coordinate(a[0], units)
-            draw_curve(axes, x, a[1] - b[1], model, None if colors is None else colors[i])
+            draw_curve(axes, *broken(a[0], cracks, x, a[1] - b[1]), model,
+                       None if colors is None else colors[i])
             axes.set_xlabel(label)
     axes.axhline(0, color="#9aa5b1", linewidth=0.8, zorder=1)
     title = "Model − exact" if pairs[0][1] == EXACT else "PD − FEM"
     axes.set_ylabel(units.with_unit(title, units.temperature))
     style.tidy(axes)
-    return True
 
 
-def line_figure(table, units, steady, at_most=6):
-    """The temperature along the line, and differences below; None without rows."""
+def line_figure(table, units, steady, cracks=(), at_most=6):
+    """The temperature along the line, and differences below; None without rows.
+
+    Curves have a gap at each crack (those of the last time) that the line crosses.
+    """
     times = table.times()
     if not times:
         return None
     if len(times) > at_most:
         times = [times[int(round(i))] for i in np.linspace(0, len(times) - 1, at_most)]
-    models = table.models()
-    two = EXACT in models or (FEM in models and PD in models)
+    two = bool(difference_pairs(table))
     height = 5.6 if two else 3.7
     figure = style.figure(10, height)
     top = figure.add_axes([0.85 / 10, (2.35 if two else 0.6) / height, 7.35 / 10, 3.0 / height])
-    value_panel(top, table, times, units, steady)
+    value_panel(top, table, times, units, steady, cracks)
     if two:
         bottom = figure.add_axes([0.85 / 10, 0.55 / height, 7.35 / 10, 1.6 / height], sharex=top)
-        difference_panel(bottom, table, times, units)
+        difference_panel(bottom, table, times, units, cracks)
         top.set_xlabel("")
         top.tick_params(labelbottom=False)
     return figure
@@ -160,85 +188,3 @@ def probe_name(point):
     if len(point) == 1:
         return f"x = {style.plain(point[0])}"
     return "(" + ", ".join(style.plain(v) for v in point) + ")"
-
-
-def probe_figure(table, units, at_most=9):
-    """The probes over time; None for fewer than three times."""
-    times, points = table.times(), probe_points(table)
-    if len(times) < 3 or not len(points):
-        return None
-    n = min(len(points), at_most)
-    columns = min(n, 3)
-    rows = -(-n // columns)
-    height = 2.5 * rows + 0.3
-    figure = style.figure(10, height)
-    for k in range(n):
-        box = [(0.8 + (k % columns) * 9.1 / columns) / 10,
-               (height - 0.3 - 2.5 * (k // columns) - 1.75) / height,
-               (9.1 / columns - 0.75) / 10, 1.75 / height]
-        axes = figure.add_axes(box)
-        for model in table.models():
-            series = sorted((t, v[1][k]) for t, v in table.data[model].items() if len(v[1]) > k)
-            draw_curve(axes, *np.array(series).T, model)
-        axes.set_title(f"Probe {probe_name(points[k])}", loc="left", fontsize=8.5)
-        style.tidy(axes)
-        axes.set_xlabel(units.with_unit("Time", units.time), labelpad=1)
-        if k % columns == 0:
-            axes.set_ylabel(units.value())
-    place_legend_below(figure, table.models(), height)
-    return figure
-
-
-def place_legend_below(figure, models, height):
-    """One legend of the models at the foot of a figure."""
-    axes = figure.add_axes([0.08, 0.0, 0.9, 0.3 / height])
-    axes.axis("off")
-    model_legend(axes, models, True, loc="center left", ncol=4, borderaxespad=0)
-
-
-def totals_figure(totals, units, at_most=6):
-    """The quantities of totals.csv over time; None where none has three times."""
-    shown = [q for q, of_model in totals.items()
-             if max(len(series) for series in of_model.values()) >= 3][:at_most]
-    if not shown:
-        return None
-    columns = min(len(shown), 3)
-    rows = -(-len(shown) // columns)
-    height = 2.5 * rows + 0.3
-    figure = style.figure(10, height)
-    models = []
-    for k, quantity in enumerate(shown):
-        axes = figure.add_axes([(0.8 + (k % columns) * 9.1 / columns) / 10,
-                                (height - 0.3 - 2.5 * (k // columns) - 1.75) / height,
-                                (9.1 / columns - 0.75) / 10, 1.75 / height])
-        for model, series in totals[quantity].items():
-            draw_curve(axes, *np.array(sorted(series)).T, model)
-            models.append(model)
-        axes.set_title(quantity, loc="left", fontsize=8.5)
-        style.tidy(axes)
-        axes.set_xlabel(units.with_unit("Time", units.time), labelpad=1)
-    place_legend_below(figure, list(dict.fromkeys(models)), height)
-    return figure
-
-
-def flux_figure_1d(run, index, units):
-    """The heat flux over a 1D body, or None without such a field."""
-    from contours import flux_parts
-    figure = style.figure(10, 3.2)
-    axes = figure.add_axes([0.085, 0.19, 0.735, 0.74])
-    drawn = []
-    for model in run.models:
-        values = flux_parts(run, index, model) if run.field_file(index, model) else None
-        if values is None:
-            continue
-        mesh = run.mesh(index, model)
-        order = mesh.cells[np.argsort(mesh.nodes[mesh.cells].mean(axis=1)[:, 0])].ravel()
-        draw_curve(axes, mesh.nodes[order, 0], values[order, 0], model)
-        drawn.append(model)
-    if not drawn:
-        return None
-    axes.set_xlabel(units.axis("x"))
-    axes.set_ylabel("Heat flux")
-    style.tidy(axes)
-    model_legend(axes, drawn, True, loc="upper left", bbox_to_anchor=(1.01, 1.0))
-    return figure

@@ -2,9 +2,13 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Sentences that say what a run found, made from summary.json."""
 
+import re
+
 from style import plain
 
 FEM, PD = "finite elements", "peridynamics"
+SHORT_TIME = 0.1  # s; below it a ratio of wall times is chance
+ROUND_OFF = 1e-11
 ORDINAL = {1: "one", 2: "two", 3: "three"}
 
 
@@ -32,6 +36,20 @@ def wall_time(model):
     return sum(v for v in phases.values() if isinstance(v, (int, float)))
 
 
+def kernel_name(setting, noun=" kernel"):
+    """'conical kernel, n = 2' for the setting 'conical, exponent 2'."""
+    found = re.fullmatch(r"(.*?), exponent (\S+)", str(setting))
+    return f"{found[1]}{noun}, n = {found[2]}" if found else f"{setting}{noun}"
+
+
+def ratio_text(setting):
+    """A horizon ratio with few digits."""
+    try:
+        return plain(float(setting), 3)
+    except ValueError:
+        return str(setting)
+
+
 def counts(name, model):
     """'peridynamics (14 641 unknowns, 432 000 bonds, m = 3, conical kernel)'."""
     parts = []
@@ -41,9 +59,9 @@ def counts(name, model):
         parts.append(f"{plain(model['bonds'])} bonds")
     settings = model.get("settings") or {}
     if "m" in settings:
-        parts.append(f"horizon ratio m = {settings['m']}")
+        parts.append(f"horizon ratio m = {ratio_text(settings['m'])}")
     if "kernel" in settings:
-        parts.append(f"{settings['kernel']} kernel")
+        parts.append(kernel_name(settings["kernel"]))
     return name + (f" ({', '.join(parts)})" if parts else "")
 
 
@@ -65,8 +83,8 @@ def what_ran(run, units):
     return f"{how} in {dimension}{body} was computed by {joined}."
 
 
-def how_far_apart(run, units, facts):
-    """Peridynamics against finite elements."""
+def how_far_apart(run, units, difference):
+    """Peridynamics against finite elements; difference: the largest one, or None."""
     relative = last(run.get("comparison", "relative l2"))
     largest = last(run.get("comparison", "maximum"))
     if relative is None and largest is None:
@@ -75,9 +93,7 @@ def how_far_apart(run, units, facts):
     if relative is not None:
         parts.append(f"by {percent(relative)} in the relative L2 norm")
     if largest is not None:
-        place = ""
-        if facts.get("at"):
-            place = ", near (" + ", ".join(plain(v, 2) for v in facts["at"]) + ")"
+        place = f", reached {difference.place()}" if difference and not difference.zero else ""
         parts.append(f"by at most {plain(abs(largest), 3)} {units.temperature}".rstrip() + place)
     when = "" if run.get("steady", default=False) else "At the end "
     text = f"{when}peridynamics differs from finite elements {' and '.join(parts)}."
@@ -96,12 +112,18 @@ def how_wrong(run):
     if len(errors) == 2 and min(errors.values()) > 0:
         (a, b), (ea, eb) = errors.keys(), errors.values()
         better, ratio = (a, eb / ea) if ea < eb else (b, ea / eb)
-        if ratio < 1.05:
+        if min(ea, eb) < ROUND_OFF:
+            text += f"; {better} {is_or_are(better)} exact but for round-off"
+        elif ratio < 1.05:
             text += "; the two are equally accurate"
         else:
-            text += f"; {better} {'are' if better.endswith('s') and better != PD else 'is'} " \
-                    f"{plain(ratio, 2)} times more accurate"
+            text += f"; {better} {is_or_are(better)} {plain(ratio, 2)} times more accurate"
     return text + "."
+
+
+def is_or_are(model):
+    """Finite elements are, the others are one thing."""
+    return "are" if model == FEM else "is"
 
 
 def what_it_cost(run):
@@ -110,11 +132,15 @@ def what_it_cost(run):
     times = {m: t for m, t in times.items() if t}
     if not times:
         return None
-    listed = " and ".join(f"{plain(t, 3)} s ({m})" for m, t in times.items())
     processes = run.get("processes", default=1)
-    text = f"The wall time was {listed} on {plain(processes)} process" + \
-        ("es" if processes != 1 else "")
-    if FEM in times and PD in times:
+    where = f"on {plain(processes)} process" + ("es" if processes != 1 else "")
+    if max(times.values()) < SHORT_TIME:
+        who = {1: "It", 2: "Both models"}.get(len(times), "Each model")
+        return f"{who} took less than {plain(SHORT_TIME)} s of wall time {where}."
+    listed = " and ".join(f"{plain(t, 3)} s ({m})" if t >= SHORT_TIME else
+                          f"less than {plain(SHORT_TIME)} s ({m})" for m, t in times.items())
+    text = f"The wall time was {listed} {where}"
+    if FEM in times and PD in times and min(times[FEM], times[PD]) >= SHORT_TIME:
         ratio = times[PD] / times[FEM]
         text += f": peridynamics cost {plain(ratio, 2)} times as much" if ratio >= 1 else \
             f": finite elements cost {plain(1 / ratio, 2)} times as much"
@@ -150,8 +176,9 @@ def what_broke(run, units):
     return f"Warning: temperatures are not finite for {listed}; they are left white."
 
 
-def sentences(run, units, facts):
-    """Three to five sentences."""
-    found = [what_ran(run, units), what_broke(run, units), how_far_apart(run, units, facts), how_wrong(run),
-             what_it_cost(run), is_heat_kept(run)]
+def sentences(run, units, difference):
+    """Three to five sentences; difference: the largest one at the end, or None."""
+    found = [what_ran(run, units), what_broke(run, units),
+             how_far_apart(run, units, difference), how_wrong(run), what_it_cost(run),
+             is_heat_kept(run)]
     return [s for s in found if s]

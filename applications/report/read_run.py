@@ -7,7 +7,6 @@ Nothing here draws. Every fault of the files is a ReportError whose message name
 
 import csv
 import json
-import re
 from pathlib import Path
 
 import h5py
@@ -76,6 +75,24 @@ class Table:
         return self.data.get(model, {}).get(time)
 
 
+def read_scene(path):
+    """The entries of a scene file without a file's own errors: {(section, name): text}."""
+    try:
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return {}
+    entries, sections = {}, []
+    for line in map(str.strip, lines):
+        if line.startswith("subsection "):
+            sections.append(line[len("subsection "):].strip())
+        elif line == "end":
+            del sections[-1:]
+        elif line.startswith("set ") and "=" in line:
+            name, value = line[len("set "):].split("=", 1)
+            entries["/".join(sections), name.strip()] = value.strip()
+    return entries
+
+
 class Run:
     """One output directory."""
 
@@ -93,6 +110,8 @@ class Run:
         self.totals = self._read_totals("totals.csv")
         self.not_finite = {}  # model: first shown time with values that are no numbers
         self._meshes = {}
+        self._domain = None
+        self._scene = None
 
     # ---- summary.json ------------------------------------------------------------------
 
@@ -144,14 +163,20 @@ class Run:
 
     @property
     def domain(self):
-        """Lower and upper corner of the body; from the mesh where the summary has none."""
-        lower, upper = self.get("domain", "lower"), self.get("domain", "upper")
-        if lower and upper:
-            return np.array(lower, float), np.array(upper, float)
+        """Lower and upper corner of the body: of its mesh, or without fields of the summary."""
+        if self._domain is None:
+            self._domain = self._find_domain()
+        return self._domain
+
+    def _find_domain(self):
         for index, entry in enumerate(self.summary["fields"]):
             for model in entry["files"]:
                 nodes = self.mesh(index, model).nodes
-                return nodes.min(axis=0), nodes.max(axis=0)
+                if len(nodes):
+                    return nodes.min(axis=0), nodes.max(axis=0)
+        lower, upper = self.get("domain", "lower"), self.get("domain", "upper")
+        if lower and upper:
+            return np.array(lower, float), np.array(upper, float)
         raise ReportError(f"'{self.directory / 'summary.json'}' has neither domain nor fields")
 
     def cracks(self, index=None):
@@ -161,13 +186,31 @@ class Run:
             cracks = self.summary["fields"][index].get("cracks", cracks)
         return [np.array(c, float) for c in cracks if len(c) >= 2]
 
+    def scene_entry(self, section, name):
+        """An entry of the scene as used (scene.prm) as text, empty where it is absent."""
+        if self._scene is None:
+            self._scene = read_scene(self.directory / "scene.prm")
+        return self._scene.get((section, name), "")
+
     def cracks_on_faces(self):
-        """Whether cracks are cut into the mesh (entry 'Mesh = faces' of the scene as used)."""
+        """Whether cracks are cut into the mesh."""
+        return self.scene_entry("Cracks", "Mesh") == "faces"
+
+    def at_cell_centers(self):
+        """Whether nodes lie at cell centres."""
+        return any((entry.get("settings") or {}).get("nodes") == "cell centers"
+                   for entry in self.summary["models"].values())
+
+    def initial_value(self, point):
+        """The initial value at an inner point of a box where it is a plain number, else None."""
         try:
-            scene = (self.directory / "scene.prm").read_text(encoding="utf-8", errors="replace")
-        except OSError:
-            return False
-        return re.search(r"^\s*set\s+Mesh\s*=\s*faces\b", scene, re.MULTILINE) is not None
+            value = float(self.scene_entry("Initial and source", "Initial value"))
+        except ValueError:
+            return None
+        lower, upper = self.domain
+        slack = 1e-9 * (upper - lower)
+        inside = np.all((point > lower + slack) & (point < upper - slack))
+        return value if inside and self.get("domain", "shape") == "box" else None
 
     # ---- fields ------------------------------------------------------------------------
 

@@ -20,13 +20,16 @@ try:
 
     import contours
     import curves
+    import difference
     import findings
+    import flux
+    import series
     import sketch
     import solids
     import tables
     from page import Page, paragraphs
     from read_run import EXACT, ReportError, Run
-    from style import Units, plain
+    from style import Units, is_formula, minus, plain, prose
 except ImportError as fault:
     sys.exit(f"report: a Python package is missing ({fault}); "
              "the report needs numpy, matplotlib and h5py")
@@ -44,7 +47,7 @@ class Report:
         self.maps = contours.Maps(run)
         self.page = Page(figure_directory)
         self.shown = run.shown_indices(SHOWN_TIMES[run.dimension])
-        self.facts = {}
+        self.largest = difference.largest(run, self.shown[-1]) if self.shown else None
 
     def html(self):
         """The document."""
@@ -80,10 +83,11 @@ class Report:
         """Text and sketch."""
         self.page.section("The problem", "problem")
         self.page.add('<div class="problem"><div>')
-        self.page.add(paragraphs(self.run.get("text", default="")))
+        self.page.add(paragraphs(prose(self.run.get("text", default=""))))
         reference = self.run.get("reference", default="")
         if reference:
-            self.page.add(f"<p><strong>Reference:</strong> {escape(str(reference))}</p>")
+            text = minus(reference) if is_formula(str(reference)) else str(reference)
+            self.page.add(f"<p><strong>Reference:</strong> {escape(text)}</p>")
         self.page.add(tables.sides_table(self.run))
         self.page.add("</div>")
         legend = []
@@ -101,7 +105,7 @@ class Report:
     def findings(self):
         """The sentences, as a box that follows the problem."""
         items = "".join(f"<li>{escape(s)}</li>"
-                        for s in findings.sentences(self.run, self.units, self.facts))
+                        for s in findings.sentences(self.run, self.units, self.largest))
         notes = len(self.run.get("notes", default=[]))
         if notes:
             items += (f'<li>The program left {plain(notes)} note{"s" if notes != 1 else ""}, '
@@ -120,42 +124,60 @@ class Report:
                                             self.steady)
                 self.page.figure(figure, "temperature", "Nodal values over the body" + (
                     "." if len(run.models) == 1 else ", and their difference below."), vector=True)
+                self.page.add(f"<p>{self.picture_caption(self.largest)}</p>")
             else:
                 self.draw_line("Temperature over the body")
             return
         module = contours if run.dimension == 2 else solids
-        self.page.add(f"<p>{self.picture_text()}</p>")
+        scale = contours.common_scale(run, self.shown)
+        self.page.add(f"<p>{self.picture_text(scale)}</p>")
         times = run.written_times()
         for index in self.shown:
-            figure, self.facts = module.temperature_figure(self.maps, index, self.units)
+            largest = difference.largest(run, index)
+            figure = module.temperature_figure(self.maps, index, self.units, largest, scale)
             heading = self.units.at_time(times[index], self.steady)
-            self.page.figure(figure, f"temperature_{index:04d}", self.picture_caption(), False,
+            self.page.figure(figure, f"temperature_{index:04d}", self.picture_caption(largest),
+                             False,
                              heading[0].upper() + heading[1:] if self.steady else heading)
         hidden = [plain(t) for i, t in enumerate(times) if i not in self.shown]
         if hidden:
             self.page.add(f"<p>Also written, not shown: t = {', '.join(hidden)} "
                           f"{self.units.time}.</p>")
 
-    def picture_text(self):
+    def scale_text(self, scale):
+        """What the colours have in common."""
+        several = len(self.shown) > 1
+        if len(self.run.models) < 2:
+            return "Lines are isotherms. " + (
+                "" if not several else "All times share one colour scale. " if scale else
+                "Each time has its own colour scale. ")
+        when = "" if not several else " at all times" if scale else " at each time"
+        return f"All models share one colour scale and one set of isotherms{when}. " + (
+            "The difference has its own scale at each time. " if several else "")
+
+    def picture_text(self, scale):
         """How to read the pictures."""
-        text = "All models share one colour scale and one set of isotherms at each time. " \
-            if len(self.run.models) > 1 else "Lines are isotherms. "
+        text = self.scale_text(scale)
         if self.run.dimension == 3:
             text += "Above, the outer faces that are seen from the upper front right; below, " \
-                "slices through the body. Dashed outlines are cracks inside, thick lines " \
-                "where a slice meets them."
+                "slices through the body."
+            if self.run.cracks():
+                text += " Dashed outlines are cracks behind the faces or beside a slice, " \
+                    "thick lines where a slice cuts them."
         elif self.run.cracks():
             text += "Cracks are thick black lines; values are shown up to the crack from each " \
                 "side, never across it."
         return text
 
-    def picture_caption(self):
-        """Where the extreme difference lies."""
-        if "extreme" not in self.facts:
+    def picture_caption(self, largest):
+        """Where the largest difference lies."""
+        if largest is None:
             return ""
-        x, y = (plain(v, 2) for v in self.facts["at"])
-        return (f"Largest difference {plain(self.facts['extreme'], 3)} {self.units.temperature} at "
-                f"({x}, {y}), marked by a circle.")
+        if largest.zero:
+            return "Peridynamics and finite elements agree to round-off."
+        value = f"{plain(largest.value, 3)} {self.units.temperature}".strip()
+        circle = ", marked by a circle" if self.run.dimension == 2 else ""
+        return f"Largest difference: {value} {largest.place()}{circle}."
 
     def line(self):
         """Plots along the line."""
@@ -174,13 +196,25 @@ class Report:
 
     def draw_line(self, text):
         """The plot along the line."""
-        figure = curves.line_figure(self.run.line, self.units, self.steady)
+        cracks = self.run.cracks(-1 if self.run.summary["fields"] else None)
+        figure = curves.line_figure(self.run.line, self.units, self.steady, cracks)
         exact = EXACT in self.run.line.models()
-        lower = "each model minus the exact solution" if exact else \
-            "peridynamics minus finite elements" if len(self.run.models) > 1 else ""
-        colored = f"{text}: colour tells the time, the kind of line the model" \
+        compared = bool(curves.difference_pairs(self.run.line))
+        lower = "" if not compared else "each model minus the exact solution" if exact else \
+            "peridynamics minus finite elements"
+        caption = f"{text}: colour tells the time, the kind of line the model" \
             if len(self.run.line.times()) > 1 else text
-        self.page.figure(figure, "line", colored + (f"; below: {lower}." if lower else "."), True)
+        caption += f"; below: {lower}." if lower else "."
+        points = next(iter(next(iter(self.run.line.data.values())).values()))[0]
+        if len(curves.crossed(points, cracks)[0]):
+            caption += " Upright lines are cracks."
+            if not self.run.cracks_on_faces():
+                caption += " In a cell that a crack cuts, values are interpolated from the " \
+                    "nodes on both sides of it."
+        if exact and self.run.at_cell_centers():
+            caption += " Nodes lie at cell centres and a point of the line has the value of the " \
+                "nearest one, hence the fine steps."
+        self.page.figure(figure, "line", caption, True)
 
     def probes(self):
         """Probes over time and their values."""
@@ -188,40 +222,45 @@ class Report:
         if not html:
             return
         self.page.section("Probes", "probes")
-        figure = curves.probe_figure(self.run.probes, self.units)
+        figure, zero = series.probe_figure(self.run, self.units)
         if figure is not None:
-            self.page.figure(figure, "probes", "Temperature at the probes over time.", True)
+            self.page.figure(figure, "probes", "Temperature at the probes over time. "
+                             + self.series_text(zero), True)
         self.page.add(f'<div class="wide">{html}</div>')
         if left_out:
             self.page.add(f"<p>{plain(left_out)} more rows are in "
                           f'<a href="probes.csv">probes.csv</a>.</p>')
 
+    @staticmethod
+    def series_text(zero):
+        """How to read plots over time; zero: names of what is not drawn."""
+        text = "Computed at the marked times; lines only join the marks."
+        return text + (f" Zero at all times, not drawn: {escape(', '.join(zero))}." if zero
+                       else "")
+
     def flux(self):
         """The heat flux at the last time."""
-        run, index = self.run, len(self.run.summary["fields"]) - 1
+        index = len(self.run.summary["fields"]) - 1
         if index < 0:
             return
-        where = ""
-        if run.dimension == 1:
-            figure = curves.flux_figure_1d(run, index, self.units)
-        elif run.dimension == 2:
-            figure = contours.flux_figure(self.maps, index, self.units)
-        else:
-            figure, where = solids.flux_figure(self.maps, index, self.units)
-            where = f" in the slice {where}"
-        if figure is None:
+        figure, text = flux.flux_figure(self.maps, index, self.units)
+        if figure is None and not text:
             return
         self.page.section("Heat flux", "flux")
-        when = self.units.at_time(run.written_times()[index], self.steady)
-        arrows = "" if run.dimension == 1 else \
-            " Arrows point where heat flows; their length grows with its magnitude."
-        self.page.figure(figure, "heat_flux", f"Heat flux{escape(where)}, {escape(when)}.{arrows}",
-                         vector=run.dimension == 1)
+        if figure is None:
+            self.page.add(f"<p>{escape(text)}</p>")
+            return
+        when = self.units.at_time(self.run.written_times()[index], self.steady)
+        self.page.figure(figure, "heat_flux", f"Heat flux, {escape(when)}. {escape(text)}",
+                         vector=self.run.dimension == 1)
 
     def cost(self):
         """Cost and error."""
         self.page.section("Cost and error", "cost")
         self.page.add(f'<div class="wide">{tables.cost_table(self.run, self.units)}</div>')
+        shared = tables.shared_cost(self.run)
+        if shared:
+            self.page.add(f"<p>{escape(shared)}</p>")
         html = tables.error_table(self.run, self.units)
         if html:
             self.page.add(f'<h3>Over time</h3><div class="wide">{html}</div>' if not self.steady
@@ -242,9 +281,9 @@ class Report:
         if not html:
             return
         self.page.section("Totals", "totals")
-        figure = curves.totals_figure(self.run.totals, self.units)
+        figure, zero = series.totals_figure(self.run.totals, self.units)
         if figure is not None:
-            self.page.figure(figure, "totals", "", True)
+            self.page.figure(figure, "totals", self.series_text(zero), True)
         self.page.add(f'<div class="wide">{html}</div>')
 
     def settings(self):
@@ -256,7 +295,7 @@ class Report:
         if notes:
             kinds = {True: '<li class="warning">', False: "<li>"}
             items = "".join(f'{kinds["warning" in n.lower()]}{escape(n)}</li>'
-                            for n in map(str, notes))
+                            for n in map(prose, notes))
             self.page.add(f'<ul class="notes">{items}</ul>')
         if html:
             self.page.add(f'<div class="wide">{html}</div>')

@@ -11,6 +11,12 @@ import style
 KIND_COLOR = (("dirichlet", "#c0392b"), ("flux", "#d98200"), ("convection", "#00897b"),
               ("symmetry", "#5e60ce"), ("insulated", "#7b8794"))
 BODY = "#eef2f6"
+BOX_SIDES = {"bottom": ((0, 0), (1, 0)), "top": ((0, 1), (1, 1)), "left": ((0, 0), (0, 1)),
+             "right": ((1, 0), (1, 1))}
+# Where a side's text stands: x, y, alignments, rotation.
+LABELS = {"bottom": (0.5, -0.055, "center", "top", 0), "top": (0.5, 1.04, "center", "bottom", 0),
+          "left": (-0.045, 0.5, "right", "center", 90),
+          "right": (1.045, 0.5, "left", "center", 90)}
 
 
 def side_color(text):
@@ -43,11 +49,19 @@ def draw_material(axes, maps):
         shades[inside] = (0.933, 0.949, 0.965, 1)
         axes.imshow(shades, origin="lower", extent=view.extent, aspect="equal", zorder=1)
         if not inside.all():
-            x, y = view.centers()
-            axes.contour(x, y, inside.astype(float), levels=[0.5], colors=["#52606d"],
-                         linewidths=1.0, zorder=2)
+            draw_outline(axes, view, inside)
         return bool(inside.all())
     return True
+
+
+def draw_outline(axes, view, inside):
+    """The edge of the body, where it meets the edge of the view too."""
+    x, y = view.centers()
+    x, y = (np.concatenate([[v[0] - 0.5 * step], v, [v[-1] + 0.5 * step]])
+            for v, step in zip((x, y), view.pixel))
+    lines = axes.contour(x, y, np.pad(inside.astype(float), 1), levels=[0.5], linewidths=0)
+    for line in lines.allsegs[0]:
+        axes.plot(*np.asarray(line).T, color="#52606d", linewidth=1.0, clip_on=False, zorder=2)
 
 
 def draw_points(axes, run):
@@ -64,6 +78,26 @@ def draw_points(axes, run):
         break
 
 
+def draw_sides(axes, sides, lower, extent, width, height):
+    """The sides of a rectangle of so many inches in the colours of what holds there."""
+    for side, ends in BOX_SIDES.items():
+        if side not in sides:
+            continue
+        color = side_color(sides[side])
+        line = lower + np.array(ends) * extent
+        insulated = color == "#7b8794"
+        axes.plot(line[:, 0], line[:, 1], color=color, linewidth=1.4 if insulated else 3.2,
+                  solid_capstyle="butt", clip_on=False, zorder=3)
+        x, y, horizontal, vertical, turn = LABELS[side]
+        condition = style.minus(sides[side])
+        text = shorten(f"{side}: {condition}", int(width / 0.068) + 14)
+        if turn and len(f"{side}: {condition}") * 0.068 > height:
+            turn, text = 0, f"{side}:\n" + shorten(condition, 11)
+        axes.text(x, y, text,
+                  transform=axes.transAxes, rotation=turn, color=color, fontsize=8,
+                  ha=horizontal, va=vertical)
+
+
 def sketch_2d(maps, units):
     """The rectangle with its four sides, or the outline of any other mesh."""
     run = maps.run
@@ -77,27 +111,8 @@ def sketch_2d(maps, units):
     axes = figure.add_axes([0.95 / size[0], 0.72 / size[1], width / size[0], height / size[1]])
     full = draw_material(axes, maps)
     sides = run.get("sides", default={})
-    box = {"bottom": ((0, 0), (1, 0)), "top": ((0, 1), (1, 1)), "left": ((0, 0), (0, 1)),
-           "right": ((1, 0), (1, 1))}
-    place = {"bottom": (0.5, -0.055, "center", "top", 0), "top": (0.5, 1.04, "center", "bottom", 0),
-             "left": (-0.045, 0.5, "right", "center", 90),
-             "right": (1.045, 0.5, "left", "center", 90)}
-    for side, ends in box.items():
-        if side not in sides:
-            continue
-        color = side_color(sides[side])
-        line = lower + np.array(ends) * extent
-        insulated = color == "#7b8794"
-        axes.plot(line[:, 0], line[:, 1], color=color, linewidth=1.4 if insulated else 3.2,
-                  solid_capstyle="butt", clip_on=False, zorder=3)
-        x, y, horizontal, vertical, turn = place[side]
-        text = shorten(f"{side}: {sides[side]}", int(width / 0.068) + 14)
-        if turn and len(f"{side}: {sides[side]}") * 0.068 > height:
-            turn, text = 0, f"{side}:\n" + shorten(sides[side], 11)
-        axes.text(x, y, text,
-                  transform=axes.transAxes, rotation=turn, color=color, fontsize=8,
-                  ha=horizontal, va=vertical)
-    if not any(side in sides for side in box) and full:
+    draw_sides(axes, sides, lower, extent, width, height)
+    if not any(side in sides for side in BOX_SIDES) and full:
         axes.plot(*(lower + np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)]) * extent).T,
                   color="#52606d", linewidth=1.2, clip_on=False)
     contours.draw_cracks(axes, contours.segments_of(run.cracks()), 1.8)
@@ -128,7 +143,7 @@ def sketch_1d(run, units):
     axes.axvspan(lower[0], upper[0], color=BODY)
     sides = run.get("sides", default={})
     for side, x, align in (("left", lower[0], "left"), ("right", upper[0], "right")):
-        text = sides.get(side, "")
+        text = style.minus(sides.get(side, ""))
         color = side_color(text)
         axes.plot([x, x], [0, 1], color=color, linewidth=4, clip_on=False, solid_capstyle="butt")
         fraction = 0.0 if align == "left" else 1.0
@@ -172,7 +187,7 @@ def sketch_3d(run, units):
     solids.label_body(axes, lower, upper, units)
     solids.frame_body(axes, lower, upper)
     names = ("left", "right", "bottom", "top", "back", "front")
-    listed = [(n, sides[n]) for n in names if n in sides]
+    listed = [(n, style.minus(sides[n])) for n in names if n in sides]
     for i, (side, text) in enumerate(listed):
         figure.text(0.63, 0.80 - 0.1 * i, f"{side}: {shorten(text, 20)}", fontsize=8,
                     color=side_color(text))

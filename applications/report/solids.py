@@ -6,6 +6,8 @@ import numpy as np
 
 import contours
 import style
+from crossings import crack_normal
+from difference import difference_field
 from raster import PAPER_AXES, View
 
 # Directions of x, y, z on paper, y upwards: the sides right, top and front are seen.
@@ -25,18 +27,20 @@ def body_corners(lower, upper):
                     for i in (0, 1) for j in (0, 1) for k in (0, 1)])
 
 
-def crack_normal(polygon):
-    """Unit normal of a plane polygon (right-hand rule), by Newell's sum."""
-    following = np.roll(polygon, -1, axis=0)
-    normal = np.cross(polygon, following).sum(axis=0)
-    return normal / max(np.linalg.norm(normal), 1e-300)
+def nodes_off(mesh, axis, position, direction):
+    """Coordinate of the nearest nodes beyond a position, at least a quarter of a cell from it."""
+    lower, upper = mesh.boxes()
+    cell = float(np.median((upper - lower)[:, axis]))
+    distance = np.sign(direction) * (mesh.nodes[:, axis] - position)
+    beyond = distance[distance > 0.25 * cell]
+    return position + np.sign(direction) * (beyond.min() if len(beyond) else 0.5 * cell)
 
 
 def slice_positions(run, index):
     """Where the three slices lie: through the first crack's centre, else the body's centre.
 
-    The slice most nearly parallel to the crack is moved just off it, to its left side: on the
-    crack the temperature has two values.
+    A slice in the crack's own plane is moved to the first nodes off the crack, on its left
+    side: on the crack the temperature has two values.
     """
     lower, upper = run.domain
     position = 0.5 * (lower + upper)
@@ -50,18 +54,22 @@ def slice_positions(run, index):
         if spread < 1e-9 * (upper - lower).max():
             model = next(m for m in run.models if run.field_file(index, m) is not None)
             mesh = run.mesh(index, model)
-            cell = np.ptp(mesh.nodes[mesh.cells[0]], axis=0)[parallel]
-            position[parallel] += np.copysign(1.01 * cell, normal[parallel])
-            remark[parallel] = "one cell off the crack"
+            position[parallel] = nodes_off(mesh, parallel, position[parallel], normal[parallel])
+            remark[parallel] = "the first nodes off the crack"
     margin = 1e-6 * (upper - lower)
     return np.clip(position, lower + margin, upper - margin), remark
 
 
 def slice_segments(cracks, axis, position):
-    """Lines in which crack polygons meet the plane x_axis = position, in its two coordinates."""
+    """Lines in which crack polygons cut the plane x_axis = position, in its two coordinates.
+
+    A polygon that only touches the plane with an edge does not cut it: there is no jump there.
+    """
     segments = []
     for polygon in cracks:
-        if len(polygon) < 3:
+        offset = polygon[:, axis] - position
+        slack = 1e-9 * np.ptp(polygon, axis=0).max()
+        if len(polygon) < 3 or offset.min() > -slack or offset.max() < slack:
             continue
         hits = []
         for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
@@ -76,6 +84,16 @@ def slice_segments(cracks, axis, position):
     return segments
 
 
+def slice_outlines(cracks, axis, position, reach):
+    """Edges of crack polygons that lie within reach of the plane, in its two coordinates."""
+    edges = []
+    for polygon in cracks:
+        for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
+            if max(abs(a[axis] - position), abs(b[axis] - position)) <= reach:
+                edges.append(np.array([a, b])[:, PAPER_AXES[axis]])
+    return edges
+
+
 class Slices:
     """The views of one run at one time: three slices and three outer faces."""
 
@@ -88,12 +106,25 @@ class Slices:
         for axis in (2, 1, 0):
             view = View(self.lower, self.upper, 400, axis, self.position[axis])
             self.slices.append((view, slice_segments(self.cracks, axis, self.position[axis])))
-        inset = 1e-6 * (self.upper - self.lower)
+        slack = 1e-9 * (self.upper - self.lower).max()
+        self.outlines = {axis: slice_outlines(self.cracks, axis, self.position[axis],
+                                              self.off_crack(axis) + slack) for axis in FACES}
+        inset = 1e-11 * (self.upper - self.lower)
         self.faces = []
         for axis in FACES:
             at = self.upper[axis] - inset[axis]
             view = View(self.lower, self.upper, 160, axis, at)
             self.faces.append((view, slice_segments(self.cracks, axis, at)))
+
+    def off_crack(self, axis):
+        """Distance of a slice from the first crack where it was moved off it, else 0."""
+        if axis not in self.remark:
+            return 0.0
+        return abs(self.position[axis] - self.cracks_with_area()[0][:, axis].mean())
+
+    def cracks_with_area(self):
+        """The polygons among the cracks."""
+        return [c for c in self.cracks if len(c) >= 3]
 
     def pictures(self, model, values):
         """Pictures of the slices and of the faces."""
@@ -104,7 +135,9 @@ class Slices:
     def title(self, view, units):
         """Name of a slice."""
         text = f"{'xyz'[view.axis]} = {style.plain(view.position)} {units.length}".strip()
-        return text + (f" ({self.remark[view.axis]})" if view.axis in self.remark else "")
+        if view.axis in self.remark:
+            return f"{text}: {self.remark[view.axis]}"
+        return text + (": along an edge of a crack" if self.outlines[view.axis] else "")
 
 
 def face_points(view, fraction_x, fraction_y):
@@ -120,6 +153,7 @@ def face_points(view, fraction_x, fraction_y):
 def draw_body(axes, slices, pictures, scale):
     """The three visible outer faces in isometric projection."""
     for (view, _), picture in zip(slices.faces, pictures):
+        picture = scale.clean(picture)
         rows, columns = view.shape
         edges = face_points(view, np.linspace(0, 1, columns + 1)[None, :],
                             np.linspace(0, 1, rows + 1)[:, None])
@@ -222,6 +256,8 @@ def draw_column(grid, column, slices, pictures, scale, units, title):
     for row, ((view, segments), picture) in enumerate(zip(slices.slices, sections), 1):
         axes = grid.panel(row, column)
         contours.draw_picture(axes, view, picture, scale, segments)
+        for edge in slices.outlines[view.axis]:
+            axes.plot(*edge.T, color="black", linewidth=1.2, linestyle=(0, (3.5, 2)), zorder=6)
         axes.set_anchor("W")
         axes.set_title(slices.title(view, units), loc="left", pad=3, fontsize=8,
                        fontweight="normal")
@@ -233,39 +269,36 @@ def draw_column(grid, column, slices, pictures, scale, units, title):
             axes.tick_params(labelleft=False)
 
 
-def temperature_figure(maps, index, units):
-    """Body and slices of all models and the difference; returns (figure, facts)."""
+def difference_pictures(maps, index, slices, pictures):
+    """PD minus FEM in all views: of the nodes, else (two meshes) of the pictures."""
+    values = difference_field(maps.run, index)
+    if values is not None:
+        return slices.pictures(contours.PD, values)
+    return [[p - f for p, f in zip(*groups)]
+            for groups in zip(pictures[contours.PD], pictures[contours.FEM])]
+
+
+def temperature_figure(maps, index, units, largest=None, scale=None):
+    """Body and slices of all models and the difference, if there is one."""
     run = maps.run
     slices = Slices(maps, index)
     models = [m for m in run.models if run.field_file(index, m) is not None]
     pictures = {m: slices.pictures(m, run.field(index, m, "temperature")) for m in models}
-    both = contours.FEM in pictures and contours.PD in pictures
-    difference = None
-    if both:
-        values = run.field(index, contours.PD, contours.DIFFERENCE, required=False)
-        difference = slices.pictures(contours.PD, values) if values is not None else \
-            [[p - f for p, f in zip(*groups)]
-             for groups in zip(pictures[contours.PD], pictures[contours.FEM])]
+    both = contours.FEM in pictures and contours.PD in pictures and \
+        not (largest is not None and largest.zero)
     extents = [(1.0, 1.0)] + [(v.extent[1] - v.extent[0], v.extent[3] - v.extent[2])
                               for v, _ in slices.slices]
     grid = Grid(len(models) + both, extents)
-    scale = style.value_scale([p for group in pictures.values() for part in group for p in part])
+    scale = scale or style.value_scale([p for group in pictures.values() for part in group
+                                        for p in part])
     for column, model in enumerate(models):
         draw_column(grid, column, slices, pictures[model], scale, units, style.name(model))
     grid.bar(0, len(models) - 1, scale, units.value())
     if both:
+        difference = difference_pictures(maps, index, slices, pictures)
         shown = style.difference_scale([p for part in difference for p in part])
         draw_column(grid, len(models), slices, difference, shown, units,
                     "Peridynamics − finite elements")
         grid.bar(len(models), len(models), shown,
                  units.with_unit("Difference", units.temperature))
-    return grid.figure, {}
-
-
-def flux_figure(maps, index, units):
-    """The heat flux in the first slice; returns (figure, name of the slice)."""
-    slices = Slices(maps, index)
-    view, segments = slices.slices[0]
-    figure = contours.flux_figure(maps, index, units, view, segments,
-                                  (view.axis, float(view.position), view.shape))
-    return figure, slices.title(view, units)
+    return grid.figure

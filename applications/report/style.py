@@ -3,18 +3,17 @@
 """Colours, fonts, labels and number formats shared by all figures and tables."""
 
 import math
+import re
 
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.patheffects as patheffects
 import numpy as np
 from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 INK = "#1f2933"
-FAINT = "#7b8794"
 GRID = "#e4e7eb"
 
 # Okabe-Ito colours: told apart with any colour vision.
@@ -23,7 +22,6 @@ MODEL_COLOR = {"finite elements": "#0072b2", "peridynamics": "#d55e00", "coupled
 MODEL_DASHES = {"finite elements": "-", "peridynamics": (0, (5, 2)),
                 "coupled": (0, (5, 1.5, 1, 1.5)), "exact": (0, (1, 1.6))}
 MODEL_MARKER = {"finite elements": "o", "peridynamics": "s", "coupled": "D", "exact": ""}
-SHORT = {"finite elements": "FEM", "peridynamics": "PD", "coupled": "coupled", "exact": "exact"}
 
 THERMAL = LinearSegmentedColormap.from_list(
     "thermal", ["#0d2a5b", "#2a4f8f", "#5d5fa5", "#95619f", "#c9647f", "#ec7a55", "#f8a545",
@@ -41,8 +39,6 @@ matplotlib.rcParams.update({
     "legend.fontsize": 8, "axes.formatter.limits": (-3, 4), "axes.formatter.use_mathtext": True,
     "mathtext.fontset": "dejavusans", "figure.facecolor": "white", "svg.fonttype": "path",
     "svg.hashsalt": "perideal", "image.interpolation": "nearest"})
-
-HALO = [patheffects.withStroke(linewidth=3.2, foreground="white")]
 
 
 class Units:
@@ -85,11 +81,36 @@ def plain(value, digits=4):
     if not math.isfinite(value):
         return str(value)
     text = f"{value:.{digits}g}"
+    if "e+" in text and abs(value) < 1e6:  # few digits of a number that is not large
+        return plain(int(float(text)))
     if "e" in text:
         mantissa, exponent = text.split("e")
         superscript = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
         return f"{mantissa}×10{superscript}".replace("-", "−")
     return text.replace("-", "−")
+
+
+def minus(text):
+    """A formula with the sign of subtraction that numbers have."""
+    return str(text).replace("-", "−")
+
+
+def prose(text):
+    """Running text whose numbers and formulas have that sign too; hyphens stay."""
+    text = re.sub(r"(?<=\d[eE])-(?=\d)", "−", str(text))
+    text = re.sub(r"(?<![\w-])-(?=[\d.(]|[a-z]+\()", "−", text)
+    return re.sub(r"(?<=[\w)]) - (?=[\w(])", " − ", text)
+
+
+def is_formula(text):
+    """Whether a text is a formula and not a name."""
+    return any(c in text for c in "()*/^=<>")
+
+
+def is_nothing(values, among):
+    """Whether values are zero but for the round-off of the values they belong to."""
+    sizes = [np.abs(v[np.isfinite(v)]).max(initial=0) for v in map(np.asarray, (values, among))]
+    return bool(sizes[0] <= 1e-12 * sizes[1])
 
 
 def nice_levels(low, high, n):
@@ -124,6 +145,11 @@ class Scale:
         self.colormap.set_over(colormap(1.0))
         self.colormap.set_bad("#ffffff00")
         self.norm = BoundaryNorm(self.levels, n_bands)
+
+    def clean(self, picture, relative=1e-9):
+        """A picture without round-off, whose isotherms would be noise where values are equal."""
+        grain = relative * max(self.levels[-1] - self.levels[0], 1e-300)
+        return np.round(picture / grain) * grain + 0.0
 
     def line_colors(self):
         """Dark lines on light bands, light lines on dark ones."""

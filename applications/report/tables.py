@@ -6,7 +6,7 @@ from html import escape
 
 import findings
 from curves import probe_name, probe_points
-from style import name, plain
+from style import minus, name, plain
 
 
 def cell(value, digits=4):
@@ -67,8 +67,8 @@ def final(*path):
     return lambda model: findings.last(entry(*path)(model))
 
 
-def cost_table(run, units):
-    """Cost and error of each model."""
+def size_rows(run, units):
+    """Sizes and methods."""
     rows = []
     for title, key in (("Unknowns", "unknowns"), ("Bonds", "bonds"), ("Nonzeros", "nonzeros"),
                        ("Operator form", "operator form"), ("Time stepper", "stepper"),
@@ -79,8 +79,12 @@ def cost_table(run, units):
     unit = f" ({units.time})" if units.time else ""
     rows += model_rows(run, f"Stable step, sharp{unit}", entry("stable step", "sharp"))
     rows += model_rows(run, f"Stable step, safe bound{unit}", entry("stable step", "safe"))
-    cost = []
-    phases = []
+    return rows
+
+
+def cost_rows(run):
+    """Wall times and memory."""
+    cost, phases = [], []
     for model in run.models:
         times = run.summary["models"][model].get("wall time")
         phases += [p for p in times if p not in phases] if isinstance(times, dict) else []
@@ -91,13 +95,41 @@ def cost_table(run, units):
     cost += [["<strong>Total wall time</strong>"]
              + [f"<strong>{cell(seconds(findings.wall_time(run.summary['models'][m])))}</strong>"
                 for m in run.models]] if phases else []
-    cost += model_rows(run, "Peak memory", lambda m: memory(m.get("peak memory")))
-    errors = model_rows(run, "Relative L2 error at the end", final("errors", "relative l2"))
+    return cost + model_rows(run, "Memory", lambda m: memory(m.get("memory")))
+
+
+def shared_cost(run):
+    """A sentence on what no model has alone, or ''."""
+    phases = run.get("wall time", default={})
+    parts = [f"{name} {seconds(t)}" for name, t in phases.items()
+             if isinstance(t, (int, float))]
+    text = f"Beside the models, wall time: {', '.join(parts)}." if parts else ""
+    mesh = memory(run.get("memory of mesh"))
+    if mesh:
+        text += f" Memory of the mesh: {mesh}."
+    peaks = [m["peak memory"] for m in run.summary["models"].values()
+             if isinstance(m.get("peak memory"), (int, float))]
+    if peaks:
+        text += " Peak memory of the program with all it holds: " \
+            f"{memory(max(peaks))}."
+    return text.strip()
+
+
+def error_rows(run, units):
+    """Errors at the end."""
+    when = "" if run.get("steady", default=False) else " at the end"
+    errors = model_rows(run, f"Relative L2 error{when}", final("errors", "relative l2"))
     at = f" ({units.temperature})" if units.temperature else ""
-    errors += model_rows(run, f"Largest error at the end{at}", final("errors", "maximum"))
+    errors += model_rows(run, f"Largest error{when}{at}", final("errors", "maximum"))
     errors += model_rows(run, "Heat throughput", entry("heat balance", "throughput"))
     errors += model_rows(run, "Heat imbalance", entry("heat balance", "imbalance"))
-    groups = (("Size and method", rows), ("Cost", cost), ("Error", errors))
+    return errors
+
+
+def cost_table(run, units):
+    """Cost and error of each model."""
+    groups = (("Size and method", size_rows(run, units)), ("Cost", cost_rows(run)),
+              ("Error", error_rows(run, units)))
     listed = []
     for title, part in groups:
         if part:
@@ -117,7 +149,7 @@ def boundary_table(run):
     rows = []
     for side in sides:
         values = [entry("boundary flux", side)(run.summary["models"][m]) for m in run.models]
-        rows.append([escape(side), escape(str(conditions.get(side, "")))]
+        rows.append([escape(side), escape(minus(conditions.get(side, "")))]
                     + [cell(v, 6) for v in values])
     sums = []
     for model in run.models:
@@ -132,7 +164,7 @@ def sides_table(run):
     sides = run.get("sides", default={})
     if not sides:
         return ""
-    return table(["Side", "Condition"], [[escape(s), escape(str(c))] for s, c in sides.items()])
+    return table(["Side", "Condition"], [[escape(s), escape(minus(c))] for s, c in sides.items()])
 
 
 def error_table(run, units):
@@ -150,8 +182,10 @@ def error_table(run, units):
     if not columns:
         return ""
     times = sorted({t for _, series in columns for t in series})
-    rows = [[escape(plain(t))] + [cell(series.get(t)) for _, series in columns] for t in times]
-    first = "" if run.get("steady", default=False) else units.with_unit("Time", units.time)
+    steady = run.get("steady", default=False)
+    rows = [[escape("Steady state" if steady else plain(t))]
+            + [cell(series.get(t)) for _, series in columns] for t in times]
+    first = "" if steady else units.with_unit("Time", units.time)
     return table([first] + [title for title, _ in columns], rows, "numbers")
 
 
@@ -181,10 +215,21 @@ def totals_table(run):
     rows = []
     for quantity, of_model in run.totals.items():
         values = [max(of_model[m])[1] if m in of_model else None for m in run.models]
-        rows.append([escape(quantity)] + [cell(v, 6) for v in values])
+        rows.append([escape(name(quantity))] + [cell(v, 6) for v in values])
     if not rows:
         return ""
-    return table(["At the end"] + [name(m) for m in run.models], rows, "numbers")
+    first = "" if run.get("steady", default=False) else "At the end"
+    return table([first] + [name(m) for m in run.models], rows, "numbers")
+
+
+def setting(title, value):
+    """A setting; numbers are written as elsewhere."""
+    if title == "kernel" and value is not None:
+        return escape(findings.kernel_name(value, ""))
+    try:
+        return cell(float(value), 6)
+    except (TypeError, ValueError):
+        return cell(value)
 
 
 def settings_table(run):
@@ -194,6 +239,6 @@ def settings_table(run):
         names += [s for s in run.summary["models"][model].get("settings") or {} if s not in names]
     if not names:
         return ""
-    rows = [[escape(s)] + [cell((run.summary["models"][m].get("settings") or {}).get(s))
+    rows = [[escape(s)] + [setting(s, (run.summary["models"][m].get("settings") or {}).get(s))
                            for m in run.models] for s in names]
     return table(["Setting"] + [name(m) for m in run.models], rows)

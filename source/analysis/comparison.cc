@@ -83,7 +83,6 @@ namespace PeriDeal
                          update_values | update_quadrature_points | update_JxW_values);
     std::vector<double> at_points(values.n_quadrature_points);
     double              square = 0., reference = 0., maximum = 0.;
-    u.update_ghost_values();
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -98,7 +97,6 @@ namespace PeriDeal
               maximum = std::max(maximum, std::abs(difference));
             }
         }
-    u.set_ghost_state(false);
     return reduce(square, reference, maximum, dofs.get_communicator());
   }
 

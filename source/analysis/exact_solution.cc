@@ -332,6 +332,9 @@ namespace PeriDeal
     const Call call     = take_apart(clean);
     const bool known    = std::find(names.begin(), names.end(), call.name) != names.end();
     const bool harmonic = known && call.name.find("harmonic") != std::string::npos;
+    AssertThrow(!known || context.no_named.empty(),
+                UserError(where + ": '" + call.name + "' " + context.no_named +
+                          " Give an expression of x, y, z and t instead."));
     if (harmonic)
       return make_harmonic(call, context);
     if (known)

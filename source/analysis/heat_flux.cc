@@ -68,10 +68,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  void element_heat_flux(const DoFHandler<dim> &dofs,
-                         const Material        &material,
-                         const Vector          &u,
-                         VectorField<dim>      &flux)
+  void element_heat_flux(const DoFHandler<dim>   &dofs,
+                         const Material          &material,
+                         const std::vector<bool> &cut,
+                         const Vector            &u,
+                         VectorField<dim>        &flux)
   {
     const FiniteElement<dim>            &fe = dofs.get_fe();
     FEValues<dim>                        values(fe,
@@ -82,6 +83,7 @@ namespace PeriDeal
     Vector                               weight(u.get_partitioner());
     for (Vector &component : flux)
       component = 0.;
+    constexpr double share_of_cut_cells = 1e-12; // far below all others, but not zero
     // Owned dofs see all of their cells: owned ones and the layer of ghost cells.
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial())
@@ -89,7 +91,8 @@ namespace PeriDeal
           values.reinit(cell);
           values.get_function_gradients(u, gradients);
           cell->get_dof_indices(indices);
-          const double size = cell->measure();
+          const double size =
+            cell->measure() * (cut[cell->active_cell_index()] ? share_of_cut_cells : 1.);
           for (unsigned int i = 0; i < indices.size(); ++i)
             if (weight.in_local_range(indices[i]))
               {
@@ -105,16 +108,17 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                \
-  template void bond_heat_flux<dim>(const Families<dim> &,       \
-                                    const Vector &,              \
-                                    const std::vector<double> &, \
-                                    VectorField<dim> &,          \
-                                    VectorField<dim> &);         \
-  template void cut_fraction(const Families<dim> &, Vector &);   \
-  template void element_heat_flux<dim>(const DoFHandler<dim> &,  \
-                                       const Material &,         \
-                                       const Vector &,           \
+#define PERIDEAL_INSTANTIATE(dim)                                 \
+  template void bond_heat_flux<dim>(const Families<dim> &,        \
+                                    const Vector &,               \
+                                    const std::vector<double> &,  \
+                                    VectorField<dim> &,           \
+                                    VectorField<dim> &);          \
+  template void cut_fraction(const Families<dim> &, Vector &);    \
+  template void element_heat_flux<dim>(const DoFHandler<dim> &,   \
+                                       const Material &,          \
+                                       const std::vector<bool> &, \
+                                       const Vector &,            \
                                        VectorField<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

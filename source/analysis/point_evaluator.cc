@@ -40,9 +40,9 @@ namespace PeriDeal
     /** The first of this process's cells that holds the point. */
     template <int dim>
     bool find_by_looking_everywhere(
-      const DoFHandler<dim>                                                           &dofs,
-      const Mapping<dim>                                                              &mapping,
-      const Point<dim>                                                                &point,
+      const DoFHandler<dim>                                                    &dofs,
+      const Mapping<dim>                                                       &mapping,
+      const Point<dim>                                                         &point,
       std::pair<typename Triangulation<dim>::active_cell_iterator, Point<dim>> &place)
     {
       constexpr double slack = 1e-8;
@@ -76,7 +76,7 @@ namespace PeriDeal
     , n_slots(1u << dim)
   {
     const std::vector<CrackGeometry<dim>> geometries = make_crack_geometries(cracks.cracks);
-    const bool   at_centers = dofs.get_fe().n_dofs_per_vertex() == 0;
+    const bool                            at_centers = dofs.get_fe().n_dofs_per_vertex() == 0;
     const bool   on_lattice = nodes != nullptr && nodes->lattice() && !nodes->has_doubled_nodes();
     const double shift      = at_centers || cracks.mesh == CrackMesh::faces ?
                                 1e-7 * GridTools::minimal_cell_diameter(dofs.get_triangulation()) :
@@ -88,10 +88,10 @@ namespace PeriDeal
           points[k][d] = coordinates[k][d];
         points[k] = off_cracks(points[k], geometries, shift);
       }
-    if (at_centers && nodes != nullptr)
-      locate_nearest(*nodes, points);
-    else if (on_lattice)
+    if (on_lattice)
       locate_on_lattice(*nodes, points);
+    else if (at_centers && nodes != nullptr)
+      locate_nearest(dofs, *nodes, points);
     else
       locate_in_mesh(dofs, points);
     require_all_found(coordinates, entry);
@@ -118,9 +118,18 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           {
             const double s = (points[k][d] - lattice.lower[d]) / lattice.spacing[d];
-            base[d]        = static_cast<int>(std::floor(s + 1e-9));
-            fraction[d]    = s - base[d] < 1e-9 ? 0. : s - base[d];
-            inside         = inside && base[d] >= 0 && base[d] < lattice.n_sites[d];
+            if (lattice.at_centers)
+              {
+                // The nearest node; of two equally near ones the first in space.
+                inside = inside && s > -1e-9 && s < lattice.n_sites[d] + 1e-9;
+                base[d] =
+                  std::clamp(static_cast<int>(std::ceil(s - 1e-9)) - 1, 0, lattice.n_sites[d] - 1);
+                fraction[d] = 0.;
+                continue;
+              }
+            base[d]     = static_cast<int>(std::floor(s + 1e-9));
+            fraction[d] = s - base[d] < 1e-9 ? 0. : s - base[d];
+            inside      = inside && base[d] >= 0 && base[d] < lattice.n_sites[d];
           }
         for (unsigned int v = 0; v < n_slots && inside; ++v)
           {
@@ -144,9 +153,17 @@ namespace PeriDeal
 
 
   template <int dim>
-  void PointEvaluator<dim>::locate_nearest(const Nodes<dim>              &nodes,
+  void PointEvaluator<dim>::locate_nearest(const DoFHandler<dim>         &dofs,
+                                           const Nodes<dim>              &nodes,
                                            const std::vector<Point<dim>> &points)
   {
+    // Every point has a nearest node, but not every point is in the body.
+    const MappingQ1<dim>      mapping;
+    std::vector<unsigned int> here(points.size(), 0), in_body(points.size());
+    std::pair<typename Triangulation<dim>::active_cell_iterator, Point<dim>> place;
+    for (unsigned int k = 0; k < points.size(); ++k)
+      here[k] = find_by_looking_everywhere(dofs, mapping, points[k], place) ? 1 : 0;
+    Utilities::MPI::max(here, communicator, in_body);
     // Ties go to the node that comes first in space, so that the answer does not depend on the partition.
     const auto before = [](const Point<dim> &a, const Point<dim> &b) {
       for (unsigned int d = dim; d-- > 0;)
@@ -186,7 +203,7 @@ namespace PeriDeal
                                   communicator);
             mine = mine && first[d] == lowest;
           }
-        if (mine)
+        if (mine && in_body[k] > 0)
           parts.push_back({k * n_slots, nearest[k], 1.});
       }
   }
@@ -208,8 +225,8 @@ namespace PeriDeal
       if (cell->is_locally_owned())
         for (const unsigned int v : cell->vertex_indices())
           owned_vertices[cell->vertex_index(v)] = true;
-    const bool any_owned =
-      std::find(owned_vertices.begin(), owned_vertices.end(), true) != owned_vertices.end();
+    const bool any_owned = std::find(owned_vertices.begin(), owned_vertices.end(), true) !=
+                           owned_vertices.end();
     for (unsigned int k = 0; k < points.size(); ++k)
       {
         if (!any_owned)
@@ -218,8 +235,11 @@ namespace PeriDeal
           GridTools::find_active_cell_around_point(cache, points[k], {}, owned_vertices, 1e-8);
         if (first_place.first.state() != IteratorState::valid)
           continue; // somebody else's
-        const auto found = GridTools::find_all_active_cells_around_point(
-          mapping, dofs.get_triangulation(), points[k], 1e-8, first_place);
+        const auto found = GridTools::find_all_active_cells_around_point(mapping,
+                                                                         dofs.get_triangulation(),
+                                                                         points[k],
+                                                                         1e-8,
+                                                                         first_place);
         for (const auto &place : found)
           if (place.first->is_locally_owned() && finder[k] == nobody)
             {

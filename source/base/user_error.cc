@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
+#include <thread>
 #include <vector>
 
 namespace PeriDeal
@@ -38,6 +40,21 @@ namespace PeriDeal
       return;
     const std::string text = dealii::Utilities::MPI::broadcast(communicator, message, first);
     AssertThrow(false, UserError(text));
+  }
+
+
+  bool all_processes_arrive(const MPI_Comm communicator)
+  {
+    MPI_Request request;
+    MPI_Ibarrier(communicator, &request);
+    int done = 0;
+    for (unsigned int tenths = 0; tenths < 50 && done == 0; ++tenths)
+      {
+        MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+        if (done == 0)
+          std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      }
+    return done != 0;
   }
 
 

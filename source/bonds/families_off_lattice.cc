@@ -93,7 +93,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Families<dim>::calibrate_off_lattice(const Scene<dim> &)
+  void Families<dim>::calibrate_off_lattice()
   {
     double                                     smallest_count = std::numeric_limits<double>::max();
     double                                     sum = 0., n_full = 0.;
@@ -128,15 +128,17 @@ namespace PeriDeal
       UserError(
         "'Horizon' in section 'Peridynamics' is " + std::to_string(delta) +
         ": some node has no neighbour within it. Choose at least twice the largest cell of the mesh."));
-    if (parameters.calibration == Calibration::discrete && n_full > 0.)
-      factor = n_full / sum;
+    if (parameters.calibration != Calibration::discrete || !members.empty())
+      return;
+    complete_families = n_full > 0.;
+    factor            = complete_families ? n_full / sum : 1.;
   }
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
   template double Families<dim>::off_lattice_weight(const double) const;                           \
   template void   Families<dim>::bonds_off_lattice(const unsigned int, std::vector<Bond> &) const; \
-  template void   Families<dim>::calibrate_off_lattice(const Scene<dim> &);
+  template void   Families<dim>::calibrate_off_lattice();
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -9,6 +9,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/crack_faces.h>
 #include <perideal/mesh/mesh_builder.h>
+#include <perideal/scene/boundary_conditions.h>
 
 #include <cmath>
 #include <fstream>

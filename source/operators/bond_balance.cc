@@ -12,73 +12,53 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  namespace
+  template <int dim>
+  void BondOperator<dim>::add_fictitious_heat(const Vector &u, Balance &balance) const
   {
-    std::string name_of_side(const types::boundary_id id, const bool box)
-    {
-      return box && id < box_side_names().size() ? box_side_names()[id] : std::to_string(id);
-    }
-  } // namespace
+    // Bonds to fictitious nodes carry heat through the side that these lie behind.
+    const Nodes<dim> &nodes = bonds.nodes();
+    if (bonds.fictitious().empty())
+      return;
+    std::map<unsigned int, const SideCondition *> prescribed;
+    for (const auto &entry : constraints.prescribed_nodes())
+      prescribed[entry.node] = entry.condition;
+    std::vector<typename Families<dim>::Bond> family;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const auto site = nodes.lattice()->index(nodes.position(i));
+        bool       near = false;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const int reach = static_cast<int>(bonds.reach() / nodes.lattice()->spacing[d]) + 1;
+            near = near || site[d] < reach || site[d] >= nodes.lattice()->n_sites[d] - reach;
+          }
+        if (!near)
+          continue;
+        bonds.bonds_of(i, family);
+        for (const auto &bond : family)
+          if (bond.neighbor >= nodes.n_local())
+            {
+              const unsigned int f    = bond.neighbor - nodes.n_local();
+              const double       heat = bond.weight * (outside_values[f] - u.local_element(i));
+              double            &side =
+                balance
+                  .sides[name_of_side(bonds.fictitious()[f].side, nodes.lattice().has_value())];
+              side += heat;
+              // In a prescribed node's own sum already, with the other sign.
+              if (const auto entry = prescribed.find(i); entry != prescribed.end())
+                {
+                  side -= heat;
+                  balance.sides[entry->second->name] += heat;
+                }
+            }
+      }
+  }
 
 
   template <int dim>
-  Balance BondOperator<dim>::balance(const Vector &u, const double t, const bool steady) const
+  void BondOperator<dim>::add_side_heat(const Vector &u, const double t, Balance &balance) const
   {
-    const Nodes<dim> &nodes      = bonds.nodes();
-    const auto       &conditions = scene.boundary_conditions;
-    const bool        box        = nodes.lattice().has_value();
-    Vector            sums, loads;
-    initialize_vector(sums);
-    initialize_vector(loads);
-    u.update_ghost_values();
-    fictitious_values(u, t, outside_values);
-    sum_bonds(sums, u, outside_values.data());
-    add_loads(loads, t);
-
-    Balance balance;
-    for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})
-      for (const SideCondition &condition : *list)
-        balance.sides[condition.name];
-    for (const types::boundary_id side : conditions.symmetry)
-      balance.sides[name_of_side(side, box)];
-
-    // Prescribed nodes: what leaves them by their bonds has come in through their side.
-    for (const auto &entry : constraints.prescribed_nodes())
-      balance.sides[entry.condition->name] += sums.local_element(entry.node);
-    // Bonds to fictitious nodes: they carry heat through the side that these lie behind.
-    if (!bonds.fictitious().empty())
-      {
-        std::map<unsigned int, const SideCondition *> prescribed;
-        for (const auto &entry : constraints.prescribed_nodes())
-          prescribed[entry.node] = entry.condition;
-        std::vector<typename Families<dim>::Bond> family;
-        for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-          {
-            const auto site = nodes.lattice()->index(nodes.position(i));
-            bool       near = false;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                const int reach = static_cast<int>(bonds.reach() / nodes.lattice()->spacing[d]) + 1;
-                near = near || site[d] < reach || site[d] >= nodes.lattice()->n_sites[d] - reach;
-              }
-            if (!near)
-              continue;
-            bonds.bonds_of(i, family);
-            for (const auto &bond : family)
-              if (bond.neighbor >= nodes.n_local())
-                {
-                  const unsigned int f    = bond.neighbor - nodes.n_local();
-                  const double       heat = bond.weight * (outside_values[f] - u.local_element(i));
-                  balance.sides[name_of_side(bonds.fictitious()[f].side, box)] += heat;
-                  // In a prescribed node's own sum already, with the other sign.
-                  if (const auto entry = prescribed.find(i); entry != prescribed.end())
-                    {
-                      balance.sides[name_of_side(bonds.fictitious()[f].side, box)] -= heat;
-                      balance.sides[entry->second->name] += heat;
-                    }
-                }
-          }
-      }
+    const Nodes<dim> &nodes = bonds.nodes();
     for (const SideLoad &load : fluxes)
       balance.sides[load.condition->name] +=
         load.area * load.condition->value.value(nodes.position(load.node), t);
@@ -91,53 +71,68 @@ namespace PeriDeal
       }
     if (scene.peridynamics.flux_treatment != FluxTreatment::natural)
       for (const BoundaryShare &share : nodes.boundary_shares())
-        if (const auto *flux = BoundaryConditions<dim>::find(conditions.flux, share.id);
+        if (const auto *flux =
+              BoundaryConditions<dim>::find(scene.boundary_conditions.flux, share.id);
             flux != nullptr && constraints.kind(share.node) == NodeConstraints<dim>::slave)
           balance.sides[flux->name] +=
             share.area * flux->value.value(nodes.position(share.node), t);
+  }
+
+
+  template <int dim>
+  Balance BondOperator<dim>::balance(const Vector &u, const double t, const bool steady) const
+  {
+    const Nodes<dim> &nodes      = bonds.nodes();
+    const auto       &conditions = scene.boundary_conditions;
+    Vector            heat,
+      loads; // heat: K u - load, what leaves a node by its bonds and does not come from a load
+    initialize_vector(heat);
+    initialize_vector(loads);
+    u.update_ghost_values();
+    fictitious_values(u, t, outside_values);
+    sum_bonds(heat, u, outside_values.data());
+    for (const auto &[node, h] : convection_diagonal)
+      heat.local_element(node) += h * u.local_element(node);
+    add_loads(loads, t);
+    heat -= loads;
+
+    Balance balance;
+    for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})
+      for (const SideCondition &condition : *list)
+        balance.sides[condition.name];
+    for (const types::boundary_id side : conditions.symmetry)
+      balance.sides[name_of_side(side, scene.domain.shape != Shape::mesh_file)];
+    // In a prescribed node it has come in through the node's side.
+    for (const auto &entry : constraints.prescribed_nodes())
+      balance.sides[entry.condition->name] += heat.local_element(entry.node);
+    add_fictitious_heat(u, balance);
+    add_side_heat(u, t, balance);
 
     const Expression &source = scene.initial_and_source.source;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         balance.content += capacity.local_element(i) * u.local_element(i);
-        if (constraints.kind(i) != NodeConstraints<dim>::free)
-          continue;
-        balance.sources += nodes.volume(i) * source.value(nodes.position(i), t);
-        if (!steady)
-          balance.stored += loads.local_element(i) - sums.local_element(i);
+        if (constraints.kind(i) != NodeConstraints<dim>::slave)
+          balance.sources += nodes.volume(i) * source.value(nodes.position(i), t);
+        if (!steady && constraints.kind(i) == NodeConstraints<dim>::free)
+          balance.stored -= heat.local_element(i);
       }
-    if (!steady)
-      for (const auto &[node, h] : convection_diagonal)
-        balance.stored -= h * u.local_element(node);
     u.set_ghost_state(false);
 
     for (auto &[name, value] : balance.sides)
       value = Utilities::MPI::sum(value, nodes.communicator());
-    balance.sources = Utilities::MPI::sum(balance.sources, nodes.communicator());
-    balance.stored  = Utilities::MPI::sum(balance.stored, nodes.communicator());
-    balance.content = Utilities::MPI::sum(balance.content, nodes.communicator());
+    for (double *value : {&balance.sources, &balance.stored, &balance.content})
+      *value = Utilities::MPI::sum(*value, nodes.communicator());
     return balance;
   }
 
 
-  double Balance::throughput() const
-  {
-    double sum = std::max(sources, 0.);
-    for (const auto &[name, value] : sides)
-      sum += std::max(value, 0.);
-    return sum;
-  }
-
-
-  double Balance::imbalance() const
-  {
-    double sum = sources - stored;
-    for (const auto &[name, value] : sides)
-      sum += value;
-    return sum;
-  }
-
-  template Balance BondOperator<1>::balance(const Vector &, const double, const bool) const;
-  template Balance BondOperator<2>::balance(const Vector &, const double, const bool) const;
-  template Balance BondOperator<3>::balance(const Vector &, const double, const bool) const;
+#define PERIDEAL_INSTANTIATE(dim)                                                                   \
+  template void    BondOperator<dim>::add_fictitious_heat(const Vector &, Balance &) const;         \
+  template void    BondOperator<dim>::add_side_heat(const Vector &, const double, Balance &) const; \
+  template Balance BondOperator<dim>::balance(const Vector &, const double, const bool) const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

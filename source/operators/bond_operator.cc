@@ -92,7 +92,8 @@ namespace PeriDeal
     const auto &conditions = scene.boundary_conditions;
     for (const BoundaryShare &share : bonds.nodes().boundary_shares())
       {
-        if (constraints.kind(share.node) != NodeConstraints<dim>::free)
+        // Prescribed nodes have no equation, but what enters there counts in the balance of heat.
+        if (constraints.kind(share.node) == NodeConstraints<dim>::slave)
           continue;
         const auto *flux       = BoundaryConditions<dim>::find(conditions.flux, share.id);
         const auto *convection = BoundaryConditions<dim>::find(conditions.convection, share.id);
@@ -427,6 +428,14 @@ namespace PeriDeal
   const std::string &BondOperator<dim>::form_note() const
   {
     return note;
+  }
+
+  template <int dim>
+  std::string BondOperator<dim>::place_of(const unsigned int local_index) const
+  {
+    std::ostringstream out;
+    out << "(" << bonds.nodes().position(local_index) << ")";
+    return out.str();
   }
 
   template <int dim>

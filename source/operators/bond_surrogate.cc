@@ -101,7 +101,8 @@ namespace PeriDeal
     matrix.reinit(pattern);
     std::vector<double> convection(nodes.n_owned(), 0.);
     for (const auto &[node, h] : convection_diagonal)
-      convection[node] += h;
+      if (free_nodes.local_element(node) > 0.)
+        convection[node] += h;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         double diag = convection[i] + outside[i];

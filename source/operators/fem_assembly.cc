@@ -110,11 +110,16 @@ namespace PeriDeal
           for (const CrackGeometry<dim> &crack : cracks)
             if (crack.separates(cell->vertex(a), cell->vertex(b)))
               {
-                const double across = std::abs(xi * crack.normal());
                 if (!contact && t >= 1.)
                   continue;
-                const double H = contact ? scene.cracks.contact_conductance :
-                                           contact_conductance_of_transmission(
+                if (!contact && t == 0.) // needs no horizon, which a mesh file may come without
+                  {
+                    w = 0.;
+                    continue;
+                  }
+                const double across = std::abs(xi * crack.normal());
+                const double H      = contact ? scene.cracks.contact_conductance :
+                                                contact_conductance_of_transmission(
                                              t,
                                              kappa,
                                              scene.horizon(),

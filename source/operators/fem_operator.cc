@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <map>
+#include <sstream>
 
 namespace PeriDeal
 {
@@ -89,8 +90,9 @@ namespace PeriDeal
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
       {
         if (!(stiffness_diagonal.local_element(i) > 0.))
-          message = "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
-                    "conducting cell. Use 'pairs' or a finer mesh.";
+          message =
+            "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
+            "conducting cell. Use 'pairs' or a finer mesh.";
         bound = std::max(bound, row_sums[i] / capacity.local_element(i));
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
@@ -284,6 +286,28 @@ namespace PeriDeal
     for (double *value : {&balance.sources, &balance.stored, &balance.content})
       *value = Utilities::MPI::sum(*value, dofs.get_communicator());
     return balance;
+  }
+
+
+  template <int dim>
+  std::string FEMOperator<dim>::place_of(const unsigned int local_index) const
+  {
+    const auto dof = capacity.get_partitioner()->local_to_global(local_index);
+    std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
+    std::ostringstream                   out;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial() && out.str().empty())
+        {
+          cell->get_dof_indices(indices);
+          const auto found = std::find(indices.begin(), indices.end(), dof);
+          if (found != indices.end())
+            out << "("
+                << MappingQ1<dim>().transform_unit_to_real_cell(
+                     cell,
+                     dofs.get_fe().unit_support_point(found - indices.begin()))
+                << ")";
+        }
+    return out.str();
   }
 
 

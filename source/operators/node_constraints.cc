@@ -10,6 +10,8 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
+#include <sstream>
 
 namespace PeriDeal
 {
@@ -20,7 +22,7 @@ namespace PeriDeal
     : nodes(families.nodes())
     , kinds(nodes.n_local(), free)
   {
-    find_prescribed(families, scene);
+    find_prescribed(scene);
     find_slaves(families, scene);
     prescribed_exist = Utilities::MPI::max(prescribed_list.empty() ? 0 : 1, nodes.communicator()) >
                        0;
@@ -49,7 +51,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void NodeConstraints<dim>::find_prescribed(const Families<dim> &families, const Scene<dim> &scene)
+  void NodeConstraints<dim>::find_prescribed(const Scene<dim> &scene)
   {
     const BoundaryTreatment treatment  = scene.peridynamics.treatment;
     const auto             &dirichlet  = scene.boundary_conditions.dirichlet;
@@ -61,16 +63,22 @@ namespace PeriDeal
           nodes.lattice(),
           UserError(
             "'Boundary treatment = layer' in section 'Peridynamics' needs the lattice of a box."));
-        const Lattice<dim> &lattice = *nodes.lattice();
+        const Lattice<dim>    &lattice = *nodes.lattice();
+        std::set<unsigned int> rim; // of a hole, which has no lattice rows: its own nodes
+        for (const BoundaryShare &share : nodes.boundary_shares())
+          if (share.id == hole_boundary_id)
+            rim.insert(share.node);
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
           {
             const auto site = lattice.index(nodes.position(i));
             for (const SideCondition &condition : dirichlet)
               {
-                const unsigned int d     = condition.id / 2;
+                const unsigned int d     = condition.id == hole_boundary_id ? 0 : condition.id / 2;
                 const int          depth = condition.id % 2 == 0 ? site[d] :
                                                                    lattice.n_sites[d] - 1 - site[d];
-                if (d < dim && depth < static_cast<int>(scene.peridynamics.layer_rows))
+                if (condition.id == hole_boundary_id ?
+                      rim.count(i) > 0 :
+                      depth < static_cast<int>(scene.peridynamics.layer_rows))
                   {
                     prescribed_list.push_back({i, &condition});
                     break;
@@ -83,7 +91,6 @@ namespace PeriDeal
         prescribed_list.push_back({node, condition});
     for (const Prescribed &entry : prescribed_list)
       kinds[entry.node] = prescribed;
-    (void)families;
   }
 
 
@@ -98,28 +105,31 @@ namespace PeriDeal
       UserError(
         "'Flux treatment' in section 'Peridynamics' must be 'natural' unless the body is a box "
         "without doubled nodes."));
+    std::string message;
     if (treatment == FluxTreatment::layer_extrapolation)
       for (const SideCondition &condition : scene.boundary_conditions.flux)
-        extrapolate_layer(families, condition.id, scene);
+        message = extrapolate_layer(families, condition.id, scene);
     else
       for (const auto &[node, condition] : first_sides(nodes, scene.boundary_conditions.flux))
         if (kinds[node] == free)
           {
             Slave slave;
-            slave.node      = node;
-            slave.condition = condition;
-            extrapolate(families, condition->id, slave);
+            slave.node              = node;
+            slave.condition         = condition;
+            const std::string fault = extrapolate(families, condition->id, slave);
+            message                 = message.empty() ? fault : message;
             slaves.push_back(slave);
           }
+    throw_on_all_if_any(nodes.communicator(), message);
     for (const Slave &entry : slaves)
       kinds[entry.node] = slave;
   }
 
 
   template <int dim>
-  void NodeConstraints<dim>::extrapolate(const Families<dim> &families,
-                                         const unsigned int   side,
-                                         Slave               &slave) const
+  std::string NodeConstraints<dim>::extrapolate(const Families<dim> &families,
+                                                const unsigned int   side,
+                                                Slave               &slave) const
   {
     std::vector<typename Families<dim>::Bond> bonds;
     families.bonds_of(slave.node, bonds, false);
@@ -135,21 +145,36 @@ namespace PeriDeal
         slave.masters.emplace_back(bond.neighbor, weight);
         sum += weight;
       }
-    AssertThrow(sum > 0., ExcMessage("A node on a flux side has no bond into the body."));
+    if (!(sum > 0.))
+      {
+        std::ostringstream message;
+        message
+          << "'Flux treatment = extrapolation' in section 'Peridynamics' needs bonds from every node of a side named in "
+             "'Flux' into the body, but the node at ("
+          << nodes.position(slave.node)
+          << ") has none left. Move the cracks in section 'Cracks' away from the side '"
+          << slave.condition->name << "', or choose 'natural'.";
+        return message.str();
+      }
     for (auto &[neighbor, weight] : slave.masters)
       weight /= sum;
     slave.flux_coefficient = 1. / sum;
+    return "";
   }
 
 
   template <int dim>
-  void NodeConstraints<dim>::extrapolate_layer(const Families<dim> &families,
-                                               const unsigned int   side,
-                                               const Scene<dim>    &scene)
+  std::string NodeConstraints<dim>::extrapolate_layer(const Families<dim> &families,
+                                                      const unsigned int   side,
+                                                      const Scene<dim>    &scene)
   {
     const Lattice<dim>  &lattice = *nodes.lattice();
     const int            rows = static_cast<int>(std::lround(scene.horizon() / lattice.spacing[0]));
     const SideCondition *flux = BoundaryConditions<dim>::find(scene.boundary_conditions.flux, side);
+    const int            layers = static_cast<int>(scene.boundary_conditions.flux.size());
+    if (lattice.n_sites[0] <= layers * rows)
+      return "'Flux treatment = layer extrapolation' in section 'Peridynamics' takes a layer of one horizon at each end named in "
+             "'Flux', and the bar has no node beyond. Choose a shorter 'Horizon', more 'Cells' or 'natural'.";
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         auto      site  = lattice.index(nodes.position(i));
@@ -158,10 +183,7 @@ namespace PeriDeal
           continue;
         site[0]                   = side == 0 ? rows : lattice.n_sites[0] - 1 - rows;
         const unsigned int master = families.node_at(site);
-        AssertThrow(
-          master != numbers::invalid_unsigned_int,
-          UserError(
-            "'Flux treatment = layer extrapolation' in section 'Peridynamics' needs a bar longer than the horizon."));
+        Assert(master != numbers::invalid_unsigned_int, ExcInternalError());
         Slave slave;
         slave.node             = i;
         slave.condition        = flux;
@@ -169,6 +191,7 @@ namespace PeriDeal
         slave.flux_coefficient = (rows - depth) * lattice.spacing[0] / families.conductivity(i);
         slaves.push_back(slave);
       }
+    return "";
   }
 
 
@@ -216,7 +239,11 @@ namespace PeriDeal
     Eigen::SparseMatrix<double> matrix(n_coupled, n_coupled);
     matrix.setFromTriplets(entries.begin(), entries.end());
     coupling.compute(matrix);
-    Assert(coupling.info() == Eigen::Success, ExcInternalError());
+    AssertThrow(
+      coupling.info() == Eigen::Success,
+      UserError(
+        "'Flux treatment' in section 'Peridynamics': the values at the sides named in 'Flux' are not determined, because they only "
+        "refer to each other. Choose more 'Cells' (section 'Domain') or 'natural'."));
 
     for (Slave &entry : slaves)
       {

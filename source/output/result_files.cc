@@ -26,16 +26,11 @@ namespace PeriDeal
     /** Files that a run writes, in its directory or in the folder of fields. Nothing else is ever removed. */
     bool is_result(const fs::path &path, const bool field)
     {
-      static const std::vector<std::string> names  = {"summary.json",
-                                                      "report.html",
-                                                      "probes.csv",
-                                                      "line.csv",
-                                                      "totals.csv",
-                                                      "scene.prm"};
-      const std::string                     name   = path.filename().string();
-      const bool                            series = begins_with(name, "finite_elements") ||
-                          begins_with(name, "peridynamics");
-      const std::string                     kind   = path.extension().string();
+      static const std::vector<std::string> names =
+        {"summary.json", "report.html", "probes.csv", "line.csv", "totals.csv", "scene.prm"};
+      const std::string name = path.filename().string();
+      const bool series = begins_with(name, "finite_elements") || begins_with(name, "peridynamics");
+      const std::string kind = path.extension().string();
       if (field)
         return series && (kind == ".vtu" || kind == ".pvtu" || kind == ".h5");
       return std::find(names.begin(), names.end(), name) != names.end() ||
@@ -61,8 +56,13 @@ namespace PeriDeal
           std::error_code no_such_file;
           if (fs::equivalent(directory / "scene.prm", scene_file, no_such_file))
             return "the scene file itself, which lies there, would be written over";
-          remove_results(directory, false);
-          remove_results(directory / "fields", true);
+          if (fs::exists(
+                directory /
+                "scene.prm")) // only a run writes that: elsewhere the files are the user's own
+            {
+              remove_results(directory, false);
+              remove_results(directory / "fields", true);
+            }
           const fs::path trial = directory / ".perideal_trial";
           std::ofstream  file(trial);
           file << "x" << std::flush;

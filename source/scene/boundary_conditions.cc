@@ -10,12 +10,10 @@ namespace PeriDeal
 {
   namespace
   {
-    constexpr unsigned int hole_id = 6;
-
     bool any_depends_on_time(const std::vector<SideCondition> &list)
     {
       return std::any_of(list.begin(), list.end(), [](const SideCondition &condition) {
-        return condition.value.depends_on_time() || condition.coefficient.depends_on_time();
+        return condition.value.depends_on_time();
       });
     }
   } // namespace
@@ -26,6 +24,14 @@ namespace PeriDeal
     static const std::vector<std::string> names =
       {"left", "right", "bottom", "top", "back", "front"};
     return names;
+  }
+
+
+  std::string name_of_side(const dealii::types::boundary_id id, const bool box_sides)
+  {
+    if (!box_sides)
+      return std::to_string(id);
+    return id < box_side_names().size() ? box_side_names()[id] : "hole";
   }
 
 
@@ -50,12 +56,14 @@ namespace PeriDeal
             "power/area",
             "Given heat fluxes, positive into the body: `side: formula of x, y, z, t`, several "
             "separated by `;`. A side named nowhere is insulated.");
-    declare("Convection",
-            EntryType::list,
-            "",
-            "power/(area temperature), temperature",
-            "`side: coefficient, ambient temperature`, several separated by `;`: the flux "
-            "coefficient x (ambient - T) enters. Adds to a Flux on the same side.");
+    declare(
+      "Convection",
+      EntryType::list,
+      "",
+      "power/(area temperature), temperature",
+      "`side: coefficient, ambient temperature`, several separated by `;`: the flux "
+      "coefficient x (ambient - T) enters. The coefficient may depend on x, y, z, the ambient temperature on t, too. "
+      "Adds to a Flux on the same side.");
     declare("Symmetry",
             EntryType::list,
             "",
@@ -107,7 +115,7 @@ namespace PeriDeal
       error(entry,
             "unknown side '" + name + "'; the sides are: " + join_names(sides) + "." +
               did_you_mean(name, sides));
-    return *found == "hole" ? hole_id : static_cast<unsigned int>(found - sides.begin());
+    return *found == "hole" ? hole_boundary_id : static_cast<unsigned int>(found - sides.begin());
   }
 
 
@@ -137,6 +145,11 @@ namespace PeriDeal
         if (n_values == 2)
           {
             condition.coefficient = Expression(formulas.front(), at);
+            if (condition.coefficient.depends_on_time())
+              entry_error(
+                at,
+                "the coefficient " + formulas.front() +
+                  " depends on t; it may vary in space only. The ambient temperature may depend on t.");
             if (condition.coefficient.is_constant() &&
                 condition.coefficient.value(dealii::Point<dim>()) < 0.)
               entry_error(at, "the coefficient " + formulas.front() + " is negative.");
@@ -172,6 +185,8 @@ namespace PeriDeal
     for (const std::string &name : split_list(names, ','))
       {
         const dealii::types::boundary_id id = side_id(name, "Symmetry", box_sides, hole);
+        if (name == "hole")
+          error("Symmetry", "'hole' is not flat: only flat sides can be symmetry planes.");
         if (std::find(symmetry.begin(), symmetry.end(), id) != symmetry.end())
           error("Symmetry", "the side '" + name + "' is named twice.");
         symmetry.push_back(id);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -45,8 +46,10 @@ namespace PeriDeal
           lowest[d]  = std::min(lowest[d], p[d]);
           highest[d] = std::max(highest[d], p[d]);
         }
-    size       = lowest.distance(highest);
-    tolerance  = on_crack * size;
+    size      = lowest.distance(highest);
+    tolerance = std::max(on_crack * size,
+                         16. * std::numeric_limits<double>::epsilon() *
+                           std::max(lowest.norm(), highest.norm()));
     margins.assign(corners.size(), edge * size);
     first_axis = corners[1] - corners[0];
     first_axis /= first_axis.norm();

@@ -186,10 +186,12 @@ namespace PeriDeal
           error("Contact conductance",
                 "found " + text("Contact conductance") + ", needs a number of 0 or more.");
       }
-    if (mesh == CrackMesh::faces && (transmission > 0. || contact_conductance > 0.))
+    if (mesh != CrackMesh::pairs && (transmission > 0. || contact_conductance > 0.))
       error("Mesh",
-            "'faces' cuts the body along the crack, which then conducts nothing; with '" +
-              std::string(transmission > 0. ? "Transmission" : "Contact conductance") +
+            std::string(mesh == CrackMesh::faces ?
+                          "'faces' cuts the body along the crack, which then conducts nothing" :
+                          "with 'removed' the cells along the crack conduct nothing") +
+              "; with '" + (transmission > 0. ? "Transmission" : "Contact conductance") +
               "' greater than 0 use 'pairs'.");
   }
 

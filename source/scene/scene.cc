@@ -124,6 +124,38 @@ namespace PeriDeal
             "the horizon, " + number_text(horizon) + ", is shorter than the node spacing in " +
               std::string(1, "xyz"[d]) + ", " + number_text(h[d]) +
               ": nodes have no neighbours there.");
+      double longest = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        longest = std::max(longest, scene.domain.upper[d] - scene.domain.lower[d]);
+      if (horizon > longest * (1. + 1e-9))
+        entry_error(
+          scene.peridynamics.where(scene.peridynamics.horizon > 0. ? "Horizon" : "Horizon ratio"),
+          "the horizon, " + number_text(horizon) + ", is longer than the body, " +
+            number_text(longest) + ". Choose a shorter one, or more 'Cells' in section 'Domain'.");
+    }
+
+
+    /** What conditions, cracks and mesh need of each other. */
+    template <int dim>
+    void check_combinations(const Scene<dim> &scene)
+    {
+      const BoundaryConditions<dim> &bc = scene.boundary_conditions;
+      if (runs(scene, Model::peridynamics) &&
+          scene.peridynamics.flux_treatment != FluxTreatment::natural)
+        for (const SideCondition &condition : bc.flux)
+          if (BoundaryConditions<dim>::find(bc.convection, condition.id) != nullptr)
+            entry_error(
+              bc.where("Convection"),
+              "the side '" + condition.name +
+                "' is named in 'Flux', too, and with 'Flux treatment' in section 'Peridynamics' = extrapolation its values "
+                "follow from the flux alone. Use 'natural' to have both.");
+      if (scene.domain.shape == Shape::mesh_file && !(scene.peridynamics.horizon > 0.) &&
+          scene.cracks.transmission > 0. && scene.cracks.transmission < 1.)
+        entry_error(
+          scene.peridynamics.where("Horizon"),
+          "is empty; 'Transmission' in section 'Cracks' is the fraction that bonds of one horizon keep, in finite "
+          "elements too, and a mesh file has no node spacing that 'Horizon ratio' could refer to: give a length, "
+          "or 'Contact conductance' in its place.");
     }
 
 
@@ -251,6 +283,7 @@ namespace PeriDeal
         check_shape_for_peridynamics(*this);
         check_horizon(*this);
       }
+    check_combinations(*this);
     check_steady(*this);
     check_points_of_output(*this);
   }

@@ -36,15 +36,6 @@ namespace PeriDeal
           documentation += " Unit: " + entry.unit + ".";
         switch (entry.type)
           {
-            case EntryType::number:
-              prm.declare_entry(entry.name, entry.default_text, Patterns::Double(), documentation);
-              break;
-            case EntryType::whole_number:
-              prm.declare_entry(entry.name,
-                                entry.default_text,
-                                Patterns::Integer(0),
-                                documentation);
-              break;
             case EntryType::boolean:
               prm.declare_entry(entry.name, entry.default_text, Patterns::Bool(), documentation);
               break;

@@ -14,6 +14,7 @@ namespace PeriDeal
   {
     build();
     make_steppers();
+    make_evaluators();
     for (const auto &model : models)
       {
         std::ostringstream out;

@@ -120,7 +120,7 @@ namespace PeriDeal
         VectorField<dim> flux;
         for (Vector &component : flux)
           fem->initialize_vector(component);
-        element_heat_flux<dim>(handler, scene.material, u, flux);
+        element_heat_flux<dim>(handler, scene.material, fem->cut_cells(), u, flux);
         std::vector<OutputField> fields;
         fields.push_back(vector_field<dim>("heat_flux", flux));
         return fields;
@@ -215,17 +215,20 @@ namespace PeriDeal
           }
         bonds->fictitious_values(u, t, outside);
         bond_heat_flux<dim>(bonds->families(), u, outside, two_sided, one_sided);
-        std::array<Vector, 1> volume, cut;
-        bonds->initialize_vector(volume[0]);
-        bonds->initialize_vector(cut[0]);
-        for (unsigned int i = 0; i < node_set->n_owned(); ++i)
-          volume[0].local_element(i) = node_set->volume(i);
-        cut_fraction(bonds->families(), cut[0]);
+        if (volume.size() == 0)
+          {
+            bonds->initialize_vector(volume);
+            bonds->initialize_vector(cut);
+            for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+              volume.local_element(i) = node_set->volume(i);
+            cut_fraction(bonds->families(), cut);
+          }
+        std::array<Vector, 1>    volumes{volume}, cuts{cut};
         std::vector<OutputField> fields;
         fields.push_back(vector_field<dim>("heat_flux", two_sided));
         fields.push_back(vector_field<dim>("heat_flux_one_sided", one_sided));
-        fields.push_back(vector_field<1>("node_volume", volume));
-        fields.push_back(vector_field<1>("cut_fraction", cut));
+        fields.push_back(vector_field<1>("node_volume", volumes));
+        fields.push_back(vector_field<1>("cut_fraction", cuts));
         return fields;
       }
 
@@ -259,7 +262,10 @@ namespace PeriDeal
            std::string(kernels[static_cast<int>(p.kernel)]) + ", exponent " +
              std::to_string(p.kernel_exponent)},
           {"volume fraction", fractions[static_cast<int>(p.volume_fraction)]},
-          {"calibration", p.calibration == Calibration::discrete ? "discrete" : "analytic"},
+          {"calibration",
+           p.calibration == Calibration::analytic    ? "analytic" :
+           bonds->families().has_complete_families() ? "discrete" :
+                                                       "analytic, because no family is complete"},
           {"self term", p.self_term == SelfTerm::none ? "none" : "paper"},
           {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
           {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},
@@ -274,6 +280,7 @@ namespace PeriDeal
       DoFHandler<dim>                    handler;
       std::unique_ptr<Nodes<dim>>        node_set;
       std::unique_ptr<BondOperator<dim>> bonds;
+      mutable Vector                     volume, cut; // for output; they do not change
     };
   } // namespace
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "result_record.h"
@@ -38,13 +39,14 @@ namespace PeriDeal
     /** Refuse what a stepper would never finish. @p stiffness is the end time times the largest eigenvalue. */
     void check_stepper(const std::string &name, const TimeControl &time, const double stiffness)
     {
-      constexpr double longest = 1e12, finest = 1e-11;
-      const bool       implicit = name == "sdirk2" || name == "bdf2" || name == "crank nicolson";
+      constexpr double   longest = 1e12, finest = 1e-11;
+      const bool         implicit = name == "sdirk2" || name == "bdf2" || name == "crank nicolson";
       std::ostringstream message;
       if (!implicit && stiffness > longest)
-        message << "'End time' in section 'Time' is " << time.end_time << ", " << stiffness
-                << " times the shortest decay time of this mesh: too long for the explicit stepper '"
-                << name << "'. Choose 'Steady = true' or 'Stepper = sdirk2'.";
+        message
+          << "'End time' in section 'Time' is " << time.end_time << ", " << stiffness
+          << " times the shortest decay time of this mesh: too long for the explicit stepper '"
+          << name << "'. Choose 'Steady = true' or 'Stepper = sdirk2'.";
       if (name == "rkc2" && time.time_step < 0. && time.tolerance < finest)
         message << "'Tolerance' in section 'Time' is " << time.tolerance
                 << ", which round-off does not allow 'rkc2' to reach; it needs " << finest
@@ -123,7 +125,9 @@ namespace PeriDeal
       }
     catch (const UserError &)
       {
-        errors.throw_if_any(communicator); // the cause, if the error follows from a formula's value
+        // The cause, if the error follows from a formula's value. Not if this process failed alone: the others wait elsewhere.
+        if (all_processes_arrive(communicator))
+          errors.throw_if_any(communicator);
         throw;
       }
     errors.throw_if_any(communicator);
@@ -133,17 +137,16 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::check_sides() const
   {
-    const auto               &conditions = scene.boundary_conditions;
-    std::vector<unsigned int> present(256, 0), all(256);
-    std::string               message;
+    const auto                  &conditions = scene.boundary_conditions;
+    std::set<types::boundary_id> present;
+    std::string                  message;
     for (const auto &cell : mesh->active_cell_iterators())
       if (cell->is_locally_owned())
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary())
             {
               const auto id = cell->face(f)->boundary_id();
-              if (id < 256)
-                present[id] = 1;
+              present.insert(id);
               const SideCondition *convection =
                 BoundaryConditions<dim>::find(conditions.convection, id);
               if (convection != nullptr && message.empty())
@@ -152,25 +155,29 @@ namespace PeriDeal
     throw_on_all_if_any(communicator, message);
     if (scene.domain.shape == Shape::box)
       return;
-    Utilities::MPI::max(present, communicator, all);
+    present = Utilities::MPI::compute_set_union(present, communicator);
+    present.erase(crack_boundary_id);
     std::vector<std::string> known;
-    for (unsigned int id = 0; id < all.size(); ++id)
-      if (all[id] > 0 && id != crack_boundary_id)
-        known.push_back(std::to_string(id));
-    const auto check = [&](const std::string &entry, const std::vector<SideCondition> &list) {
-      for (const SideCondition &condition : list)
+    for (const auto id : present)
+      known.push_back(std::to_string(id));
+    const auto check =
+      [&](const std::string &entry, const types::boundary_id id, const std::string &name) {
         AssertThrow(
-          condition.id < all.size() && all[condition.id] > 0,
-          UserError("'" + entry + "' in section 'Boundary conditions' names the side '" +
-                    condition.name +
+          present.count(id) > 0,
+          UserError("'" + entry + "' in section 'Boundary conditions' names the side '" + name +
                     (scene.domain.shape == Shape::mesh_file ?
                        "', which the mesh '" + scene.domain.mesh_file +
                          "' does not have. Its boundary ids are: " + join_names(known) + "." :
                        "', but the hole in section 'Domain' leaves nothing of it.")));
-    };
-    check("Dirichlet", conditions.dirichlet);
-    check("Flux", conditions.flux);
-    check("Convection", conditions.convection);
+      };
+    for (const SideCondition &condition : conditions.dirichlet)
+      check("Dirichlet", condition.id, condition.name);
+    for (const SideCondition &condition : conditions.flux)
+      check("Flux", condition.id, condition.name);
+    for (const SideCondition &condition : conditions.convection)
+      check("Convection", condition.id, condition.name);
+    for (const auto id : conditions.symmetry)
+      check("Symmetry", id, name_of_side(id, scene.domain.shape != Shape::mesh_file));
   }
 
 
@@ -189,6 +196,8 @@ namespace PeriDeal
     for (const auto &[name, value] : model.settings())
       if (name == "operator form")
         progress.line("  form: " + value);
+      else if (name == "calibration" && value.find("because") != std::string::npos)
+        progress.line("  calibration: " + value);
   }
 
 
@@ -209,18 +218,25 @@ namespace PeriDeal
     const Point<dim> middle = scene.domain.lower + 0.5 * (scene.domain.upper - scene.domain.lower);
     context.conductivity    = scene.material.conductivity.value(middle);
     context.storage         = scene.material.storage(middle);
-    context.horizon         = scene.horizon();
     context.kernel          = scene.peridynamics.kernel;
     context.exponent        = scene.peridynamics.kernel_exponent;
     if (scene.domain.shape != Shape::mesh_file)
-      context.family = lattice_terms(lattice_family<dim>(scene.domain.spacing(),
-                                                         scene.horizon(),
-                                                         scene.peridynamics.kernel,
-                                                         scene.peridynamics.kernel_exponent,
-                                                         scene.peridynamics.volume_fraction,
-                                                         scene.peridynamics.calibration),
-                                     scene.domain.spacing(),
-                                     context.conductivity);
+      {
+        context.horizon = scene.horizon();
+        context.family  = lattice_terms(lattice_family<dim>(scene.domain.spacing(),
+                                                           context.horizon,
+                                                           scene.peridynamics.kernel,
+                                                           scene.peridynamics.kernel_exponent,
+                                                           scene.peridynamics.volume_fraction,
+                                                           scene.peridynamics.calibration),
+                                       scene.domain.spacing(),
+                                       context.conductivity);
+      }
+    if (scene.domain.shape != Shape::box)
+      context.no_named = "is the solution in a box, but 'Shape' in section 'Domain' is another.";
+    else if (!scene.material.conductivity.is_constant() || !scene.material.density.is_constant() ||
+             !scene.material.heat_capacity.is_constant())
+      context.no_named = "holds for a uniform material only (section 'Material').";
     exact = make_exact_solution(scene.reference.solution, context);
   }
 
@@ -269,6 +285,12 @@ namespace PeriDeal
     make(scene.output.line, "Line", line_readers);
     probes = std::make_unique<PointTable>(scene.output.probes, dim);
     line   = std::make_unique<PointTable>(scene.output.line, dim);
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::make_writers()
+  {
     for (const auto &model : models)
       {
         std::string series = model->name();
@@ -310,6 +332,7 @@ namespace PeriDeal
     {
       Timings::Scope scope(timings, "output");
       make_evaluators();
+      make_writers();
     }
     const std::vector<double> times = output_times();
     if (scene.time.steady)
@@ -458,6 +481,7 @@ namespace PeriDeal
   template Simulation<dim>::~Simulation();                            \
   template void                Simulation<dim>::build();              \
   template void                Simulation<dim>::make_steppers();      \
+  template void                Simulation<dim>::make_evaluators();    \
   template std::vector<double> Simulation<dim>::output_times() const; \
   template void                Simulation<dim>::run();
   PERIDEAL_INSTANTIATE(1)

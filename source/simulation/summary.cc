@@ -7,6 +7,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/simulation/simulation.h>
 
+#include <limits>
 #include <sstream>
 
 #include "result_record.h"
@@ -57,6 +58,31 @@ namespace PeriDeal
     }
 
 
+    /** Lowest and highest coordinates of the whole mesh. Collective. */
+    template <int dim>
+    std::pair<Point<dim>, Point<dim>> bounding_box(const Triangulation<dim> &mesh,
+                                                   const MPI_Comm            communicator)
+    {
+      std::vector<double> lowest(2 * dim, std::numeric_limits<double>::max()), all(2 * dim);
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                lowest[d]       = std::min(lowest[d], cell->vertex(v)[d]);
+                lowest[dim + d] = std::min(lowest[dim + d], -cell->vertex(v)[d]);
+              }
+      Utilities::MPI::min(lowest, communicator, all);
+      std::pair<Point<dim>, Point<dim>> corners;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          corners.first[d]  = all[d];
+          corners.second[d] = -all[dim + d];
+        }
+      return corners;
+    }
+
+
     /** One sentence per side on what holds there. */
     template <int dim>
     json describe_sides(const Scene<dim> &scene)
@@ -81,7 +107,7 @@ namespace PeriDeal
       for (const SideCondition &c : conditions.convection)
         add(c.name, "convection " + c.coefficient.text() + ", " + c.value.text());
       for (const auto side : conditions.symmetry)
-        add(box_side_names()[side], "symmetry");
+        add(name_of_side(side, scene.domain.shape != Shape::mesh_file), "symmetry");
       return sides;
     }
 
@@ -151,8 +177,9 @@ namespace PeriDeal
                                          {"time", scene.units.time},
                                          {"temperature", scene.units.temperature}};
     static const char *const shapes[] = {"box", "plate with hole", "mesh file"};
-    summary["domain"]                 = {{"lower", coordinates(scene.domain.lower)},
-                                         {"upper", coordinates(scene.domain.upper)},
+    const auto               corners  = bounding_box(*mesh, communicator);
+    summary["domain"]                 = {{"lower", coordinates(corners.first)},
+                                         {"upper", coordinates(corners.second)},
                                          {"shape", shapes[static_cast<int>(scene.domain.shape)]}};
     summary["cells"]                  = mesh->n_global_active_cells();
     summary["cracks"]                 = json::array();
@@ -189,7 +216,8 @@ namespace PeriDeal
             write_file(directory + "line.csv", line->text());
           write_file(directory + "totals.csv", record->totals);
           write_file(directory + "scene.prm", scene_with_defaults());
-          write_file(directory + "summary.json", summary.dump(2) + "\n");
+          write_file(directory + "summary.json",
+                     summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
         }
       catch (const UserError &error)
         {

@@ -91,8 +91,8 @@ namespace PeriDeal
 
       void advance(Vector &u, const double t, const double t_end) override
       {
-        const unsigned long long n =
-          dt > 0. ? n_equal_steps(t_end - t, dt) : n_expansions(t_end - t);
+        const unsigned long long n = dt > 0. ? n_equal_steps(t_end - t, dt) :
+                                               n_expansions(t_end - t);
         for (unsigned long long k = 0; k < n; ++k)
           step(u, t, (t_end - t) / static_cast<double>(n));
         op.distribute(u, t_end);
@@ -106,7 +106,8 @@ namespace PeriDeal
 
       double expected_applications(const double time_span) const override
       {
-        const auto n = static_cast<double>(n_expansions(time_span));
+        const auto n =
+          static_cast<double>(dt > 0. ? n_equal_steps(time_span, dt) : n_expansions(time_span));
         return n * static_cast<double>(
                      expansion(spectral_bound() * time_span / n, 1e-2 * tolerance).size());
       }

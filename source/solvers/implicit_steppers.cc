@@ -284,6 +284,8 @@ namespace PeriDeal
     public:
       CrankNicolson(const Operator &op, const StepperOptions &options)
         : TwoStep(op, options, "crank nicolson")
+        , solver_tolerance(options.solver_tolerance)
+        , max_iterations(options.max_iterations)
       {
         op.initialize_vector(load);
         op.initialize_vector(start);
@@ -318,11 +320,13 @@ namespace PeriDeal
       LinearSolver &capacity_solver()
       {
         if (!mass_solver)
-          mass_solver = std::make_unique<LinearSolver>(op, 1e-12, 1000);
+          mass_solver = std::make_unique<LinearSolver>(op, solver_tolerance, max_iterations);
         return *mass_solver;
       }
 
       Vector                        load, start;
+      const double                  solver_tolerance;
+      const unsigned int            max_iterations;
       std::unique_ptr<LinearSolver> mass_solver;
     };
   } // namespace

@@ -5,6 +5,7 @@
 #include <deal.II/lac/solver_gmres.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/solvers/floating_part.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include <cmath>
@@ -66,8 +67,11 @@ namespace PeriDeal
         x = 0.;
         return 0;
       }
-    const double ratio = (a == 0.) ? (built_capacity == 0. ? 1. : 0.) :
-                                     (b / a) / (built_stiffness / built_capacity);
+    const bool   one_only = a == 0. || b == 0.; // C or K alone: built for the same one or not
+    const double ratio =
+      one_only ?
+        ((built_capacity == 0.) == (a == 0.) && (built_stiffness == 0.) == (b == 0.) ? 1. : 0.) :
+        (b / a) / (built_stiffness / built_capacity);
     if (!(ratio > 1. / 3. && ratio < 3.) || built_stiffness < 0.)
       {
         preconditioner.initialize(a, b);
@@ -98,6 +102,12 @@ namespace PeriDeal
   }
 
 
+  const TrilinosWrappers::SparseMatrix &LinearSolver::surrogate() const
+  {
+    return preconditioner.surrogate();
+  }
+
+
   unsigned int solve_steady(const Operator    &op,
                             Vector            &u,
                             const double       t,
@@ -114,7 +124,8 @@ namespace PeriDeal
     op.initialize_vector(change);
     op.distribute(u, t);
     op.residual(rhs, u, t);
-    LinearSolver       solver(op, tolerance, max_iterations);
+    LinearSolver solver(op, tolerance, max_iterations);
+    check_no_floating_part(op, solver.surrogate());
     const unsigned int n_iterations = solver.solve(0., 1., change, rhs);
     u += change;
     op.distribute(u, t);

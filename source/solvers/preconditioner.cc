@@ -75,6 +75,12 @@ namespace PeriDeal
   }
 
 
+  const TrilinosWrappers::SparseMatrix &MultigridPreconditioner::surrogate() const
+  {
+    return data->surrogate;
+  }
+
+
   void MultigridPreconditioner::vmult(Vector &y, const Vector &x) const
   {
     data->multigrid.vmult(y, x);

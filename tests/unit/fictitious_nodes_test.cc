@@ -277,7 +277,8 @@ namespace PeriDeal
   TEST(FictitiousNodes, body_narrower_than_the_horizon_is_an_error)
   {
     const std::string message = SceneTests::message_of([] {
-      Problem<1>({{"Domain/Cells", "4"},
+      Problem<2>({{"Domain/Cells", "4, 20"},
+                  {"Domain/Upper corner", "1, 5"},
                   {"Peridynamics/Horizon ratio", "6"},
                   {"Boundary conditions/Symmetry", "left"}});
     });

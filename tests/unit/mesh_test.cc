@@ -42,13 +42,13 @@ namespace PeriDeal
                 double measure = 1.;
                 if constexpr (dim > 1)
                   measure = cell->face(f)->measure();
-                own[cell->face(f)->boundary_id()] += measure;
+                own[std::min(cell->face(f)->boundary_id(), 255u)] += measure;
               }
       dealii::Utilities::MPI::sum(own, mesh.get_communicator(), all);
       std::map<unsigned int, double> measures;
       for (unsigned int id = 0; id < all.size(); ++id)
         if (all[id] > 0.)
-          measures[id] = all[id];
+          measures[id == 255 ? crack_boundary_id : id] = all[id];
       return measures;
     }
 

@@ -41,6 +41,7 @@ namespace PeriDeal
     double                   horizon  = 0.; // for nonlocal harmonics; zero: none
     KernelShape              kernel   = KernelShape::conical;
     unsigned int             exponent = 2;
+    std::string no_named; // why the named solutions do not suit the scene; empty: they do
   };
 
 

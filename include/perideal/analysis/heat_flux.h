@@ -36,12 +36,14 @@ namespace PeriDeal
   void cut_fraction(const Families<dim> &families, Vector &fraction);
 
   /**
-   * Finite element heat flux -kappa grad T at the vertices, as the mean over the adjacent cells by volume. u must have up-to-date
+   * Finite element heat flux -kappa grad T at the vertices, as the mean over the adjacent cells by volume. Cells that a crack cuts
+   * (@p cut, by active cell index) count only where a vertex has no other: their gradient runs through the crack. u must have up-to-date
    * ghosts. Values at dofs that are not vertices (Q2, Q3) are their cells' means too. Collective.
    */
   template <int dim>
   void element_heat_flux(const dealii::DoFHandler<dim> &dofs,
                          const Material                &material,
+                         const std::vector<bool>       &cut,
                          const Vector                  &u,
                          VectorField<dim>              &flux);
 } // namespace PeriDeal

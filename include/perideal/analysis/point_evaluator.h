@@ -45,7 +45,9 @@ namespace PeriDeal
     void locate_on_lattice(const Nodes<dim> &nodes, const std::vector<dealii::Point<dim>> &points);
     void locate_in_mesh(const dealii::DoFHandler<dim>         &dofs,
                         const std::vector<dealii::Point<dim>> &points);
-    void locate_nearest(const Nodes<dim> &nodes, const std::vector<dealii::Point<dim>> &points);
+    void locate_nearest(const dealii::DoFHandler<dim>         &dofs,
+                        const Nodes<dim>                      &nodes,
+                        const std::vector<dealii::Point<dim>> &points);
     void require_all_found(const std::vector<std::vector<double>> &points,
                            const std::string                      &entry) const;
 

@@ -38,6 +38,12 @@ namespace PeriDeal
   void throw_on_all_if_any(const MPI_Comm communicator, const std::string &message);
 
   /**
+   * Whether every process calls this within five seconds. For error handling: a process that failed alone must not wait for the
+   * others in a collective operation, which they would never reach.
+   */
+  bool all_processes_arrive(const MPI_Comm communicator);
+
+  /**
    * The name in @p known nearest to @p name in edit distance (upper and lower case are the same), or an empty string
    * if none is near enough to be what the user meant.
    */

@@ -88,6 +88,9 @@ namespace PeriDeal
     /** Crack-side scaling (doc/theory.md): factors of owned nodes and ghosts from the given rows; bonds_of() uses their pair means from now on. */
     void set_node_factors(std::vector<double> factors);
 
+    /** Discrete calibration had a complete family to sum over. Off the lattice a body may be too narrow for any; then it is analytic. */
+    bool has_complete_families() const;
+
     /** Whether W is symmetric. */
     bool symmetric() const;
 
@@ -97,9 +100,9 @@ namespace PeriDeal
     struct Search; // neighbours off the lattice
 
     const FamilyMember<dim> *find_member(const dealii::Tensor<1, dim> &xi) const;
-    void                     find_weights(const Scene<dim> &scene);
+    void                     find_weights();
     void                     index_lattice();
-    void                     calibrate_off_lattice(const Scene<dim> &scene);
+    void                     calibrate_off_lattice();
     void                     find_conductivities(const Scene<dim> &scene);
     void                     add_bond(const unsigned int node,
                                       const unsigned int neighbor,
@@ -125,7 +128,7 @@ namespace PeriDeal
     std::vector<CrackGeometry<dim>>  cracks;
     double                           transmission, contact_conductance;
     double                           delta, farthest = 0., factor = 1.;
-    bool                             on_lattice = false, uniform = true;
+    bool                             on_lattice = false, uniform = true, complete_families = true;
     std::vector<FamilyMember<dim>>   members, nearest, self_additions;
     std::vector<double>              conductivities, factors;
     std::vector<FictitiousNode<dim>> outside;

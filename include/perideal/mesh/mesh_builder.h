@@ -16,19 +16,16 @@
 
 namespace PeriDeal
 {
-  /** Boundary id of the two faces of a crack that is cut into the mesh. Always insulated. */
-  constexpr dealii::types::boundary_id crack_boundary_id = 100;
-
-  /** Boundary id of the hole of a plate with a hole. */
-  constexpr dealii::types::boundary_id hole_boundary_id = 6;
+  /** Boundary id of the two faces of a crack that is cut into the mesh. Always insulated. No mesh file has it. */
+  constexpr dealii::types::boundary_id crack_boundary_id =
+    dealii::numbers::internal_face_boundary_id - 1;
 
   /**
    * The mesh of a scene, distributed over the processes (in 1D every process knows all cells). Boxes are few coarse cells refined globally where the
    * cell counts allow, because every process keeps the coarse mesh; `Cracks / Mesh = faces` keeps the crack on coarse faces and
    * doubles its vertices. Boundary ids as in BoundaryConditions. Notes for the user are appended to @p notes.
    *
-   * Throws UserError: crack not on faces, mesh file unreadable, broken or of other cells than quads and hexes, sides named in the scene
-   * that the mesh does not have. Collective.
+   * Throws UserError: crack not on faces, mesh file unreadable, broken or of other cells than quads and hexes. Collective.
    */
   template <int dim>
   std::unique_ptr<dealii::Triangulation<dim>> build_mesh(const Domain<dim>        &domain,

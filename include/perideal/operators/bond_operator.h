@@ -46,6 +46,7 @@ namespace PeriDeal
     void          surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
     bool          surrogate_is_exact() const override;
     Balance       balance(const Vector &u, const double t, const bool steady) const override;
+    std::string   place_of(const unsigned int local_index) const override;
     OperatorSize  size() const override;
 
     const Families<dim> &families() const;
@@ -70,6 +71,8 @@ namespace PeriDeal
     void find_diagonal();
     void scale_crack_sides();
     void sum_bonds(Vector &y, const Vector &x, const double *outside) const;
+    void add_fictitious_heat(const Vector &u, Balance &balance) const;
+    void add_side_heat(const Vector &u, const double t, Balance &balance) const;
     void add_convection(Vector            &y,
                         const Vector      &x,
                         const unsigned int begin,

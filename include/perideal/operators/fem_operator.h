@@ -50,6 +50,7 @@ namespace PeriDeal
     void          surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
     bool          surrogate_is_exact() const override;
     Balance       balance(const Vector &u, const double t, const bool steady) const override;
+    std::string   place_of(const unsigned int local_index) const override;
     OperatorSize  size() const override;
 
     const dealii::DoFHandler<dim> &dof_handler() const;

@@ -70,14 +70,18 @@ namespace PeriDeal
         masters; // local nodes that are not coupled slaves
     };
 
-    void find_prescribed(const Families<dim> &families, const Scene<dim> &scene);
+    void find_prescribed(const Scene<dim> &scene);
     void find_slaves(const Families<dim> &families, const Scene<dim> &scene);
-    void extrapolate(const Families<dim> &families, const unsigned int side, Slave &slave) const;
-    void extrapolate_layer(const Families<dim> &families,
-                           const unsigned int   side,
-                           const Scene<dim>    &scene);
-    void couple_slaves(const Nodes<dim> &nodes);
-    void set_slaves(Vector &u, const double t, const bool homogeneous) const;
+
+    // These two return what is wrong, or nothing: only some processes may see it.
+    std::string extrapolate(const Families<dim> &families,
+                            const unsigned int   side,
+                            Slave               &slave) const;
+    std::string extrapolate_layer(const Families<dim> &families,
+                                  const unsigned int   side,
+                                  const Scene<dim>    &scene);
+    void        couple_slaves(const Nodes<dim> &nodes);
+    void        set_slaves(Vector &u, const double t, const bool homogeneous) const;
 
     const Nodes<dim>                            &nodes;
     std::vector<Kind>                            kinds; // owned and ghosts

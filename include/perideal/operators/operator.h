@@ -142,6 +142,9 @@ namespace PeriDeal
     /** Heat through each side and in the body; u must have been through distribute(u, t). @p steady leaves out storage. */
     virtual Balance balance(const Vector &u, const double t, const bool steady) const = 0;
 
+    /** Coordinates of an owned unknown for messages, as `(x, y)`. Not collective. */
+    virtual std::string place_of(const unsigned int local_index) const = 0;
+
     virtual OperatorSize size() const = 0;
 
     /** Number of calls of apply() and residual() so far. Not collective. */

@@ -13,6 +13,12 @@
 
 namespace PeriDeal
 {
+  /** Boundary id of the hole of a plate with a hole. */
+  constexpr dealii::types::boundary_id hole_boundary_id = 6;
+
+  /** Name of a side for messages and results: of a box side or the hole (@p box_sides), else the number. */
+  std::string name_of_side(const dealii::types::boundary_id id, const bool box_sides);
+
   /**
    * One condition on one side: `name` as the user wrote it, `id` the deal.II boundary id (box: 0
    * left, 1 right, 2 bottom, 3 top, 4 back, 5 front).

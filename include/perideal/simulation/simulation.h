@@ -45,6 +45,7 @@ namespace PeriDeal
     void                with_formulas(const std::function<void()> &action) const;
     void                make_steppers();
     void                make_evaluators();
+    void                make_writers();
     void                make_reference();
     void                advance_to(const double t);
     void                write_output(const double t);

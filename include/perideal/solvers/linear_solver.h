@@ -26,6 +26,9 @@ namespace PeriDeal
                        Vector       &x,
                        const Vector &rhs);
 
+    /** The operator's surrogate matrix, from which the preconditioner is made. */
+    const dealii::TrilinosWrappers::SparseMatrix &surrogate() const;
+
   private:
     const Operator         &op;
     const double            tolerance;
@@ -37,7 +40,7 @@ namespace PeriDeal
 
   /**
    * The steady state f(t) = K u; u holds the start on entry. Returns the number of iterations. Throws UserError if nothing fixes the
-   * level of the solution. Collective.
+   * level of the solution in the body or in a part that cracks have cut off. Collective.
    */
   unsigned int solve_steady(const Operator    &op,
                             Vector            &u,

@@ -23,6 +23,9 @@ namespace PeriDeal
     /** Set up for a C + b K. Collective. */
     void initialize(const double capacity_factor, const double stiffness_factor);
 
+    /** The operator's surrogate. */
+    const dealii::TrilinosWrappers::SparseMatrix &surrogate() const;
+
     /** y = P^{-1} x; entries that are not free are zero. Collective. */
     void vmult(Vector &y, const Vector &x) const;
 

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Where peridynamics differs most from finite elements, judged at the nodes."""
+
+import numpy as np
+
+from raster import is_constant_per_cell
+from read_run import DIFFERENCE
+from style import is_nothing, plain
+
+FEM, PD = "finite elements", "peridynamics"
+
+
+class Largest:
+    """The largest difference and one node that has it; zero: the models agree to round-off."""
+
+    def __init__(self, value, at, alone, zero):
+        self.value, self.at, self.alone, self.zero = value, at, alone, zero
+
+    def place(self):
+        """'at (0, 0.5)', or '... among others' where several nodes have it."""
+        numbers = [plain(float(v)) for v in self.at]
+        point = f"x = {numbers[0]}" if len(numbers) == 1 else f"({', '.join(numbers)})"
+        return f"at {point}" + ("" if self.alone else " among others")
+
+
+def difference_field(run, index):
+    """Peridynamics minus finite elements at the vertices of the cells, or None."""
+    if any(m not in run.models or run.field_file(index, m) is None for m in (FEM, PD)):
+        return None
+    values = run.field(index, PD, DIFFERENCE, required=False)
+    if values is None and run.mesh(index, PD) is run.mesh(index, FEM):
+        values = run.field(index, PD, "temperature") - run.field(index, FEM, "temperature")
+    return values
+
+
+def largest(run, index):
+    """The largest difference at a written time, or None where there is none to tell."""
+    values = difference_field(run, index)
+    if values is None or not np.isfinite(values).any():
+        return None
+    mesh = run.mesh(index, PD)
+    points = mesh.nodes
+    if is_constant_per_cell(mesh, values):  # nodes at cell centres
+        points, values = mesh.nodes[mesh.cells].mean(axis=1), values[mesh.cells[:, 0]]
+    size = np.abs(values)
+    chosen = int(np.nanargmax(size))
+    equal = points[size >= (1 - 1e-6) * size[chosen]]
+    extent = max(np.ptp(points, axis=0).max(), 1e-300)
+    alone = bool(np.abs(equal - points[chosen]).max() < 1e-9 * extent)
+    at = np.where(np.abs(points[chosen]) < 1e-12 * extent, 0.0, points[chosen])
+    return Largest(float(values[chosen]), at, alone,
+                   is_nothing(values, run.field(index, FEM, "temperature")))
