@@ -113,8 +113,8 @@ namespace PeriDeal
       EntryType::text,
       "",
       "",
-      "Gmsh file (.msh) of quadrilaterals or hexahedra, relative to the working directory. Its "
-      "boundary ids name the sides; give `Horizon` as a length.");
+      "Gmsh file (.msh) of quadrilaterals or hexahedra, relative to the working directory or else to the "
+      "folder of the scene file. Its boundary ids name the sides; give `Horizon` as a length.");
     parse();
   }
 

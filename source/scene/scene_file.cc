@@ -8,6 +8,7 @@
 #include <perideal/scene/scene_lines.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -154,6 +155,15 @@ namespace PeriDeal
     }
 
 
+    /** The path as it is, or beside the scene file if there is nothing at that path but something there. */
+    std::string found_near(const std::string &path, const std::string &scene_file)
+    {
+      namespace fs = std::filesystem;
+      const fs::path beside = fs::path(scene_file).parent_path() / path;
+      return !path.empty() && !fs::exists(path) && fs::exists(beside) ? beside.string() : path;
+    }
+
+
     template <int dim>
     void check_text(const SceneText &text)
     {
@@ -259,6 +269,7 @@ namespace PeriDeal
         }
       scene.parse_and_validate();
     });
+    scene.domain.mesh_file = found_near(scene.domain.mesh_file, text.file_name);
   }
 
 

@@ -106,6 +106,11 @@ namespace PeriDeal
                           " processes without any. Use fewer processes or more 'Cells' (section "
                           "'Domain')."));
     with_formulas([&] { check_sides(); });
+    if (scene.peridynamics.flux_treatment != FluxTreatment::natural &&
+        scene.boundary_conditions.flux.empty())
+      record->notes.push_back(
+        "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' (an insulated side "
+        "needs 'side: 0' there).");
     for (const Model model : scene.general.models)
       {
         with_formulas([&] { models.push_back(make_model_run(model, *mesh, scene)); });

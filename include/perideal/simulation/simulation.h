@@ -21,7 +21,7 @@ namespace PeriDeal
 
   /**
    * Owns and wires the members of a run: mesh, models, steppers, output. All models of the scene advance together from one output time
-   * to the next, so that they can be compared. No numerics here. All functions are collective and throw UserError.
+   * to the next, so that they can be compared. No discretisation and no time stepping here. All functions are collective and throw UserError.
    */
   template <int dim>
   class Simulation
