@@ -9,7 +9,7 @@ Runs each scene (all below prm/ if none is named), draws its report, and keeps o
 doc/figures/NAME.png: the last temperature, scaled to a thumbnail. For prm/quick_start.prm the
 figure is kept in full width too, as doc/figures/quick_start_wide.png. A picture that is newer
 than its scene is left as it is, unless --all is given. The table names every scene below prm/ with
-its title and the first sentence of its comment; --table writes the table only.
+its title and the first sentence of its comment, up to a colon or bracket; --table writes the table only.
 """
 
 import argparse
@@ -82,8 +82,9 @@ def description(scene):
             comment.append(words)
     # A full stop that ends a sentence: not that of an abbreviation such as J. Comput. Phys.
     sentence = re.match(r".*?[a-z0-9)]{3}\.(?= [A-Z][a-z]* [a-z]|$)", " ".join(comment))
+    text = sentence.group(0) if sentence else " ".join(comment)
     return (title.group(1) if title else scene.stem,
-            sentence.group(0) if sentence else " ".join(comment))
+            re.split(r": | \(", text, maxsplit=1)[0].rstrip(".") + ".")
 
 
 def write_table():

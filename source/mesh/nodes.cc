@@ -101,7 +101,7 @@ namespace PeriDeal
                   fe.n_dofs_per_cell() == (fe.n_dofs_per_vertex() > 0 ? 1u << dim : 1u),
                 ExcMessage("Peridynamic nodes are the dofs of FE_Q(1) or FE_DGQ(0), found " +
                            fe.get_name() + "."));
-    find_positions(domain);
+    find_positions();
     find_volumes(nodal_volume);
     find_boundary_shares();
     if (cracks.mesh == CrackMesh::faces)
@@ -111,7 +111,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Nodes<dim>::find_positions(const Domain<dim> &)
+  void Nodes<dim>::find_positions()
   {
     positions.resize(owned_count);
     const bool         vertices = is_vertex_element(*dofs);
@@ -158,12 +158,12 @@ namespace PeriDeal
       UserError("'Nodal volume = full' in section 'Peridynamics' needs a lattice of equal cells "
                 "(Shape = box or plate with hole); use 'partial' with a mesh file."));
     FEValues<dim> values(dofs->get_fe(), QGauss<dim>(2), update_values | update_JxW_values);
-    typename DoFHandler<dim>::active_cell_iterator current;
+    unsigned int  current = numbers::invalid_unsigned_int; // index of the cell that values are of
     for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &cell, const unsigned int v) {
-      if (current != cell)
+      if (current != cell->active_cell_index())
         {
           values.reinit(cell);
-          current = cell;
+          current = cell->active_cell_index();
         }
       for (const unsigned int q : values.quadrature_point_indices())
         volumes[node] += values.shape_value(v, q) * values.JxW(q);

@@ -15,13 +15,26 @@ namespace PeriDeal
   template <int dim>
   void BondOperator<dim>::add_fictitious_heat(const Vector &u, Balance &balance) const
   {
-    // Bonds to fictitious nodes carry heat through the side that these lie behind.
-    const Nodes<dim> &nodes = bonds.nodes();
     if (bonds.fictitious().empty())
       return;
-    std::map<unsigned int, const SideCondition *> prescribed;
+    const Nodes<dim> &nodes     = bonds.nodes();
+    const auto       &dirichlet = scene.boundary_conditions.dirichlet;
+    // Which condition prescribes a node, of ghosts too: its number from 1 on.
+    Vector condition_of(nodes.partitioner());
     for (const auto &entry : constraints.prescribed_nodes())
-      prescribed[entry.node] = entry.condition;
+      condition_of.local_element(entry.node) =
+        1. + static_cast<double>(entry.condition - dirichlet.data());
+    condition_of.update_ghost_values();
+    const auto condition = [&](const unsigned int node) -> const SideCondition * {
+      const auto number = static_cast<std::size_t>(condition_of.local_element(node));
+      return number == 0 ? nullptr : &dirichlet[number - 1];
+    };
+    // The side that heat comes through: the one whose value the fictitious node has, be it mirrored at a symmetry side as well.
+    const auto side_of = [&](const FictitiousNode<dim> &node) {
+      const SideCondition *const given = node.terms.empty() ? condition(node.mirror) :
+                                                              node.terms.back().condition;
+      return given != nullptr ? given->name : name_of_side(node.side, true);
+    };
     std::vector<typename Families<dim>::Bond> family;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
@@ -40,16 +53,9 @@ namespace PeriDeal
             {
               const unsigned int f    = bond.neighbor - nodes.n_local();
               const double       heat = bond.weight * (outside_values[f] - u.local_element(i));
-              double            &side =
-                balance
-                  .sides[name_of_side(bonds.fictitious()[f].side, nodes.lattice().has_value())];
-              side += heat;
               // In a prescribed node's own sum already, with the other sign.
-              if (const auto entry = prescribed.find(i); entry != prescribed.end())
-                {
-                  side -= heat;
-                  balance.sides[entry->second->name] += heat;
-                }
+              const SideCondition *const own = condition(i);
+              balance.sides[own != nullptr ? own->name : side_of(bonds.fictitious()[f])] += heat;
             }
       }
   }

@@ -4,7 +4,7 @@
 
 Reference: finite elements on doubled vertices, 60 to 480 cells, Richardson-extrapolated (independent program); the field has
 square-root singularities at the tips, so that everything here converges with order 1. The peridynamic values at 60 to 240 cells are those
-of an independent dense program with the same rule: nodes on the crack belong to its left side, and bonds through the very tips are cut.
+of an independent program (tests/reference) with the same rule: nodes on the crack belong to its left side, and bonds through the very tips are cut.
 
     insulated_crack.py finite_elements | peridynamics | pairs | fine
 """

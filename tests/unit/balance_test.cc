@@ -48,6 +48,34 @@ namespace PeriDeal
   } // namespace
 
 
+  TEST(Balance, through_sides_beside_symmetry)
+  {
+    // A linear field, exact with mirrored layers: all heat goes through the two sides with values, none through the others.
+    for (const std::string placement : {"vertices", "cell centers"})
+      for (const bool upright : {true, false})
+        {
+          const std::string hot = upright ? "top" : "left", cold = upright ? "bottom" : "right",
+                            beside = upright ? "left; right" : "bottom; top";
+          const Problem<2> problem({{"Domain/Cells", "12, 12"},
+                                    {"Domain/Nodes", placement},
+                                    {"Peridynamics/Boundary treatment", "fictitious mirror"},
+                                    {"Boundary conditions/Dirichlet", hot + ": 3; " + cold + ": 1"},
+                                    {"Boundary conditions/Symmetry", beside}},
+                                   Model::peridynamics);
+          Vector           u = problem.values(
+            [&](const Point<2> &p) { return upright ? 1. + 2. * p[1] : 3. - 2. * p[0]; });
+          problem.op().distribute(u, 0.);
+          const Balance balance = problem.op().balance(u, 0., true);
+          ASSERT_EQ(balance.sides.size(), 4u);
+          for (const auto &[name, heat] : balance.sides)
+            {
+              const double wanted = name == hot ? 2. : name == cold ? -2. : 0.;
+              EXPECT_NEAR(heat, wanted, 1e-12) << name;
+            }
+        }
+  }
+
+
   TEST(Balance, peridynamics)
   {
     for (const std::string placement : {"vertices", "cell centers"})

@@ -99,7 +99,7 @@ namespace PeriDeal
     std::size_t memory_consumption() const;
 
   private:
-    void find_positions(const Domain<dim> &domain);
+    void find_positions();
     void find_volumes(const NodalVolume nodal_volume);
     void find_boundary_shares();
     void find_crack_points(const Cracks<dim> &cracks);
