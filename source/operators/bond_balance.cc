@@ -15,8 +15,6 @@ namespace PeriDeal
   template <int dim>
   void BondOperator<dim>::add_fictitious_heat(const Vector &u, Balance &balance) const
   {
-    if (bonds.fictitious().empty())
-      return;
     const Nodes<dim> &nodes     = bonds.nodes();
     const auto       &dirichlet = scene.boundary_conditions.dirichlet;
     // Which condition prescribes a node, of ghosts too: its number from 1 on.
@@ -25,6 +23,8 @@ namespace PeriDeal
       condition_of.local_element(entry.node) =
         1. + static_cast<double>(entry.condition - dirichlet.data());
     condition_of.update_ghost_values();
+    if (bonds.fictitious().empty()) // of this process
+      return;
     const auto condition = [&](const unsigned int node) -> const SideCondition * {
       const auto number = static_cast<std::size_t>(condition_of.local_element(node));
       return number == 0 ? nullptr : &dirichlet[number - 1];
