@@ -264,18 +264,9 @@ namespace PeriDeal
     std::string point;
     for (unsigned int d = 0; d < dim; ++d)
       point += (d == 0 ? "" : ", ") + number_text(p[d]);
-    try
-      {
-        entry_error(where,
-                    "the value of '" + formula + "' is not finite at (" + point +
-                      "), t = " + number_text(t) + ". Change the formula so that it is a number everywhere.");
-      }
-    catch (const UserError &error)
-      {
-        if (collector == nullptr)
-          throw;
-        collector->message = error.message();
-      }
+    report_formula_error("Entry " + where + ": the value of '" + formula + "' is not finite at (" +
+                         point + "), t = " + number_text(t) +
+                         ". Change the formula so that it is a number everywhere.");
   }
 
 
@@ -300,6 +291,14 @@ namespace PeriDeal
   const std::string &Expression::text() const
   {
     return formula;
+  }
+
+
+  void report_formula_error(const std::string &message)
+  {
+    AssertThrow(collector != nullptr, UserError(message));
+    if (collector->message.empty())
+      collector->message = message;
   }
 
 

@@ -51,10 +51,11 @@ namespace PeriDeal
     {
       for (SceneSection *const section : sections)
         {
-          if (!section->name().empty())
-            prm.enter_subsection(section->name());
+          const std::vector<std::string> path = split_list(section->name(), '/');
+          for (const std::string &name : path)
+            prm.enter_subsection(name);
           section->declare_parameters(prm);
-          if (!section->name().empty())
+          for (std::size_t k = 0; k < path.size(); ++k)
             prm.leave_subsection();
         }
     }

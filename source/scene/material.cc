@@ -57,11 +57,13 @@ namespace PeriDeal
 
   void Material::parse()
   {
-    const auto read = [this](const std::string &entry, Expression &value) {
-      value = Expression(text(entry), where(entry));
+    phases.parse();
+    const auto read = [this](const std::string &entry, MaterialProperty &property) {
+      const Expression value(text(entry), where(entry));
       refuse_time(value, where(entry));
       if (value.is_constant() && !(value.value(dealii::Point<1>()) > 0.))
         error(entry, "found " + text(entry) + ", needs a value greater than 0.");
+      property = phases.property(entry, value);
     };
     read("Conductivity", conductivity);
     read("Density", density);

@@ -239,6 +239,7 @@ namespace PeriDeal
     return {&general,
             &domain,
             &material,
+            &material.phases,
             &initial_and_source,
             &boundary_conditions,
             &cracks,

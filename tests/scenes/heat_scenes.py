@@ -58,6 +58,56 @@ def varying_conductivity():
     table.show()
 
 
+def layers():
+    """Two phases in series and in parallel, 1:100, the interface between nodes: closed forms for the heat."""
+    table = Comparison("Two layers, conductivity 1 and 100, steady: heat")
+    phases = {"Material/Conductivity": "1", "Material/Phases/Conductivity": "good: 100", "Material/Interface rule": "harmonic",
+              "Domain/Cells": "21, 21", "Boundary conditions/Dirichlet": "top: 100; bottom: -100", "Output/Probes": "", "Output/Line": "",
+              **STEADY}
+    # The interface runs through the middle of a row of cells: finite elements take the mean there, which is right in parallel only.
+    # Measured: 4.8e-2, 4.0e-4, 1e-14 and 2.8e-2 (bonds across the interface, of first order in the horizon).
+    bounds = {("series", "finite elements"): 7.2e-2, ("series", "peridynamics"): 6e-4, ("parallel", "finite elements"): 1e-10,
+              ("parallel", "peridynamics"): 4.2e-2}
+    # Heights and widths of 1 around 0, 200 degrees over a length of 2.
+    series, parallel = 200 * 2 / (1 / 1 + 1 / 100), 200 / 2 * (1 + 100)
+    for name, region, heat in (("series", "good: y > 0", series), ("parallel", "good: x > 0", parallel)):
+        run = run_quietly("composite", phases, {"Material/Phases/Regions": region})
+        for model in ("finite elements", "peridynamics"):
+            found = run.model(model)["boundary flux"]["top"]
+            table.add(f"{name}, {model}", found, heat, relative=bounds[name, model])
+            table.add_limit(f"{name}, {model}: imbalance of heat", abs(run.model(model)["heat balance"]["imbalance"]), 1e-7)
+    table.show()
+
+
+def composite():
+    """Round inclusions, 1:100: the three rules for bonds across the rim, against finite elements on a fine mesh."""
+    table = Comparison("Plate with round inclusions, steady")
+    cells = (40, 80, 160)
+    quiet = {**STEADY, "Output/Line": ""}
+    fine = [run_quietly("composite", quiet, Models="finite elements", Domain__Cells=f"{n}, {n}").model("finite elements")["boundary flux"]["top"]
+            for n in (320, 640)]
+    reference = 2 * fine[1] - fine[0]  # first order: the rim runs through cells
+    rows = [("finite elements", "", 640, fine[1], fine[1] / reference - 1)]
+    gaps = {}
+    for rule in ("harmonic", "minimum", "arithmetic"):
+        for n in cells:
+            run = run_quietly("composite", quiet, Material__Interface_rule=rule, Domain__Cells=f"{n}, {n}")
+            for model in ("finite elements", "peridynamics"):
+                if model == "finite elements" and rule != "harmonic":
+                    continue
+                heat = run.model(model)["boundary flux"]["top"]
+                key = model if model == "finite elements" else rule
+                gaps.setdefault(key, []).append(abs(heat / reference - 1))
+                rows.append((model, rule if model == "peridynamics" else "", n, heat, heat / reference - 1))
+    print_table("Heat through the plate", ("model", "rule", "cells", "heat", "relative gap"), rows)
+    # Measured: 1.0e-2, 2.5e-4, 1.5e-2 and 4.2e-2.
+    bounds = {"finite elements": 1.5e-2, "harmonic": 3.8e-4, "minimum": 2.2e-2, "arithmetic": 6.3e-2}
+    for key, found in gaps.items():
+        table.add_limit(f"{key}: relative gap, 160 cells", found[-1], bounds[key])
+        table.add_limit(f"{key}: gap at 160 cells over that at 40", found[-1] / found[0], 0.6)
+    table.show()
+
+
 def plate_with_hole():
     """Both models on one staircase, and finite elements of degree 2 on a mesh that follows the circle."""
     table = Comparison("Plate with a hole, steady")
@@ -190,7 +240,7 @@ def bars_2010():
 
 
 def main():
-    parts = {function.__name__: function for function in (harmonics, varying_conductivity, plate_with_hole, convection, gmsh_plate,
+    parts = {function.__name__: function for function in (layers, composite, harmonics, varying_conductivity, plate_with_hole, convection, gmsh_plate,
                                                           block_with_crack, example_3, bars_2010)}
     for name in sys.argv[1:] or parts:
         parts[name]()

@@ -59,6 +59,10 @@ namespace PeriDeal
   };
 
 
+  /** Throws the UserError, or keeps it while DeferredFormulaErrors collects such errors: found when a formula's value is used. */
+  void report_formula_error(const std::string &message);
+
+
   /**
    * While this is alive, a formula whose value is not finite gives NaN, and the first such error is kept instead of thrown.
    *
@@ -78,6 +82,7 @@ namespace PeriDeal
 
   private:
     friend class Expression;
+    friend void report_formula_error(const std::string &message);
     std::string message;
   };
 } // namespace PeriDeal

@@ -5,21 +5,23 @@
 
 #include <perideal/scene/choices.h>
 #include <perideal/scene/expression.h>
+#include <perideal/scene/phases.h>
 #include <perideal/scene/section.h>
 
 namespace PeriDeal
 {
   /**
    * Section `Material`: conductivity and storage (Density x Heat capacity) as expressions of x, y,
-   * z.
+   * z, and in its subsection `Phases` those of parts of the body.
    */
   class Material : public SceneSection
   {
   public:
     Material();
 
-    Expression    conductivity, density, heat_capacity;
-    InterfaceRule interface_rule = InterfaceRule::arithmetic;
+    MaterialProperty conductivity, density, heat_capacity;
+    InterfaceRule    interface_rule = InterfaceRule::arithmetic;
+    Phases           phases;
 
     bool uniform_conductivity() const;
 

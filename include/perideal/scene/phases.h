@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/expression.h>
+#include <perideal/scene/section.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * A part of the body with a material of its own: where a formula of x, y, z is greater than 0, or one of the shapes circle, rectangle,
+   * polygon (2D), sphere, box (3D) with its rim, given by numbers.
+   */
+  class Region
+  {
+  public:
+    /**
+     * @param text  a formula, `circle(x, y, r)`, `rectangle(x0, y0, x1, y1)`, `polygon(x0, y0, x1, y1, x2, y2, ...)`, `sphere(x, y, z, r)`
+     *              or `box(x0, y0, z0, x1, y1, z1)`
+     * @param where entry and section for messages. Throws UserError for wrong formulas and shapes of no size.
+     */
+    Region(const std::string &text, const std::string &where);
+
+    template <int dim>
+    bool contains(const dealii::Point<dim> &p) const;
+
+  private:
+    enum class Kind
+    {
+      formula,
+      ball,
+      box,
+      polygon
+    };
+
+    bool in_polygon(const double x, const double y) const;
+
+    Kind                kind = Kind::formula;
+    Expression          formula;
+    std::vector<double> numbers;
+    unsigned int        n_coordinates = 2;  // of a shape
+    double              slack         = 0.; // round-off that still counts as the rim
+  };
+
+
+  /** The named regions of a scene. They must not overlap; where none is, the entries of section `Material` hold. */
+  struct Regions
+  {
+    std::vector<std::string> names;
+    std::vector<Region>      regions;
+    std::string              where;
+
+    /** Number of the region at a point from 0 on, or -1. Throws the UserError of an overlap, or defers it (report_formula_error()). */
+    template <int dim>
+    int at(const dealii::Point<dim> &p) const;
+  };
+
+
+  /** A property of the material, one formula of x, y, z for each phase that has its own and one for all else. */
+  class MaterialProperty
+  {
+  public:
+    MaterialProperty() = default;
+
+    /** The same formula everywhere. */
+    explicit MaterialProperty(const Expression &everywhere);
+
+    MaterialProperty(const Expression                             &elsewhere,
+                     const std::shared_ptr<const Regions>         &regions,
+                     const std::vector<std::optional<Expression>> &of_regions);
+
+    template <int dim>
+    double value(const dealii::Point<dim> &p) const;
+
+    /** One number in the whole body. */
+    bool is_constant() const;
+
+  private:
+    Expression                             elsewhere{1.};
+    std::shared_ptr<const Regions>         regions; // null: one formula everywhere
+    std::vector<std::optional<Expression>> of_regions;
+  };
+
+
+  /** Section `Material/Phases`. */
+  class Phases : public SceneSection
+  {
+  public:
+    Phases();
+
+    /** Throws UserError: names twice, regions without a material, materials of regions that do not exist, wrong formulas. */
+    void parse();
+
+    /** The property of that name, with the value elsewhere from section `Material`. */
+    MaterialProperty property(const std::string &entry, const Expression &elsewhere) const;
+
+    const Regions &all() const;
+
+  private:
+    std::vector<std::optional<Expression>> read(const std::string &entry) const;
+
+    std::shared_ptr<const Regions> regions;
+  };
+} // namespace PeriDeal

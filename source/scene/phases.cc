@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/lists.h>
+#include <perideal/scene/phases.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    /** The arguments of `name(...)`, or nothing if the text is something else. */
+    std::optional<std::vector<std::string>> arguments_of(const std::string &text,
+                                                         const std::string &name)
+    {
+      if (text.compare(0, name.size(), name) != 0 || text.empty() || text.back() != ')')
+        return {};
+      const std::string rest = trimmed(text.substr(name.size()));
+      if (rest.empty() || rest.front() != '(')
+        return {};
+      // The first parenthesis has to close at the end: not `circle(...) - box(...)`.
+      int depth = 0;
+      for (std::size_t i = 0; i < rest.size(); ++i)
+        {
+          depth += rest[i] == '(' ? 1 : rest[i] == ')' ? -1 : 0;
+          if (depth == 0 && i + 1 < rest.size())
+            return {};
+        }
+      return split_list(rest.substr(1, rest.size() - 2), ',');
+    }
+
+
+    std::vector<double> numbers_of(const std::vector<std::string> &texts, const std::string &where)
+    {
+      std::vector<double> numbers;
+      for (const std::string &text : texts)
+        {
+          const Expression number(text, where);
+          if (!number.is_constant())
+            entry_error(where, "'" + text + "' depends on x, y, z or t; shapes need numbers.");
+          numbers.push_back(number.value(dealii::Point<1>()));
+        }
+      return numbers;
+    }
+  } // namespace
+
+
+  Region::Region(const std::string &text, const std::string &where)
+  {
+    struct Shape
+    {
+      const char  *name;
+      Kind         kind;
+      unsigned int n_coordinates, n_numbers; // polygon: at least
+      const char  *form;
+    };
+    static const Shape shapes[] = {
+      {"circle", Kind::ball, 2, 3, "circle(x, y, radius)"},
+      {"sphere", Kind::ball, 3, 4, "sphere(x, y, z, radius)"},
+      {"rectangle", Kind::box, 2, 4, "rectangle(x0, y0, x1, y1)"},
+      {"box", Kind::box, 3, 6, "box(x0, y0, z0, x1, y1, z1)"},
+      {"polygon", Kind::polygon, 2, 6, "polygon(x0, y0, x1, y1, x2, y2, ...)"}};
+    for (const Shape &shape : shapes)
+      {
+        const auto arguments = arguments_of(text, shape.name);
+        if (!arguments)
+          continue;
+        const std::size_t n = arguments->size();
+        if (shape.kind == Kind::polygon ? n < 6 || n % 2 != 0 : n != shape.n_numbers)
+          entry_error(where, "'" + text + "' needs the form " + shape.form + ".");
+        kind          = shape.kind;
+        n_coordinates = shape.n_coordinates;
+        numbers       = numbers_of(*arguments, where);
+        double size   = kind == Kind::ball ? numbers.back() : 0.;
+        if (kind == Kind::box)
+          {
+            size = numbers[n_coordinates] - numbers[0];
+            for (unsigned int d = 0; d < n_coordinates; ++d)
+              size = std::min(size, numbers[n_coordinates + d] - numbers[d]);
+          }
+        else if (kind == Kind::polygon)
+          for (std::size_t i = 2; i < n; ++i)
+            size = std::max(size, std::abs(numbers[i] - numbers[i % 2]));
+        if (!(size > 0.))
+          entry_error(where,
+                      "'" + text + "' has no size; it needs the form " + shape.form +
+                        (kind == Kind::box ? " with the lower corner first." : "."));
+        slack = 1e-10 * size;
+        return;
+      }
+    formula = Expression(text, where);
+    if (formula.depends_on_time())
+      entry_error(where, "'" + text + "' depends on t; known variables here: x, y, z.");
+  }
+
+
+  bool Region::in_polygon(const double x, const double y) const
+  {
+    const std::size_t n      = numbers.size() / 2;
+    bool              inside = false;
+    for (std::size_t i = 0; i < n; ++i)
+      {
+        const double ax = numbers[2 * i], ay = numbers[2 * i + 1];
+        const double bx = numbers[2 * ((i + 1) % n)], by = numbers[2 * ((i + 1) % n) + 1];
+        const double ex = bx - ax, ey = by - ay, length_square = ex * ex + ey * ey;
+        const double along = length_square > 0. ?
+                               std::clamp(((x - ax) * ex + (y - ay) * ey) / length_square, 0., 1.) :
+                               0.;
+        if (std::hypot(ax + along * ex - x, ay + along * ey - y) <= slack)
+          return true;
+        if ((ay > y) != (by > y) && x < ax + (y - ay) / ey * ex)
+          inside = !inside;
+      }
+    return inside;
+  }
+
+
+  template <int dim>
+  bool Region::contains(const dealii::Point<dim> &p) const
+  {
+    if (kind == Kind::formula)
+      return formula.value(p) > 0.;
+    double x[3] = {0., 0., 0.};
+    for (unsigned int d = 0; d < dim; ++d)
+      x[d] = p[d];
+    if (kind == Kind::polygon)
+      return in_polygon(x[0], x[1]);
+    double square = 0.;
+    for (unsigned int d = 0; d < n_coordinates; ++d)
+      if (kind == Kind::ball)
+        square += (x[d] - numbers[d]) * (x[d] - numbers[d]);
+      else if (x[d] < numbers[d] - slack || x[d] > numbers[n_coordinates + d] + slack)
+        return false;
+    return kind == Kind::box || std::sqrt(square) <= numbers.back() + slack;
+  }
+
+
+  template <int dim>
+  int Regions::at(const dealii::Point<dim> &p) const
+  {
+    int found = -1;
+    for (unsigned int k = 0; k < regions.size(); ++k)
+      {
+        if (!regions[k].contains(p))
+          continue;
+        if (found < 0)
+          {
+            found = static_cast<int>(k);
+            continue;
+          }
+        std::string point;
+        for (unsigned int d = 0; d < dim; ++d)
+          point += (d == 0 ? "" : ", ") + number_text(p[d]);
+        report_formula_error(
+          "Entry " + where + ": the phases '" + names[found] + "' and '" + names[k] +
+          "' overlap at (" + point +
+          "). Change a region so that every point belongs to one phase at most.");
+      }
+    return found;
+  }
+
+
+  MaterialProperty::MaterialProperty(const Expression &everywhere)
+    : elsewhere(everywhere)
+  {}
+
+
+  MaterialProperty::MaterialProperty(const Expression                             &elsewhere,
+                                     const std::shared_ptr<const Regions>         &regions,
+                                     const std::vector<std::optional<Expression>> &of_regions)
+    : elsewhere(elsewhere)
+    , of_regions(of_regions)
+  {
+    // Where no phase has its own value, there is nothing to look up.
+    if (std::any_of(of_regions.begin(), of_regions.end(), [](const auto &formula) {
+          return formula.has_value();
+        }))
+      this->regions = regions;
+  }
+
+
+  template <int dim>
+  double MaterialProperty::value(const dealii::Point<dim> &p) const
+  {
+    if (regions == nullptr)
+      return elsewhere.value(p);
+    const int k = regions->at(p);
+    return k >= 0 && of_regions[k] ? of_regions[k]->value(p) : elsewhere.value(p);
+  }
+
+
+  bool MaterialProperty::is_constant() const
+  {
+    return regions == nullptr && elsewhere.is_constant();
+  }
+
+
+  Phases::Phases()
+    : SceneSection("Material/Phases")
+  {
+    const std::string form =
+      " of each phase: `name: formula of x, y, z`, several separated by `;`. A phase that is not named here "
+      "has the value of section `Material`.";
+    declare(
+      "Regions",
+      EntryType::list,
+      "",
+      "",
+      "Parts of the body with a material of their own: `name: region`, several separated by `;`. A region is where a formula of x, y, "
+      "z is greater than 0, or `circle(x, y, r)`, `rectangle(x0, y0, x1, y1)`, `polygon(x0, y0, x1, y1, ...)`, `sphere(x, y, z, r)`, "
+      "`box(x0, y0, z0, x1, y1, z1)`, their rims included. Regions must not overlap; outside them the entries of section `Material` "
+      "hold.");
+    declare("Conductivity",
+            EntryType::list,
+            "",
+            "power/(length temperature)",
+            "Thermal conductivity" + form);
+    declare("Density", EntryType::list, "", "mass/length^3", "Density" + form);
+    declare("Heat capacity",
+            EntryType::list,
+            "",
+            "energy/(mass temperature)",
+            "Heat capacity" + form);
+    parse();
+  }
+
+
+  std::vector<std::optional<Expression>> Phases::read(const std::string &entry) const
+  {
+    std::vector<std::optional<Expression>> list(regions->names.size());
+    for (const std::string &piece : split_list(text(entry), ';'))
+      {
+        const auto        name_value = name_and_value(piece, where(entry));
+        const std::string at         = where(entry) + ", phase '" + name_value.first + "'";
+        const auto        found =
+          std::find(regions->names.begin(), regions->names.end(), name_value.first);
+        if (found == regions->names.end())
+          error(entry,
+                "there is no phase '" + name_value.first + "' in 'Regions'" +
+                  (regions->names.empty() ?
+                     "." :
+                     "; the phases are: " + join_names(regions->names) + ".") +
+                  did_you_mean(name_value.first, regions->names));
+        std::optional<Expression> &value = list[found - regions->names.begin()];
+        if (value)
+          error(entry, "the phase '" + name_value.first + "' is named twice.");
+        value = Expression(name_value.second, at);
+        if (value->depends_on_time())
+          entry_error(at,
+                      "'" + name_value.second + "' depends on t; known variables here: x, y, z.");
+        if (value->is_constant() && !(value->value(dealii::Point<1>()) > 0.))
+          entry_error(at, "found " + name_value.second + ", needs a value greater than 0.");
+      }
+    return list;
+  }
+
+
+  void Phases::parse()
+  {
+    auto list   = std::make_shared<Regions>();
+    list->where = where("Regions");
+    for (const std::string &piece : split_list(text("Regions"), ';'))
+      {
+        const auto name_value = name_and_value(piece, where("Regions"));
+        if (std::find(list->names.begin(), list->names.end(), name_value.first) !=
+            list->names.end())
+          error("Regions", "the phase '" + name_value.first + "' is named twice.");
+        list->names.push_back(name_value.first);
+        list->regions.emplace_back(name_value.second,
+                                   where("Regions") + ", phase '" + name_value.first + "'");
+      }
+    regions = list;
+    std::vector<bool> has_material(regions->names.size(), false);
+    for (const char *const entry : {"Conductivity", "Density", "Heat capacity"})
+      {
+        const auto values = read(entry);
+        for (std::size_t k = 0; k < values.size(); ++k)
+          has_material[k] = has_material[k] || values[k].has_value();
+      }
+    for (std::size_t k = 0; k < has_material.size(); ++k)
+      if (!has_material[k])
+        error(
+          "Regions",
+          "the phase '" + regions->names[k] +
+            "' has no material: name it in 'Conductivity', 'Density' or 'Heat capacity' of this section.");
+  }
+
+
+  MaterialProperty Phases::property(const std::string &entry, const Expression &elsewhere) const
+  {
+    return MaterialProperty(elsewhere, regions, read(entry));
+  }
+
+
+  const Regions &Phases::all() const
+  {
+    return *regions;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                          \
+  template bool   Region::contains<dim>(const dealii::Point<dim> &) const; \
+  template int    Regions::at<dim>(const dealii::Point<dim> &) const;      \
+  template double MaterialProperty::value<dim>(const dealii::Point<dim> &) const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Every scene of prm/ as it is, but without field files: it runs to its end, keeps its heat, and its comment teaches."""
+
+import glob
+import os
+import time
+
+from scene_test import SOURCE_DIR, check, check_less, finish, print_table, run_scene
+
+# Slaves of extrapolated fluxes and the papers' self term do not conserve heat (doc/theory.md).
+NOT_CONSERVING = ("_paper.prm", "bobaru_2010_example_")
+
+
+def comment_of(path):
+    """The paragraphs at the top of a scene."""
+    lines = []
+    with open(path) as file:
+        for line in file:
+            if not line.startswith("#"):
+                break
+            lines.append(line[1:].strip())
+    return " ".join(lines)
+
+
+def main():
+    rows = []
+    for path in sorted(glob.glob(os.path.join(SOURCE_DIR, "prm", "**", "*.prm"), recursive=True)):
+        name = os.path.relpath(path, SOURCE_DIR)
+        comment = comment_of(path)
+        check(len(comment) > 150 and "What to look for" in comment, f"{name}: the comment says what to look for")
+        begin = time.time()
+        run = run_scene(name, {"Output/Fields": "none"})
+        seconds = time.time() - begin
+        for model in run.summary["models"]:
+            entry = run.model(model)
+            moved = sum(abs(flux) for flux in entry["boundary flux"].values())
+            lost = abs(entry["heat balance"]["imbalance"]) / moved
+            conserving = model == "finite elements" or not any(part in name for part in NOT_CONSERVING)
+            if conserving:
+                check_less(lost, 1e-8, f"{name}, {model}: heat lost, over what passes through the sides")
+            rows.append((name, model, entry["unknowns"], entry.get("bonds", ""), entry["stepper"], f"{lost:.1e}", f"{seconds:.1f}"))
+    print_table("All scenes", ("scene", "model", "unknowns", "bonds", "stepper", "heat lost", "seconds, both"), rows)
+    finish()
+
+
+if __name__ == "__main__":
+    main()
