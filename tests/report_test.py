@@ -5,7 +5,8 @@
 
     python3 tests/report_test.py                      runs the tests
     python3 tests/report_test.py --make CASE DIRECTORY [CELLS]   writes one made-up directory
-    (CASE: bar, bar steady, crack, centers, single, long, hole, ring, cube)
+    (CASE: bar, bar steady, crack, centers, single, long, hole, ring, cube, strip, wet cube,
+    moisture, two materials, electricity)
 """
 
 import base64
@@ -26,6 +27,7 @@ import numpy as np
 REPORT = Path(__file__).resolve().parent.parent / "applications" / "report"
 sys.path.insert(0, str(REPORT))
 import contours  # noqa: E402
+import curves  # noqa: E402
 import difference  # noqa: E402
 import findings  # noqa: E402
 import flux  # noqa: E402
@@ -37,242 +39,9 @@ import style  # noqa: E402
 from crossings import crossed  # noqa: E402
 from raster import PixelMap, View, crosses  # noqa: E402
 from read_run import Mesh, Run  # noqa: E402
-
-FEM, PD = "finite elements", "peridynamics"
-
-
-# ---- made-up output directories -------------------------------------------------------------
-
-def box_mesh(lower, upper, cells):
-    """Unmerged cells of a box in VTK order: (nodes, cells)."""
-    dimension = len(cells)
-    ticks = [np.linspace(lower[d], upper[d], cells[d] + 1) for d in range(dimension)]
-    index = [i.ravel(order="F") for i in np.meshgrid(*[np.arange(n) for n in cells],
-                                                     indexing="ij")]
-    corner = {1: [(0,), (1,)], 2: [(0, 0), (1, 0), (1, 1), (0, 1)]}.get(dimension) or \
-        [(i, j, k) for k in (0, 1) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))]
-    n_vertices = len(corner)
-    nodes = np.empty((len(index[0]), n_vertices, dimension))
-    for v, offsets in enumerate(corner):
-        for d in range(dimension):
-            nodes[:, v, d] = ticks[d][index[d] + offsets[d]]
-    return nodes.reshape(-1, dimension), np.arange(len(index[0]) * n_vertices).reshape(
-        -1, n_vertices)
-
-
-def write_fields(path, nodes, cells, fields):
-    """One HDF5 file in the layout of deal.II."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with h5py.File(path, "w") as file:
-        file["nodes"], file["cells"] = nodes, cells
-        for name, values in fields.items():
-            file[name] = values.reshape(len(nodes), -1)
-
-
-def crack_field(x, y, half=0.5, reach=0.0):
-    """Flow against an insulated crack |x| < half, y = 0 (left side: above)."""
-    z = x + 1j * np.where(y >= 0, np.maximum(y, reach), np.minimum(y, -reach))
-    root = np.sqrt(z - half) * np.sqrt(z + half)
-    return np.where((root.imag >= 0) == (y >= 0), root.imag, -root.imag)
-
-
-def write_csv(path, models, times, points, values):
-    """line.csv or probes.csv."""
-    lines = ["time,model," + ",".join("xyz"[:points.shape[1]]) + ",value"]
-    for time in times:
-        for model in models:
-            for point, value in zip(points, values(model, time, points)):
-                lines.append(f"{time!r},{model}," + ",".join(f"{p:.15g}" for p in point)
-                             + f",{value:.15g}")
-    path.write_text("\n".join(lines) + "\n")
-
-
-def model_entry(model, times, exact):
-    """Numbers of one model."""
-    pd = model == PD
-    entry = {"unknowns": 14641, "nonzeros": 127449, "steps": 84, "operator applications": 1012,
-             "iterations": 0, "stepper": "chebyshev",
-             "operator form": "lattice" if pd else "matrix",
-             "settings": {"m": "6.5", "kernel": "conical, exponent 2", "volume fraction": "linear"} if pd else
-             {"degree": "1", "capacity": "lumped"},
-             "wall time": {"setup": 0.21, "solve": 2.4 if pd else 0.8, "output": 0.1},
-             "memory": 12_300_000 if pd else 4_500_000, "peak memory": 412_000_000,
-             "stable step": {"sharp": 1.43e-4, "safe": 1.21e-4},
-             "boundary flux": {"top": 12.3456, "bottom": -12.3449},
-             "heat balance": {"throughput": 12.3456, "imbalance": 4e-12}}
-    if pd:
-        entry["bonds"] = 1234567
-        del entry["nonzeros"]
-    if exact:
-        size = 0.0123 if pd else 0.0041
-        entry["errors"] = {"relative l2": [[t, size * (1 + t)] for t in times],
-                           "maximum": [[t, 10 * size] for t in times]}
-    return entry
-
-
-def make_summary(directory, title, dimension, lower, upper, times, models, cracks=(), exact=False,
-                 steady=False, sides=None):
-    """summary.json and scene.prm."""
-    summary = {
-        "title": title, "scene file": "scenes/made_up.prm", "dimension": dimension,
-        "text": "A plate is hot above & cold below. An insulated crack lies in its middle, so "
-                "heat flows round its tips.\n\nThe temperature jumps across the crack <1 cm>: "
-                "look at the isotherms, which meet it at right angles.",
-        "program": "PeriDeal 0.1.0", "processes": 1,
-        "units": {"length": "cm", "time": "s", "temperature": "C"},
-        "domain": {"lower": list(lower), "upper": list(upper), "shape": "box"},
-        "cracks": [np.asarray(c).tolist() for c in cracks], "steady": steady,
-        "end time": times[-1], "write times": times,
-        "notes": ["peridynamics: the horizon is 6.5 node spacings.",
-                  "Warning: Time step taken as 1.2e-4."],
-        "sides": sides or {"top": "Dirichlet 100", "bottom": "Dirichlet -100",
-                           "left": "insulated", "right": "convection 25, 20"},
-        "fields": [{"time": t, "files": {m: f"fields/{m.replace(' ', '_')}_{i:04d}.h5"
-                                         for m in models}} for i, t in enumerate(times)],
-        "models": {m: model_entry(m, times, exact) for m in models},
-        "comparison": {"relative l2": [[t, 0.0087] for t in times],
-                       "maximum": [[t, 3.21] for t in times]} if len(models) == 2 else {},
-        "reference": "bobaru 2012 example 1" if exact else ""}
-    directory.mkdir(parents=True, exist_ok=True)
-    (directory / "summary.json").write_text(json.dumps(summary, indent=1))
-    (directory / "scene.prm").write_text(
-        "set Title = made up\nsubsection Initial and source\n  set Initial value = 7\nend\n")
-
-
-def make_bar(directory, steady=False):
-    """1D, with an exact solution."""
-    times = [0.5] if steady else [0.02, 0.1, 0.3, 0.5]
-    make_summary(directory, "A bar heated at one end", 1, [0.0], [10.0], times, [FEM, PD],
-                 exact=True, steady=steady,
-                 sides={"left": "Dirichlet 100*(1-exp(-t))", "right": "insulated"})
-
-    def values(model, time, points):
-        x = points[:, 0]
-        wrong = {FEM: 0.2, PD: 0.9, "exact": 0}[model]
-        return 100 * np.exp(-x / (1 + 12 * time)) + wrong * np.sin(x * 2)
-
-    nodes, cells = box_mesh([0], [10], [50])
-    for i, time in enumerate(times):
-        for model in (FEM, PD):
-            write_fields(directory / f"fields/{model.replace(' ', '_')}_{i:04d}.h5", nodes, cells,
-                         {"temperature": values(model, time, nodes),
-                          "heat_flux": np.pad(values(model, time, nodes)[:, None],
-                                              ((0, 0), (0, 2)))})
-    line = np.linspace(0, 10, 101)[:, None]
-    write_csv(directory / "line.csv", [FEM, PD, "exact"], times, line, values)
-    write_csv(directory / "probes.csv", [FEM, PD, "exact"], times, np.array([[1.0], [5.0]]), values)
-
-
-def plate_values(model, time, points):
-    """Temperature of the plate with a crack; PD smears the tips a little."""
-    size = 100 * (1 - np.exp(-3 * time))
-    field = crack_field(points[:, 0], points[:, 1], 0.5 if model != PD else 0.515)
-    return size * (field + 0.12 * points[:, 0] * (1 - points[:, 0] ** 2))
-
-
-def make_plate(directory, cells=60, models=(FEM, PD), centers=False, upper=(1.0, 1.0),
-               hole=False, cracks=None, times=(0.05, 0.2, 0.5), exact=False):
-    """2D plate with an insulated crack."""
-    lower, upper = [-upper[0], -upper[1]], list(upper)
-    cracks = [[[-0.5, 0], [0.5, 0]]] if cracks is None else cracks
-    times = list(times)
-    make_summary(directory, "Plate with an insulated crack", 2, lower, upper, times, list(models),
-                 cracks, exact)
-    n = [int(round(cells * u / max(upper))) + 1 for u in upper]
-    nodes, quads = box_mesh(lower, upper, n)
-    if hole:
-        quads = quads[np.hypot(*(nodes[quads].mean(axis=1) - 0.3).T) > 0.25]
-    middle = np.empty_like(nodes)
-    middle[quads.ravel()] = np.repeat(nodes[quads].mean(axis=1), 4, axis=0)
-    rows = nodes if not centers else middle
-    for i, time in enumerate(times):
-        for model in models:
-            values = plate_values(model, time, rows)
-            h = 1e-3
-            flux = np.zeros((len(rows), 3))
-            for d in (0, 1):
-                step = np.eye(2)[d] * h
-                flux[:, d] = -(plate_values(model, time, rows + step)
-                               - plate_values(model, time, rows - step)) / (2 * h)
-            flux = np.clip(flux, -400, 400)
-            fields = {"temperature": values, "heat_flux": flux}
-            if model == PD and not centers:
-                fields["peridynamics_minus_finite_elements"] = \
-                    values - plate_values(FEM, time, rows)
-            write_fields(directory / f"fields/{model.replace(' ', '_')}_{i:04d}.h5", nodes, quads,
-                         fields)
-    shown = list(models) + (["exact"] if exact else [])
-    line = np.stack([np.zeros(101), np.linspace(lower[1], upper[1], 101)], axis=1)
-    write_csv(directory / "line.csv", shown, times, line, plate_values)
-    write_csv(directory / "probes.csv", shown, times, np.array([[0.0, 0.1], [0.5, 0.1]]),
-              plate_values)
-    totals = ["time,model,quantity,value"]
-    for time in times:
-        for model in models:
-            totals += [f"{time},{model},total heat,{12.5 * time}",
-                       f"{time},{model},heat through top,{3.25 * time}"]
-    (directory / "totals.csv").write_text("\n".join(totals) + "\n")
-
-
-def make_ring(directory, cells=12):
-    """A quarter of a ring from r = 1 to 2, named with the unit square as its domain."""
-    make_summary(directory, "Quarter of a ring", 2, [0, 0], [1, 1], [0.0], [FEM, PD], steady=True,
-                 sides={"1": "Dirichlet 100", "2": "Dirichlet -3"})
-    polar, quads = box_mesh([1, 0], [2, np.pi / 2], [cells, 2 * cells])
-    nodes = polar[:, :1] * np.stack([np.cos(polar[:, 1]), np.sin(polar[:, 1])], axis=1)
-    fem = 100 * np.log(2 / polar[:, 0]) / np.log(2)
-    bump = np.all(np.isclose(polar, [1.75, np.pi / 4]), axis=1)
-    for model, values in ((FEM, fem), (PD, fem - 5.0 * bump)):
-        write_fields(directory / f"fields/{model.replace(' ', '_')}_0000.h5", nodes, quads,
-                     {"temperature": values, "heat_flux": np.pad(nodes, ((0, 0), (0, 1)))})
-
-
-def cube_values(model, time, points):
-    """Temperature of the cube with a square crack in its middle."""
-    x, y, z = points.T
-    width = np.sqrt(np.maximum(0, 0.25 - z ** 2))
-    tip = 0.02 if model == PD else 0.0
-    field = crack_field(x, y, 1e-9 + width * (1 + tip))
-    return 50 + 100 * time * (field + 0.05 * z * x)
-
-
-def make_cube(directory, cells=24):
-    """3D cube with a square crack."""
-    crack = [[-0.5, 0, -0.5], [-0.5, 0, 0.5], [0.5, 0, 0.5], [0.5, 0, -0.5]]
-    times = [0.2, 0.5]
-    make_summary(directory, "Cube with a square crack", 3, [-1, -1, -1], [1, 1, 1.0], times,
-                 [FEM, PD], [crack], sides={"top": "Dirichlet 100", "bottom": "Dirichlet 0",
-                                            "left": "insulated", "right": "insulated",
-                                            "back": "insulated", "front": "Flux 3*t*sin(pi*x)"})
-    nodes, hexes = box_mesh([-1, -1, -1], [1, 1, 1], [cells + 1] * 3)
-    for i, time in enumerate(times):
-        for model in (FEM, PD):
-            values = cube_values(model, time, nodes)
-            step = 1e-3
-            flux = -np.stack([(cube_values(model, time, nodes + step * e)
-                               - cube_values(model, time, nodes - step * e)) / (2 * step)
-                              for e in np.eye(3)], axis=1)
-            write_fields(directory / f"fields/{model.replace(' ', '_')}_{i:04d}.h5", nodes, hexes,
-                         {"temperature": values, "heat_flux": np.clip(flux, -150, 150)})
-    line = np.stack([np.zeros(61), np.linspace(-1, 1, 61), np.zeros(61)], axis=1)
-    write_csv(directory / "line.csv", [FEM, PD], times, line, cube_values)
-
-
-def make(case, directory, cells=None):
-    """One made-up directory by the name of its case."""
-    directory = Path(directory)
-    size = {} if cells is None else {"cells": int(cells)}
-    if case in ("bar", "bar steady"):
-        make_bar(directory, case == "bar steady")
-    elif case == "ring":
-        make_ring(directory, **size)
-    elif case == "cube":
-        make_cube(directory, **size)
-    else:
-        options = {"crack": {"exact": True}, "centers": {"centers": True},
-                   "single": {"models": [PD]}, "long": {"upper": (1.0, 0.2), "cracks": []},
-                   "hole": {"hole": True, "cracks": [[[-0.8, -0.7], [-0.2, -0.3]]]}}[case]
-        make_plate(directory, **size, **options)
+from report_cases import (FEM, HEAT_NAMES, PD, box_mesh, make, make_cube,  # noqa: E402
+                          make_plate, make_strip, make_wet_cube)
+from words import Words  # noqa: E402
 
 
 # ---- checks ---------------------------------------------------------------------------------
@@ -420,7 +189,7 @@ class Pages(ReportCase):
         self.assertTrue(np.allclose(maps.view().extent, [0, 2, 0, 2], atol=1e-12))
         picture = maps.picture(0, FEM, run.field(0, FEM, "temperature"), [])
         self.assertAlmostEqual(np.isfinite(picture).mean(), 3 / 4 * np.pi / 4, delta=5e-3)
-        drawn = sketch.problem_sketch(maps, style.Units({})).axes[0]
+        drawn = sketch.problem_sketch(maps, Words()).axes[0]
         self.assertTrue(np.allclose([drawn.get_xlim(), drawn.get_ylim()], [0, 2], atol=1e-12))
         text = "".join(page.text)
         self.assertIn("Largest difference: −5 °C at (1.237, 1.237), marked by a circle", text)
@@ -483,13 +252,203 @@ class Pages(ReportCase):
         self.page("")
 
 
+class OtherPhysics(ReportCase):
+    """Runs of moisture and electricity, in their own words throughout."""
+
+    OF_HEAT = re.compile(r"heat|temperature|isotherm|°C", re.IGNORECASE)
+
+    def foreign_words(self):
+        """Words of heat that a reader of the page would find."""
+        html = (self.directory / "report.html").read_text(encoding="utf-8")
+        return self.OF_HEAT.findall(re.sub(r"base64,[^\"]*|<style>.*</style>", "", html,
+                                           flags=re.DOTALL))
+
+    def change_summary(self, change):
+        """Rewrites summary.json."""
+        path = self.directory / "summary.json"
+        summary = json.loads(path.read_text())
+        change(summary)
+        path.write_text(json.dumps(summary))
+
+    def test_heat_may_say_so(self):
+        make_plate(self.directory, 8)
+        self.page("")
+        before = (self.directory / "report.html").read_text()
+        self.change_summary(lambda summary: (
+            summary.update(physics="heat", names=HEAT_NAMES),
+            summary["units"].update(field="C")))
+        self.page("")
+        self.assertEqual((self.directory / "report.html").read_text(), before)
+        self.assertIn("All models share one colour scale and one set of isotherms", before)
+
+    def test_moisture(self):
+        figures = self.directory.parent / "figures"
+        make_plate(self.directory, 8, physics="moisture", saturated=(3.0, 3.0), title="Wet plate")
+        page = self.page("", "--figures", figures)
+        # problem, three times, line, probes, moisture flux, weight, other totals
+        self.assertEqual(sorted(p.name for p in figures.iterdir()),
+                         ["line.png", "moisture_flux.png", "probes.png", "problem.png",
+                          "totals.png", "weight.png", "wetness_0000.png", "wetness_0001.png",
+                          "wetness_0002.png"])
+        text = "".join(page.text)
+        for part in ("The wetness up to t = 0.5 h in two dimensions", "by at most 3.21, reached",
+                     "one set of contours of equal wetness", "Wetness at the probes over time.",
+                     "Moisture flux, t = 0.5 h.", "proportional to the moisture flux",
+                     "Moisture through the sides", "Weight over time. Computed at",
+                     "Zero at all times, not drawn: moisture flow from sources.",
+                     "Moisture is conserved: the imbalance is at most", "units: mm, h"):
+            self.assertIn(part, text)
+        for cell in ("sealed", "Dirichlet −100", "Moisture throughput", "Moisture imbalance",
+                     "Weight", "Moisture flow through top"):
+            self.assertIn(cell, page.cells)
+        self.assertNotIn("insulated", page.cells)
+        self.assertNotIn("()", text)
+        self.assertEqual(self.foreign_words(), [])
+
+    def test_concentration_of_two_materials(self):
+        figures = self.directory.parent / "figures"
+        make_plate(self.directory, 8, physics="moisture", saturated=(2.0, 5.0), title="Wet plate")
+        text = "".join(self.page("", "--figures", figures).text)
+        self.assertEqual(len(list(figures.glob("concentration_*.png"))), 3)
+        self.assertIn("one set of contours of equal concentration", text)
+        self.assertIn("the concentration jumps", text)
+        run = Run(self.directory)
+        self.assertFalse(difference.is_multiple(run, [2], "concentration"))
+        last = difference.largest(run, 2, "concentration")
+        both = [run.field(2, m, "concentration") for m in (PD, FEM)]
+        self.assertEqual(abs(last.value), np.abs(both[0] - both[1]).max())
+
+    def test_concentration_in_one_and_three_dimensions(self):
+        for make_body, n_pictures in ((make_strip, 1), (make_wet_cube, 2)):
+            for saturated, n in (((2.0, 5.0), n_pictures), ((2.0, 2.0), 0)):
+                with self.subTest(body=make_body.__name__, saturated=saturated):
+                    holder = tempfile.TemporaryDirectory()
+                    self.addCleanup(holder.cleanup)
+                    self.directory, figures = Path(holder.name) / "o", Path(holder.name) / "f"
+                    make_body(self.directory, saturated=saturated)
+                    self.page("", "--figures", figures)
+                    self.assertEqual(len(list(figures.glob("concentration*.png"))), n)
+
+    def test_multiples(self):
+        make_strip(self.directory)
+        run = Run(self.directory)
+        self.assertTrue(difference.is_multiple(run, [0, 1], "concentration"))  # absent
+        make_strip(self.directory, saturated=(0.0, 3.0))
+        self.assertFalse(difference.is_multiple(Run(self.directory), [0], "concentration"))
+        for path in (self.directory / "fields").iterdir():
+            with h5py.File(path, "a") as file:
+                file["concentration"][...] = 3 * file["wetness"][...]
+                if path.name.endswith("_0000.h5"):  # a dry body has no factor
+                    file["concentration"][...] = file["wetness"][...] = 0
+        self.assertTrue(difference.is_multiple(Run(self.directory), [0, 1], "concentration"))
+        with h5py.File(self.directory / "fields/peridynamics_0001.h5", "a") as file:
+            file["concentration"][...] *= 1.1  # another factor in one model
+        self.assertFalse(difference.is_multiple(Run(self.directory), [0, 1], "concentration"))
+
+    def test_weight_needs_three_times(self):
+        make_plate(self.directory, 8, physics="moisture", times=(0.1, 0.2))
+        self.assertNotIn("Weight over time", "".join(self.page("").text))
+        run = Run(self.directory)
+        self.assertIsNone(series.apart_figure(run.totals, run.words, "weight"))
+        make_plate(self.directory, 8, physics="moisture")
+        run = Run(self.directory)
+        axes = series.apart_figure(run.totals, run.words, "weight").axes[0]
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("Time (h)", "Weight"))
+        self.assertEqual(axes.lines[0].get_ydata().tolist(), [0.625, 2.5, 6.25])
+        others = series.totals_figure(run.totals, run.words)[0]
+        self.assertEqual([a.get_title(loc="left") for a in others.axes[:2]],
+                         ["Moisture flow through top", "Rate of storage"])
+
+    def test_electricity(self):
+        figures = self.directory.parent / "figures"
+        make_plate(self.directory, 8, physics="electricity", title="Plate and electrodes")
+        page = self.page("", "--figures", figures)
+        self.assertEqual(sorted(p.name for p in figures.iterdir()),
+                         ["current_density.png", "line.png", "potential_0000.png",
+                          "potential_0001.png", "potential_0002.png", "probes.png", "problem.png",
+                          "totals.png"])
+        text = "".join(page.text)
+        for part in ("The potential up to t = 0.5 s in two dimensions", "by at most 3.21 V",
+                     "one set of equipotentials", "Potential at the probes over time.",
+                     "Current density, t = 0.5 s.", "proportional to the current density",
+                     "cracks in black, electrodes in red, the line of",
+                     "Current through the sides", "Charge is conserved: the imbalance is at most",
+                     "Zero at all times, not drawn: current from sources.", "units: mm, s, V"):
+            self.assertIn(part, text)
+        for cell in ("insulated", "Charge throughput", "Charge", "Current through top"):
+            self.assertIn(cell, page.cells)
+        rows = re.findall(r'<th scope="row">(\w+)</th><td>(electrode[^<]*)</td><td>([^<]*)</td>',
+                          (self.directory / "report.html").read_text(encoding="utf-8"))
+        self.assertEqual(rows, [("top", "electrode, Dirichlet 100", "12.3456"),
+                                ("bottom", "electrode, Dirichlet −100", "−12.3449")])
+        self.assertEqual(self.foreign_words(), [])
+
+    def test_words_on_axes(self):
+        make_plate(self.directory, 8, physics="electricity")
+        run = Run(self.directory)
+        figure = contours.field_figure(contours.Maps(run), 2, run.words, run.words.solution)
+        labels = {a.get_xlabel() for a in figure.axes}
+        self.assertEqual(labels, {"$x$ (mm)", "Potential (V)", "Difference (V)"})
+        figure, _ = flux.flux_figure(contours.Maps(run), 2, run.words)
+        self.assertIn("Magnitude of the current density", {a.get_xlabel() for a in figure.axes})
+        make_strip(self.directory.parent / "strip")
+        run = Run(self.directory.parent / "strip")
+        figure, text = flux.flux_figure(contours.Maps(run), 1, run.words)
+        self.assertEqual(figure.axes[0].get_ylabel(), "Moisture flux")
+        self.assertEqual(text, "Positive where moisture flows to the right.")
+        solution = run.words.solution
+        figure = curves.line_figure(curves.field_table(run, [1], solution), run.words, solution,
+                                    False)
+        self.assertEqual([a.get_ylabel() for a in figure.axes], ["Wetness", "PD − FEM"])
+
+    def test_nothing_flows_and_values_break(self):
+        make_plate(self.directory, 8, physics="electricity")
+        for path in (self.directory / "fields").iterdir():
+            with h5py.File(path, "a") as file:
+                file["current_density"][...] = 0
+                file["potential"][...] = float("nan")
+                if "peridynamics_minus_finite_elements" in file:
+                    del file["peridynamics_minus_finite_elements"]
+        text = "".join(self.page("").text)
+        self.assertIn("The current density is zero everywhere.", text)
+        self.assertIn("Warning: potentials are not finite for", text)
+
+    def test_flux_of_one_side(self):
+        make_plate(self.directory, 8, physics="moisture", models=[PD])
+        path = self.directory / "fields/peridynamics_0002.h5"
+        with h5py.File(path, "a") as file:
+            file["moisture_flux_one_sided"] = file["moisture_flux"][...]
+            del file["moisture_flux"]
+        run = Run(self.directory)
+        self.assertEqual(flux.flux_parts(run, 2, PD).shape, (len(run.mesh(2, PD).nodes), 2))
+
+    def test_names_of_the_run_come_first(self):
+        words = Words({"physics": "moisture", "names": {"content": "water"}, "units": {
+            "field": "%", "temperature": "K"}})
+        self.assertEqual((words.content, words.plotted_apart), ("water", ["water"]))
+        self.assertEqual(words.solution.label(), "Wetness (%)")
+        self.assertEqual(Words({"physics": "moisture"}).solution.label(), "Wetness")
+        self.assertEqual(words.condition("insulated"), "sealed")
+        words = Words({"units": {"temperature": "C", "length": "", "time": None}})
+        self.assertEqual((words.solution.label(), words.axis("x"), words.time_axis()),
+                         ("Temperature (°C)", "$x$", "Time"))
+
+    def test_unknown_physics(self):
+        make_plate(self.directory, 8)
+        self.change_summary(lambda summary: summary.update(physics="magnetism"))
+        status, errors = run_report(self.directory)
+        self.assertEqual(status, 1)
+        self.assertIn("physics must be one of heat, moisture, electricity, found \"magnetism\"",
+                      errors)
+
+
 class Parts(ReportCase):
     """Numbers that pictures and sentences are made of."""
 
     def test_largest_difference_is_that_of_a_node(self):
         make_plate(self.directory, 10)
         run = Run(self.directory)
-        found = difference.largest(run, 2)
+        found = difference.largest(run, 2, "temperature")
         nodes = run.mesh(2, PD).nodes
         values = run.field(2, PD, "peridynamics_minus_finite_elements")
         self.assertEqual(abs(found.value), np.abs(values).max())
@@ -501,7 +460,7 @@ class Parts(ReportCase):
         run = Run(self.directory)
         mesh = run.mesh(2, PD)
         centers = mesh.nodes[mesh.cells].mean(axis=1)
-        at = difference.largest(run, 2).at
+        at = difference.largest(run, 2, "temperature").at
         self.assertLess(np.abs(centers - at).max(axis=1).min(), 1e-12)
 
     def test_arrows_have_one_scale(self):
@@ -510,7 +469,7 @@ class Parts(ReportCase):
             path = self.directory / f"fields/{model.replace(' ', '_')}_0002.h5"
             with h5py.File(path, "a") as file:
                 file["heat_flux"][...] = [size, 0, 0]
-        figure, text = flux.flux_figure(contours.Maps(Run(self.directory)), 2, style.Units({}))
+        figure, text = flux.flux_figure(contours.Maps(Run(self.directory)), 2, Words())
         self.assertIn("the longest stands for 2.", text)
         lengths = [np.hypot(a.collections[0].U, a.collections[0].V).max()
                    for a in figure.axes[:2]]
@@ -522,12 +481,12 @@ class Parts(ReportCase):
         run = Run(self.directory)
         self.assertEqual(run.initial_value(np.array([0.5, 0.1])), 7)
         self.assertIsNone(run.initial_value(np.array([1.0, 0.1])))
-        figure, zero = series.probe_figure(run, style.Units({}))
+        figure, zero = series.probe_figure(run, Words())
         self.assertEqual(zero, [])
         start = figure.axes[0].lines[0]
         self.assertEqual([list(start.get_xdata()), list(start.get_ydata())], [[0], [7]])
         (self.directory / "scene.prm").unlink()
-        figure, _ = series.probe_figure(Run(self.directory), style.Units({}))
+        figure, _ = series.probe_figure(Run(self.directory), Words())
         self.assertEqual(min(min(line.get_xdata()) for line in figure.axes[0].lines), 0.05)
 
     def test_short_times_are_not_compared(self):

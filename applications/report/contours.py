@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Pictures of 2D fields: models side by side, their difference, the heat flux."""
+"""Pictures of 2D fields: models side by side, their difference."""
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -36,8 +36,8 @@ class Maps:
             self._maps[tag] = PixelMap(mesh, view or self.view(), segments, self.on_faces)
         return self._maps[tag].evaluate(values)
 
-    def isotherm_picture(self, index, model, values, segments):
-        """The picture isotherms are drawn from, or None where it is the field's own picture."""
+    def isoline_picture(self, index, model, values, segments):
+        """The picture isolines are drawn from, or None where it is the field's own picture."""
         mesh = self.run.mesh(index, model)
         if not is_constant_per_cell(mesh, values):
             return None
@@ -66,8 +66,8 @@ def draw_cracks(axes, segments, width=1.7):
                   solid_capstyle="round", zorder=7)
 
 
-def draw_isotherms(axes, view, picture, scale, segments):
-    """Isotherms of a picture; not across cracks, where they would only bunch."""
+def draw_isolines(axes, view, picture, scale, segments):
+    """Isolines of a picture; not across cracks, where they would only bunch."""
     values = np.where(view.near_segments(segments, 1.2), np.nan, picture) if len(segments) \
         else picture
     finite = values[np.isfinite(values)]
@@ -81,13 +81,13 @@ def draw_isotherms(axes, view, picture, scale, segments):
                      colors=colors, linewidths=0.7, linestyles="solid", zorder=4)
 
 
-def draw_picture(axes, view, picture, scale, segments=(), isotherms=None):
+def draw_picture(axes, view, picture, scale, segments=(), isolines=None):
     """One picture in its axes."""
     picture = scale.clean(picture)
-    isotherms = picture if isotherms is None else scale.clean(isotherms)
+    isolines = picture if isolines is None else scale.clean(isolines)
     axes.imshow(picture, origin="lower", extent=view.extent, cmap=scale.colormap, norm=scale.norm,
                 interpolation="nearest", aspect="equal", zorder=2)
-    draw_isotherms(axes, view, isotherms, scale, segments)
+    draw_isolines(axes, view, isolines, scale, segments)
     draw_cracks(axes, segments)
     axes.set_xlim(view.extent[:2])
     axes.set_ylim(view.extent[2:])
@@ -179,40 +179,40 @@ class Layout:
         return color_bar(self.figure, box, scale, label)
 
 
-def label_axes(axes, units, view, i, layout):
+def label_axes(axes, words, view, i, layout):
     """Axis labels where there is room for them."""
     names = "xyz"
     if not layout.stacked or i == layout.n - 1:
-        axes.set_xlabel(units.axis(names[view.axes[0]]), labelpad=1)
+        axes.set_xlabel(words.axis(names[view.axes[0]]), labelpad=1)
     else:
         axes.tick_params(labelbottom=False)
     if layout.stacked or i == 0:
-        axes.set_ylabel(units.axis(names[view.axes[1]]), labelpad=2)
+        axes.set_ylabel(words.axis(names[view.axes[1]]), labelpad=2)
     else:
         axes.tick_params(labelleft=False)
 
 
-def difference_picture(maps, index, segments, pictures):
-    """PD minus FEM: the field of the nodes, else (two meshes) the difference of the pictures."""
+def difference_picture(maps, index, field, segments, pictures):
+    """PD minus FEM of a field: at the nodes, else (two meshes) the difference of the pictures."""
     if FEM not in pictures or PD not in pictures:
         return None
-    values = difference_field(maps.run, index)
+    values = difference_field(maps.run, index, field.name)
     if values is None:
         return pictures[PD] - pictures[FEM]
     return maps.picture(index, PD, values, segments)
 
 
-def value_range(run, index):
-    """Lowest and highest temperature of all models at one written time, or None."""
-    found = [v[np.isfinite(v)] for v in (run.field(index, m, "temperature") for m in run.models)
+def value_range(run, index, field):
+    """Lowest and highest value of a field of all models at one written time, or None."""
+    found = [v[np.isfinite(v)] for v in (run.field(index, m, field.name) for m in run.models)
              if v is not None]
     found = [v for v in found if len(v)]
     return (min(v.min() for v in found), max(v.max() for v in found)) if found else None
 
 
-def common_scale(run, indices, least=0.3):
+def common_scale(run, indices, field, least=0.3):
     """One scale for all times, or None where at some time the values would fill little of it."""
-    ranges = [r for r in (value_range(run, i) for i in indices) if r is not None]
+    ranges = [r for r in (value_range(run, i, field) for i in indices) if r is not None]
     if len(ranges) < 2:
         return None
     low, high = min(r[0] for r in ranges), max(r[1] for r in ranges)
@@ -221,41 +221,41 @@ def common_scale(run, indices, least=0.3):
     return style.value_scale([np.array([low, high])])
 
 
-def temperature_figure(maps, index, units, largest=None, scale=None):
-    """All models at one written time and the difference, if there is one, with its largest."""
+def field_figure(maps, index, words, field, largest=None, scale=None):
+    """A field of all models at one written time and, if there is one, the difference."""
     run = maps.run
     segments = segments_of(run.cracks(index))
     view = maps.view()
     models = [m for m in run.models if run.field_file(index, m) is not None]
     pictures, smooth = {}, {}
     for model in models:
-        values = run.field(index, model, "temperature")
+        values = run.field(index, model, field.name)
         pictures[model] = maps.picture(index, model, values, segments)
-        smooth[model] = maps.isotherm_picture(index, model, values, segments)
+        smooth[model] = maps.isoline_picture(index, model, values, segments)
     difference = None if largest is not None and largest.zero else \
-        difference_picture(maps, index, segments, pictures)
+        difference_picture(maps, index, field, segments, pictures)
     layout = Layout(len(models) + (difference is not None), view.extent, len(models))
     scale = scale or style.value_scale(list(pictures.values()))
     for i, model in enumerate(models):
         axes = layout.panel(i)
         draw_picture(axes, view, pictures[model], scale, segments, smooth[model])
         axes.set_title(style.name(model), loc="left", pad=5)
-        label_axes(axes, units, view, i, layout)
-    layout.bar(0, len(models) - 1, scale, units.value())
+        label_axes(axes, words, view, i, layout)
+    layout.bar(0, len(models) - 1, scale, field.label())
     if difference is not None:
-        draw_difference(layout, len(models), view, difference, segments, units, largest)
+        draw_difference(layout, len(models), view, difference, segments, words, field, largest)
     return layout.figure
 
 
-def draw_difference(layout, i, view, difference, segments, units, largest):
+def draw_difference(layout, i, view, difference, segments, words, field, largest):
     """The panel PD - FEM with a circle at its largest value."""
     axes = layout.panel(i)
     scale = style.difference_scale([difference])
     draw_picture(axes, view, difference, scale, segments)
     axes.set_title("Peridynamics − finite elements", loc="left", pad=5,
                    fontsize=10 if layout.panel_width > 2.6 else 8.5)
-    label_axes(axes, units, view, i, layout)
-    layout.bar(i, i, scale, units.with_unit("Difference", units.temperature))
+    label_axes(axes, words, view, i, layout)
+    layout.bar(i, i, scale, field.label("Difference"))
     if largest is not None:
         axes.plot(*largest.at, marker="o", markersize=7, markerfacecolor="none",
                   markeredgecolor=style.INK, markeredgewidth=1.0, zorder=8, clip_on=False)

@@ -8,7 +8,8 @@ from matplotlib.lines import Line2D
 
 import style
 from crossings import crossed
-from read_run import EXACT
+from read_run import EXACT, Table
+from words import with_unit
 
 FEM, PD = "finite elements", "peridynamics"
 
@@ -18,7 +19,7 @@ def time_colors(n):
     return matplotlib.colormaps["viridis"](np.linspace(0.0, 0.82, n)) if n > 1 else None
 
 
-def line_coordinate(points, units):
+def line_coordinate(points, words):
     """(values along the line, label of the axis)."""
     spread = np.ptp(points, axis=0)
     moving = np.flatnonzero(spread > 1e-12 * max(spread.max(), 1e-300))
@@ -26,12 +27,12 @@ def line_coordinate(points, units):
         axis = int(moving[0])
         fixed = [f"{'xyz'[d]} = {style.plain(points[0, d])}" for d in range(points.shape[1])
                  if d != axis]
-        label = units.axis("xyz"[axis])
+        label = words.axis("xyz"[axis])
         return points[:, axis], label + (f"   at {', '.join(fixed)}" if fixed else "")
     distance = np.linalg.norm(points - points[0], axis=1)
     ends = " to ".join("(" + ", ".join(style.plain(v) for v in p) + ")"
                        for p in (points[0], points[-1]))
-    return distance, units.with_unit(f"Distance from {ends}", units.length)
+    return distance, with_unit(f"Distance from {ends}", words.length)
 
 
 def broken(points, cracks, *columns):
@@ -76,7 +77,7 @@ def model_legend(axes, models, colored, **kwargs):
     return axes.legend(handles=handles, **kwargs)
 
 
-def value_panel(axes, table, times, units, steady, cracks):
+def value_panel(axes, table, times, words, field, steady, cracks):
     """The values of all models at all times."""
     models, colors = table.models(), time_colors(len(times))
     for i, time in enumerate(times):
@@ -84,19 +85,19 @@ def value_panel(axes, table, times, units, steady, cracks):
             if table.at(model, time) is None:
                 continue
             points, values = table.at(model, time)
-            x, label = line_coordinate(points, units)
+            x, label = line_coordinate(points, words)
             draw_curve(axes, *broken(points, cracks, x, values), model,
                        None if colors is None else colors[i])
             axes.set_xlabel(label)
     draw_cracks(axes, points, x, cracks)
-    axes.set_ylabel(units.value())
+    axes.set_ylabel(field.label())
     style.tidy(axes)
     first = model_legend(axes, models, colors is None, loc="upper left",
                          bbox_to_anchor=(1.01, 1.0))
     if colors is not None:
         axes.add_artist(first)
         axes.legend(handles=[Line2D([], [], color=colors[i], linewidth=2.5,
-                                    label=units.at_time(t, steady)) for i, t in enumerate(times)],
+                                    label=words.at_time(t, steady)) for i, t in enumerate(times)],
                     loc="lower left", bbox_to_anchor=(1.01, 0.0))
 
 
@@ -117,7 +118,7 @@ def difference_pairs(table):
     return pairs if any(differ(*pair) for pair in pairs) else []
 
 
-def difference_panel(axes, table, times, units, cracks):
+def difference_panel(axes, table, times, words, field, cracks):
     """Against the exact solution where there is one, else peridynamics minus finite elements."""
     pairs, colors = difference_pairs(table), time_colors(len(times))
     for i, time in enumerate(times):
@@ -125,18 +126,18 @@ def difference_panel(axes, table, times, units, cracks):
             a, b = table.at(model, time), table.at(other, time)
             if a is None or b is None or len(a[1]) != len(b[1]):
                 continue
-            x, label = line_coordinate(a[0], units)
+            x, label = line_coordinate(a[0], words)
             draw_curve(axes, *broken(a[0], cracks, x, a[1] - b[1]), model,
                        None if colors is None else colors[i])
             axes.set_xlabel(label)
     axes.axhline(0, color="#9aa5b1", linewidth=0.8, zorder=1)
     title = "Model − exact" if pairs[0][1] == EXACT else "PD − FEM"
-    axes.set_ylabel(units.with_unit(title, units.temperature))
+    axes.set_ylabel(field.label(title))
     style.tidy(axes)
 
 
-def line_figure(table, units, steady, cracks=(), at_most=6):
-    """The temperature along the line, and differences below; None without rows.
+def line_figure(table, words, field, steady, cracks=(), at_most=6):
+    """A field along the line, and differences below; None without rows.
 
     Curves have a gap at each crack (those of the last time) that the line crosses.
     """
@@ -149,18 +150,17 @@ def line_figure(table, units, steady, cracks=(), at_most=6):
     height = 5.6 if two else 3.7
     figure = style.figure(10, height)
     top = figure.add_axes([0.85 / 10, (2.35 if two else 0.6) / height, 7.35 / 10, 3.0 / height])
-    value_panel(top, table, times, units, steady, cracks)
+    value_panel(top, table, times, words, field, steady, cracks)
     if two:
         bottom = figure.add_axes([0.85 / 10, 0.55 / height, 7.35 / 10, 1.6 / height], sharex=top)
-        difference_panel(bottom, table, times, units, cracks)
+        difference_panel(bottom, table, times, words, field, cracks)
         top.set_xlabel("")
         top.tick_params(labelbottom=False)
     return figure
 
 
-def field_table(run, indices):
-    """1D: the nodal values of the fields as a table of the kind of line.csv."""
-    from read_run import Table
+def field_table(run, indices, field):
+    """1D: the nodal values of a field as a table of the kind of line.csv."""
     table = Table()
     table.dimension = 1
     for index in indices:
@@ -170,7 +170,7 @@ def field_table(run, indices):
                 continue
             mesh = run.mesh(index, model)
             order = mesh.cells[np.argsort(mesh.nodes[mesh.cells].mean(axis=1)[:, 0])].ravel()
-            values = run.field(index, model, "temperature")
+            values = run.field(index, model, field.name)
             table.data.setdefault(model, {})[time] = (mesh.nodes[order], values[order])
     return table
 

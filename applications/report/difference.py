@@ -24,19 +24,44 @@ class Largest:
         return f"at {point}" + ("" if self.alone else " among others")
 
 
-def difference_field(run, index):
-    """Peridynamics minus finite elements at the vertices of the cells, or None."""
+def difference_field(run, index, name):
+    """Peridynamics minus finite elements of a field at the vertices of the cells, or None."""
     if any(m not in run.models or run.field_file(index, m) is None for m in (FEM, PD)):
         return None
-    values = run.field(index, PD, DIFFERENCE, required=False)
+    values = None
+    if name == run.words.solution.name:
+        values = run.field(index, PD, DIFFERENCE, required=False)
     if values is None and run.mesh(index, PD) is run.mesh(index, FEM):
-        values = run.field(index, PD, "temperature") - run.field(index, FEM, "temperature")
+        values = run.field(index, PD, name) - run.field(index, FEM, name)
     return values
 
 
-def largest(run, index):
-    """The largest difference at a written time, or None where there is none to tell."""
-    values = difference_field(run, index)
+def is_multiple(run, indices, name):
+    """Whether a field is the same multiple of the solution in all models and at all these times.
+
+    It is so where the field is absent, too.
+    """
+    factor = None
+    for index in indices:
+        for model in run.models:
+            if run.field_file(index, model) is None:
+                continue
+            values = run.field(index, model, name, required=False)
+            if values is None or not np.isfinite(values).any():
+                continue
+            solution = run.solution(index, model)
+            if factor is None and np.nanmax(np.abs(solution)) > 0:
+                at = int(np.nanargmax(np.abs(solution)))
+                factor = values[at] / solution[at]
+            rest = values - (0.0 if factor is None else factor) * solution
+            if np.nanmax(np.abs(rest), initial=0) > 1e-6 * np.nanmax(np.abs(values)):
+                return False
+    return True
+
+
+def largest(run, index, name):
+    """The largest difference of a field at a written time, or None where there is none to tell."""
+    values = difference_field(run, index, name)
     if values is None or not np.isfinite(values).any():
         return None
     mesh = run.mesh(index, PD)
@@ -50,4 +75,4 @@ def largest(run, index):
     alone = bool(np.abs(equal - points[chosen]).max() < 1e-9 * extent)
     at = np.where(np.abs(points[chosen]) < 1e-12 * extent, 0.0, points[chosen])
     return Largest(float(values[chosen]), at, alone,
-                   is_nothing(values, run.field(index, FEM, "temperature")))
+                   is_nothing(values, run.field(index, FEM, name)))

@@ -4,7 +4,7 @@
 
 import re
 
-from style import plain
+from style import name, plain
 
 FEM, PD = "finite elements", "peridynamics"
 SHORT_TIME = 0.1  # s; below it a ratio of wall times is chance
@@ -50,7 +50,7 @@ def ratio_text(setting):
         return str(setting)
 
 
-def counts(name, model):
+def counts(title, model):
     """'peridynamics (14 641 unknowns, 432 000 bonds, m = 3, conical kernel)'."""
     parts = []
     if model.get("unknowns") is not None:
@@ -62,20 +62,21 @@ def counts(name, model):
         parts.append(f"horizon ratio m = {ratio_text(settings['m'])}")
     if "kernel" in settings:
         parts.append(kernel_name(settings["kernel"]))
-    return name + (f" ({', '.join(parts)})" if parts else "")
+    return title + (f" ({', '.join(parts)})" if parts else "")
 
 
-def what_ran(run, units):
+def what_ran(run, words):
     """The problem and the models."""
     models = [counts(m, run.summary["models"][m]) for m in run.models]
     joined = models[0] if len(models) == 1 else ", ".join(models[:-1]) + " and by " + models[-1]
     dimension = ORDINAL[run.dimension]
     dimension = f"{dimension} dimension" + ("s" if run.dimension > 1 else "")
     if run.get("steady", default=False):
-        how = "The steady temperature"
+        how = f"The steady {words.solution.text}"
     else:
         end = run.get("end time")
-        how = "The temperature" + ("" if end is None else f" up to {units.at_time(end)}")
+        how = f"The {words.solution.text}" + (
+            "" if end is None else f" up to {words.at_time(end)}")
     cracks = run.cracks()
     body = "" if not cracks else \
         (", in a body with a crack," if len(cracks) == 1
@@ -83,7 +84,7 @@ def what_ran(run, units):
     return f"{how} in {dimension}{body} was computed by {joined}."
 
 
-def how_far_apart(run, units, difference):
+def how_far_apart(run, words, difference):
     """Peridynamics against finite elements; difference: the largest one, or None."""
     relative = last(run.get("comparison", "relative l2"))
     largest = last(run.get("comparison", "maximum"))
@@ -94,7 +95,7 @@ def how_far_apart(run, units, difference):
         parts.append(f"by {percent(relative)} in the relative L2 norm")
     if largest is not None:
         place = f", reached {difference.place()}" if difference and not difference.zero else ""
-        parts.append(f"by at most {plain(abs(largest), 3)} {units.temperature}".rstrip() + place)
+        parts.append(f"by at most {words.solution.amount(abs(largest))}" + place)
     when = "" if run.get("steady", default=False) else "At the end "
     text = f"{when}peridynamics differs from finite elements {' and '.join(parts)}."
     return text[0].upper() + text[1:]
@@ -147,12 +148,17 @@ def what_it_cost(run):
     return text + "."
 
 
-def is_heat_kept(run):
-    """The heat balance."""
+def balance(model, words):
+    """The balance of heat, moisture or charge of a model's entry, empty where it is absent."""
+    return model.get(f"{words.quantity} balance") or model.get("heat balance") or {}
+
+
+def is_conserved(run, words):
+    """The balance of heat, moisture or charge."""
     worst = None
     for model in run.models:
-        balance = run.summary["models"][model].get("heat balance") or {}
-        imbalance, throughput = balance.get("imbalance"), balance.get("throughput")
+        found = balance(run.summary["models"][model], words)
+        imbalance, throughput = found.get("imbalance"), found.get("throughput")
         if imbalance is None or not throughput:
             continue
         share = abs(imbalance / throughput)
@@ -161,24 +167,24 @@ def is_heat_kept(run):
     if worst is None:
         return None
     if worst[1] < 1e-6:
-        return (f"Heat is conserved: the imbalance is at most {plain(worst[1], 2)} "
-                "of the throughput.")
-    return (f"The heat balance closes to {percent(worst[1])} of the throughput "
+        return (f"{name(words.quantity)} is conserved: the imbalance is at most "
+                f"{plain(worst[1], 2)} of the throughput.")
+    return (f"The {words.quantity} balance closes to {percent(worst[1])} of the throughput "
             f"(worst: {worst[0]}).")
 
 
-def what_broke(run, units):
+def what_broke(run, words):
     """Models whose pictures have holes since values are not finite."""
     if not run.not_finite:
         return None
-    listed = " and ".join(f"{m} (first shown at {units.at_time(t)})"
+    listed = " and ".join(f"{m} (first shown at {words.at_time(t)})"
                           for m, t in run.not_finite.items())
-    return f"Warning: temperatures are not finite for {listed}; they are left white."
+    return f"Warning: {words.values} are not finite for {listed}; they are left white."
 
 
-def sentences(run, units, difference):
+def sentences(run, words, difference):
     """Three to five sentences; difference: the largest one at the end, or None."""
-    found = [what_ran(run, units), what_broke(run, units),
-             how_far_apart(run, units, difference), how_wrong(run), what_it_cost(run),
-             is_heat_kept(run)]
+    found = [what_ran(run, words), what_broke(run, words),
+             how_far_apart(run, words, difference), how_wrong(run), what_it_cost(run),
+             is_conserved(run, words)]
     return [s for s in found if s]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Pictures of the heat flux: its magnitude as colour, its direction as arrows, in 1D a curve."""
+"""Pictures of the flux: its magnitude as colour, its direction as arrows, in 1D a curve."""
 
 import numpy as np
 
@@ -9,19 +9,22 @@ import curves
 import solids
 import style
 
-ZERO = "The heat flux is zero everywhere."
-
 
 def flux_parts(run, index, model):
-    """The heat flux of a model at the vertices, (N x dim), or None."""
+    """The flux of a model at the vertices, (N x dim), or None."""
     if run.field_file(index, model) is None:
         return None
-    for name in ("heat_flux", "heat_flux_one_sided"):
+    for name in run.words.flux_datasets():
         values = run.field(index, model, name, required=False)
         if values is not None:
             values = values.reshape(len(values), -1)
             return values[:, :run.dimension]
     return None
+
+
+def nothing(words):
+    """The sentence in place of a picture of zeros."""
+    return f"The {words.flux.text} is zero everywhere."
 
 
 class Arrows:
@@ -46,13 +49,13 @@ class Arrows:
         if self.capped:
             self.full = usual
 
-    def text(self):
-        """What an arrow's length says."""
+    def text(self, flux):
+        """What an arrow's length says of the flux of that name."""
         if not self.full > 0:
             return ""
         more = " and more" if self.capped else ""
-        return (f"The length of an arrow is proportional to the flux, on one scale for all "
-                f"pictures: the longest stands for {style.plain(self.full, 3)}{more}.")
+        return (f"The length of an arrow is proportional to the {flux}, on one scale for "
+                f"all pictures: the longest stands for {style.plain(self.full, 3)}{more}.")
 
     def draw(self, axes, model):
         """The arrows of one model."""
@@ -70,7 +73,7 @@ class Arrows:
                     minlength=0.1, color="#1f2933", edgecolor="white", linewidth=0.3, zorder=5)
 
 
-def plane_figure(maps, index, units, view=None, segments=None, key=None):
+def plane_figure(maps, index, words, view=None, segments=None, key=None):
     """Magnitude and direction of all models in a plane: (figure or None, text)."""
     run = maps.run
     view = view or maps.view()
@@ -85,7 +88,7 @@ def plane_figure(maps, index, units, view=None, segments=None, key=None):
         return None, ""
     magnitude = {m: np.sqrt(sum(p ** 2 for p in part)) for m, part in parts.items()}
     if not any(np.nanmax(p, initial=0) > 0 for p in magnitude.values()):
-        return None, ZERO
+        return None, nothing(words)
     scale = style.value_scale(list(magnitude.values()), style.FLUX, n=10, parts=6, clip=0.995)
     without_lines = style.Scale(scale.levels, style.FLUX, [], scale.extend)
     arrows = Arrows(view, {m: [part[view.axes[0]], part[view.axes[1]]]
@@ -96,25 +99,25 @@ def plane_figure(maps, index, units, view=None, segments=None, key=None):
         contours.draw_picture(axes, view, magnitude[model], without_lines, segments)
         arrows.draw(axes, model)
         axes.set_title(style.name(model), loc="left", pad=5)
-        contours.label_axes(axes, units, view, i, layout)
-    layout.bar(0, len(parts) - 1, scale, "Magnitude of the heat flux")
-    return layout.figure, arrows.text()
+        contours.label_axes(axes, words, view, i, layout)
+    layout.bar(0, len(parts) - 1, scale, f"Magnitude of the {words.flux.text}")
+    return layout.figure, arrows.text(words.flux.text)
 
 
-def slice_figure(maps, index, units):
+def slice_figure(maps, index, words):
     """The first slice of a 3D body: (figure or None, text)."""
     slices = solids.Slices(maps, index)
     view, segments = slices.slices[0]
-    figure, text = plane_figure(maps, index, units, view, segments,
+    figure, text = plane_figure(maps, index, words, view, segments,
                                 (view.axis, float(view.position), view.shape))
     if figure is None:
         return figure, text
-    return figure, (f"Slice {slices.title(view, units)}; arrows show the part in its plane, "
+    return figure, (f"Slice {slices.title(view, words)}; arrows show the part in its plane, "
                     f"colour the whole. {text}")
 
 
-def curve_figure(run, index, units):
-    """The heat flux over a 1D body: (figure or None, text)."""
+def curve_figure(run, index, words):
+    """The flux over a 1D body: (figure or None, text)."""
     found = {}
     for model in run.models:
         values = flux_parts(run, index, model)
@@ -125,20 +128,20 @@ def curve_figure(run, index, units):
     if not found:
         return None, ""
     if not any(np.nanmax(np.abs(v), initial=0) > 0 for _, v in found.values()):
-        return None, ZERO
+        return None, nothing(words)
     figure = style.figure(10, 3.2)
     axes = figure.add_axes([0.085, 0.19, 0.735, 0.74])
     for model, (x, values) in found.items():
         curves.draw_curve(axes, x, values, model)
-    axes.set_xlabel(units.axis("x"))
-    axes.set_ylabel("Heat flux")
+    axes.set_xlabel(words.axis("x"))
+    axes.set_ylabel(words.flux.label())
     style.tidy(axes)
     curves.model_legend(axes, list(found), True, loc="upper left", bbox_to_anchor=(1.01, 1.0))
-    return figure, "Positive where heat flows to the right."
+    return figure, f"Positive where {words.quantity} flows to the right."
 
 
-def flux_figure(maps, index, units):
+def flux_figure(maps, index, words):
     """The picture of a run of any dimension: (figure or None, text)."""
     if maps.run.dimension == 1:
-        return curve_figure(maps.run, index, units)
-    return (plane_figure if maps.run.dimension == 2 else slice_figure)(maps, index, units)
+        return curve_figure(maps.run, index, words)
+    return (plane_figure if maps.run.dimension == 2 else slice_figure)(maps, index, words)

@@ -211,7 +211,7 @@ def is_constant_per_cell(mesh, values, n_sample=20_000):
 def dual_mesh(mesh):
     """Lattice of the cells' centres as (nodes, cells, first vertex of each cell), 2D, or None.
 
-    Isotherms of cell-centre nodes are drawn on it: on the cells themselves they are stairs.
+    Isolines of cell-centre nodes are drawn on it: on the cells themselves they are stairs.
     """
     if mesh.dimension != 2 or len(mesh.cells) > 600_000:
         return None

@@ -12,6 +12,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from words import PHYSICS, Words
+
 MODEL_ORDER = ("finite elements", "peridynamics", "coupled")
 EXACT = "exact"
 DIFFERENCE = "peridynamics_minus_finite_elements"
@@ -102,6 +104,7 @@ class Run:
             raise ReportError(f"'{directory}' is not a directory")
         self.summary = self._read_summary()
         self.dimension = self._dimension()
+        self.words = self._words()
         present = self.summary["models"]
         self.models = [m for m in MODEL_ORDER if m in present]
         self.models += [m for m in present if m not in self.models]
@@ -152,6 +155,13 @@ class Run:
                               f"found {dimension}")
         return dimension
 
+    def _words(self):
+        physics = self.summary.get("physics") or "heat"
+        if physics not in PHYSICS:
+            raise ReportError(f"'{self.directory / 'summary.json'}': physics must be one of "
+                              f"{', '.join(PHYSICS)}, found {json.dumps(physics)}")
+        return Words(self.summary)
+
     def get(self, *path, default=None):
         """An entry of summary.json by its path, or the default where it is absent or null."""
         value = self.summary
@@ -185,6 +195,11 @@ class Run:
         if index is not None:
             cracks = self.summary["fields"][index].get("cracks", cracks)
         return [np.array(c, float) for c in cracks if len(c) >= 2]
+
+    def sides(self, brief=False):
+        """What holds on each side: {side: text}, in the words of the physics."""
+        return {side: self.words.condition(text, brief)
+                for side, text in self.get("sides", default={}).items()}
 
     def scene_entry(self, section, name):
         """An entry of the scene as used (scene.prm) as text, empty where it is absent."""
@@ -268,9 +283,13 @@ class Run:
         finite = np.isfinite(values)
         if not finite.all():
             values = np.where(finite, values, np.nan)
-            if name == "temperature":
+            if name == self.words.solution.name:
                 self.not_finite.setdefault(model, self.written_times()[index])
         return values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values
+
+    def solution(self, index, model):
+        """The temperature, wetness or potential at the vertices."""
+        return self.field(index, model, self.words.solution.name)
 
     def written_times(self):
         """Times of the written fields."""

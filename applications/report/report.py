@@ -29,7 +29,7 @@ try:
     import tables
     from page import Page, paragraphs
     from read_run import EXACT, ReportError, Run
-    from style import Units, is_formula, minus, plain, prose
+    from style import is_formula, minus, name, plain, prose
 except ImportError as fault:
     sys.exit(f"report: a Python package is missing ({fault}); "
              "the report needs numpy, matplotlib and h5py")
@@ -42,19 +42,20 @@ class Report:
 
     def __init__(self, run, figure_directory=None):
         self.run = run
-        self.units = Units(run.get("units"))
+        self.words = run.words
         self.steady = bool(run.get("steady", default=False))
         self.maps = contours.Maps(run)
         self.page = Page(figure_directory)
         self.shown = run.shown_indices(SHOWN_TIMES[run.dimension])
-        self.largest = difference.largest(run, self.shown[-1]) if self.shown else None
+        self.largest = difference.largest(run, self.shown[-1], self.words.solution.name) \
+            if self.shown else None
 
     def html(self):
         """The document."""
         title = self.run.get("title", default="PeriDeal run")
         self.problem()
         place = len(self.page.parts)
-        self.temperature()
+        self.fields()
         self.page.parts.insert(place, self.findings())
         self.line()
         self.probes()
@@ -73,7 +74,7 @@ class Report:
         processes = self.run.get("processes")
         if processes:
             facts.append(f"{plain(processes)} process" + ("es" if processes != 1 else ""))
-        units = [u for u in (self.units.length, self.units.time, self.units.temperature) if u]
+        units = [u for u in (self.words.length, self.words.time, self.words.solution.unit) if u]
         if units:
             facts.append("units: " + ", ".join(units))
         spans = "".join(f"<span>{escape(str(f))}</span>" for f in facts if f)
@@ -93,71 +94,86 @@ class Report:
         legend = []
         if self.run.cracks() and self.run.dimension > 1:
             legend.append("cracks in black")
+        if self.run.sides() != self.run.sides(brief=True):
+            legend.append(f"{self.words.held}s in red")
         if self.run.dimension == 2 and self.run.line.data:
             legend.append("the line of the plots dashed")
         if self.run.dimension == 2 and self.run.probes.data:
             legend.append("probes as dots")
         caption = "The body and its sides" + (": " + ", ".join(legend) if legend else "") + "."
-        self.page.figure(sketch.problem_sketch(self.maps, self.units), "problem", caption,
+        self.page.figure(sketch.problem_sketch(self.maps, self.words), "problem", caption,
                          vector=self.run.dimension != 2)
         self.page.add("</div>")
 
     def findings(self):
         """The sentences, as a box that follows the problem."""
         items = "".join(f"<li>{escape(s)}</li>"
-                        for s in findings.sentences(self.run, self.units, self.largest))
+                        for s in findings.sentences(self.run, self.words, self.largest))
         notes = len(self.run.get("notes", default=[]))
         if notes:
             items += (f'<li>The program left {plain(notes)} note{"s" if notes != 1 else ""}, '
                       f'see <a href="#settings">Settings and notes</a>.</li>')
         return f'<div class="findings"><h2>What this run says</h2><ul>{items}</ul></div>'
 
-    def temperature(self):
-        """The pictures of all shown times."""
-        run = self.run
-        if not self.shown:
-            return
-        self.page.section("Temperature", "temperature")
-        if run.dimension == 1:
-            if not self.line_is_body():
-                figure = curves.line_figure(curves.field_table(run, self.shown), self.units,
-                                            self.steady)
-                self.page.figure(figure, "temperature", "Nodal values over the body" + (
-                    "." if len(run.models) == 1 else ", and their difference below."), vector=True)
-                self.page.add(f"<p>{self.picture_caption(self.largest)}</p>")
+    def fields(self):
+        """The solution, and fields that tell more than a multiple of it."""
+        for field in (self.words.solution,) + self.words.also:
+            solution = field is self.words.solution
+            if not self.shown or not solution and \
+                    difference.is_multiple(self.run, self.shown, field.name):
+                continue
+            self.page.section(field.title, field.name)
+            if field.about:
+                self.page.add(f"<p>{escape(field.about)}</p>")
+            if self.run.dimension > 1:
+                self.pictures(field)
+            elif solution and self.line_is_body():
+                self.draw_line(f"{field.title} over the body")
             else:
-                self.draw_line("Temperature over the body")
-            return
+                self.profile(field)
+
+    def profile(self, field):
+        """A field of a 1D body at its nodes."""
+        figure = curves.line_figure(curves.field_table(self.run, self.shown, field), self.words,
+                                    field, self.steady)
+        self.page.figure(figure, field.name, "Nodal values over the body" + (
+            "." if len(self.run.models) == 1 else ", and their difference below."), vector=True)
+        largest = difference.largest(self.run, self.shown[-1], field.name)
+        self.page.add(f"<p>{self.picture_caption(largest, field)}</p>")
+
+    def pictures(self, field):
+        """The pictures of a field at all shown times."""
+        run = self.run
         module = contours if run.dimension == 2 else solids
-        scale = contours.common_scale(run, self.shown)
-        self.page.add(f"<p>{self.picture_text(scale)}</p>")
+        scale = contours.common_scale(run, self.shown, field)
+        self.page.add(f"<p>{self.picture_text(scale, field)}</p>")
         times = run.written_times()
         for index in self.shown:
-            largest = difference.largest(run, index)
-            figure = module.temperature_figure(self.maps, index, self.units, largest, scale)
-            heading = self.units.at_time(times[index], self.steady)
-            self.page.figure(figure, f"temperature_{index:04d}", self.picture_caption(largest),
-                             False,
-                             heading[0].upper() + heading[1:] if self.steady else heading)
+            largest = difference.largest(run, index, field.name)
+            figure = module.field_figure(self.maps, index, self.words, field, largest, scale)
+            heading = self.words.at_time(times[index], self.steady)
+            self.page.figure(figure, f"{field.name}_{index:04d}",
+                             self.picture_caption(largest, field), False,
+                             name(heading) if self.steady else heading)
         hidden = [plain(t) for i, t in enumerate(times) if i not in self.shown]
         if hidden:
             self.page.add(f"<p>Also written, not shown: t = {', '.join(hidden)} "
-                          f"{self.units.time}.</p>")
+                          f"{self.words.time}.</p>")
 
-    def scale_text(self, scale):
+    def scale_text(self, scale, field):
         """What the colours have in common."""
         several = len(self.shown) > 1
         if len(self.run.models) < 2:
-            return "Lines are isotherms. " + (
+            return f"Lines are {field.isolines}. " + (
                 "" if not several else "All times share one colour scale. " if scale else
                 "Each time has its own colour scale. ")
         when = "" if not several else " at all times" if scale else " at each time"
-        return f"All models share one colour scale and one set of isotherms{when}. " + (
-            "The difference has its own scale at each time. " if several else "")
+        return f"All models share one colour scale and one set of {field.isolines}{when}. " \
+            + ("The difference has its own scale at each time. " if several else "")
 
-    def picture_text(self, scale):
+    def picture_text(self, scale, field):
         """How to read the pictures."""
-        text = self.scale_text(scale)
+        text = self.scale_text(scale, field)
         if self.run.dimension == 3:
             text += "Above, the outer faces that are seen from the upper front right; below, " \
                 "slices through the body."
@@ -169,22 +185,21 @@ class Report:
                 "side, never across it."
         return text
 
-    def picture_caption(self, largest):
+    def picture_caption(self, largest, field):
         """Where the largest difference lies."""
         if largest is None:
             return ""
         if largest.zero:
             return "Peridynamics and finite elements agree to round-off."
-        value = f"{plain(largest.value, 3)} {self.units.temperature}".strip()
         circle = ", marked by a circle" if self.run.dimension == 2 else ""
-        return f"Largest difference: {value} {largest.place()}{circle}."
+        return f"Largest difference: {field.amount(largest.value)} {largest.place()}{circle}."
 
     def line(self):
         """Plots along the line."""
         if not self.run.line.data or (self.shown and self.line_is_body()):
             return
         self.page.section("Along the line", "line")
-        self.draw_line("Temperature along the line")
+        self.draw_line(f"{self.words.solution.title} along the line")
 
     def line_is_body(self):
         """Whether a 1D body is shown by its line already."""
@@ -197,7 +212,8 @@ class Report:
     def draw_line(self, text):
         """The plot along the line."""
         cracks = self.run.cracks(-1 if self.run.summary["fields"] else None)
-        figure = curves.line_figure(self.run.line, self.units, self.steady, cracks)
+        figure = curves.line_figure(self.run.line, self.words, self.words.solution, self.steady,
+                                    cracks)
         exact = EXACT in self.run.line.models()
         compared = bool(curves.difference_pairs(self.run.line))
         lower = "" if not compared else "each model minus the exact solution" if exact else \
@@ -218,14 +234,14 @@ class Report:
 
     def probes(self):
         """Probes over time and their values."""
-        html, left_out = tables.probe_table(self.run, self.units)
+        html, left_out = tables.probe_table(self.run, self.words)
         if not html:
             return
         self.page.section("Probes", "probes")
-        figure, zero = series.probe_figure(self.run, self.units)
+        figure, zero = series.probe_figure(self.run, self.words)
         if figure is not None:
-            self.page.figure(figure, "probes", "Temperature at the probes over time. "
-                             + self.series_text(zero), True)
+            self.page.figure(figure, "probes", f"{self.words.solution.title} at the probes over "
+                             f"time. {self.series_text(zero)}", True)
         self.page.add(f'<div class="wide">{html}</div>')
         if left_out:
             self.page.add(f"<p>{plain(left_out)} more rows are in "
@@ -239,29 +255,30 @@ class Report:
                        else "")
 
     def flux(self):
-        """The heat flux at the last time."""
+        """The flux at the last time."""
         index = len(self.run.summary["fields"]) - 1
         if index < 0:
             return
-        figure, text = flux.flux_figure(self.maps, index, self.units)
+        figure, text = flux.flux_figure(self.maps, index, self.words)
         if figure is None and not text:
             return
-        self.page.section("Heat flux", "flux")
+        self.page.section(self.words.flux.title, "flux")
         if figure is None:
             self.page.add(f"<p>{escape(text)}</p>")
             return
-        when = self.units.at_time(self.run.written_times()[index], self.steady)
-        self.page.figure(figure, "heat_flux", f"Heat flux, {escape(when)}. {escape(text)}",
+        when = self.words.at_time(self.run.written_times()[index], self.steady)
+        self.page.figure(figure, self.words.flux.name,
+                         f"{self.words.flux.title}, {escape(when)}. {escape(text)}",
                          vector=self.run.dimension == 1)
 
     def cost(self):
         """Cost and error."""
         self.page.section("Cost and error", "cost")
-        self.page.add(f'<div class="wide">{tables.cost_table(self.run, self.units)}</div>')
+        self.page.add(f'<div class="wide">{tables.cost_table(self.run, self.words)}</div>')
         shared = tables.shared_cost(self.run)
         if shared:
             self.page.add(f"<p>{escape(shared)}</p>")
-        html = tables.error_table(self.run, self.units)
+        html = tables.error_table(self.run, self.words)
         if html:
             self.page.add(f'<h3>Over time</h3><div class="wide">{html}</div>' if not self.steady
                           else f'<div class="wide">{html}</div>')
@@ -270,7 +287,7 @@ class Report:
         """Boundary flux."""
         html = tables.boundary_table(self.run)
         if html:
-            self.page.section("Heat through the sides", "sides")
+            self.page.section(f"{name(self.words.passing)} through the sides", "sides")
             self.page.add("<p>What enters the body is positive"
                           + (", per unit thickness" if self.run.dimension == 2 else "") + ".</p>")
             self.page.add(f'<div class="wide">{html}</div>')
@@ -281,7 +298,12 @@ class Report:
         if not html:
             return
         self.page.section("Totals", "totals")
-        figure, zero = series.totals_figure(self.run.totals, self.units)
+        for quantity in self.words.plotted_apart:
+            figure = series.apart_figure(self.run.totals, self.words, quantity)
+            if figure is not None:
+                self.page.figure(figure, quantity.replace(" ", "_"), f"{escape(name(quantity))} "
+                                 f"over time. {self.series_text([])}", True)
+        figure, zero = series.totals_figure(self.run.totals, self.words)
         if figure is not None:
             self.page.figure(figure, "totals", self.series_text(zero), True)
         self.page.add(f'<div class="wide">{html}</div>')

@@ -22,7 +22,7 @@ class Panels:
         self.figure = style.figure(10, self.height)
         self.models, self.started = [], False
 
-    def axes(self, k, title, units):
+    def axes(self, k, title, words):
         """Axes of plot k."""
         axes = self.figure.add_axes(
             [(0.8 + (k % self.columns) * 9.1 / self.columns) / 10,
@@ -30,7 +30,7 @@ class Panels:
              (9.1 / self.columns - 0.75) / 10, 1.75 / self.height])
         axes.set_title(title, loc="left", fontsize=8.5)
         style.tidy(axes)
-        axes.set_xlabel(units.with_unit("Time", units.time), labelpad=1)
+        axes.set_xlabel(words.time_axis(), labelpad=1)
         return axes
 
     def draw(self, axes, model, series, start=None):
@@ -86,7 +86,7 @@ def probe_series(table, k):
     return {m: s for m, s in found.items() if s}
 
 
-def probe_figure(run, units, at_most=9):
+def probe_figure(run, words, at_most=9):
     """The probes over time: (figure or None, names of the probes that stay at zero)."""
     table = run.probes
     points = probe_points(table)
@@ -103,26 +103,40 @@ def probe_figure(run, units, at_most=9):
         return None, names
     panels = Panels(min(len(shown), at_most))
     for k, (point, series) in enumerate(shown[:at_most]):
-        axes = panels.axes(k, f"Probe {probe_name(point)}", units)
+        axes = panels.axes(k, f"Probe {probe_name(point)}", words)
         for model, values in series.items():
             panels.draw(axes, model, values, run.initial_value(point))
         if k % panels.columns == 0:
-            axes.set_ylabel(units.value())
+            axes.set_ylabel(words.solution.label())
     return panels.finish(), names
 
 
-def totals_figure(totals, units, at_most=6):
-    """The quantities of totals.csv over time: (figure or None, names of those that are zero)."""
+def apart_figure(totals, words, quantity):
+    """One quantity of totals.csv over time, drawn large; None with less than three times."""
+    of_model = totals.get(quantity, {})
+    if max(map(len, of_model.values()), default=0) < 3:
+        return None
+    panels = Panels(1)
+    axes = panels.axes(0, "", words)
+    axes.set_ylabel(style.name(quantity))
+    for model, values in of_model.items():
+        panels.draw(axes, model, values)
+    return panels.finish()
+
+
+def totals_figure(totals, words, at_most=6):
+    """The other quantities over time: (figure or None, names of those that are zero)."""
     everything = np.array([v for q in totals.values() for s in q.values() for _, v in s])
     long = {q: of_model for q, of_model in totals.items()
-            if max(len(series) for series in of_model.values()) >= 3}
+            if max(len(series) for series in of_model.values()) >= 3
+            and q not in words.plotted_apart}
     silent = [q for q, of_model in long.items() if is_zero(of_model.values(), everything)]
     shown = [q for q in long if q not in silent][:at_most]
     if not shown:
         return None, silent
     panels = Panels(len(shown))
     for k, quantity in enumerate(shown):
-        axes = panels.axes(k, style.name(quantity), units)
+        axes = panels.axes(k, style.name(quantity), words)
         for model, values in totals[quantity].items():
             panels.draw(axes, model, values)
     return panels.finish(), silent

@@ -9,7 +9,8 @@ import solids
 import style
 
 KIND_COLOR = (("dirichlet", "#c0392b"), ("flux", "#d98200"), ("convection", "#00897b"),
-              ("symmetry", "#5e60ce"), ("insulated", "#7b8794"))
+              ("symmetry", "#5e60ce"))
+CLOSED = "#7b8794"  # insulated or sealed
 BODY = "#eef2f6"
 BOX_SIDES = {"bottom": ((0, 0), (1, 0)), "top": ((0, 1), (1, 1)), "left": ((0, 0), (0, 1)),
              "right": ((1, 0), (1, 1))}
@@ -25,7 +26,7 @@ def side_color(text):
     for kind, color in KIND_COLOR:
         if kind in lowered:
             return color
-    return "#7b8794"
+    return CLOSED
 
 
 def shorten(text, length=30):
@@ -85,8 +86,8 @@ def draw_sides(axes, sides, lower, extent, width, height):
             continue
         color = side_color(sides[side])
         line = lower + np.array(ends) * extent
-        insulated = color == "#7b8794"
-        axes.plot(line[:, 0], line[:, 1], color=color, linewidth=1.4 if insulated else 3.2,
+        closed = color == CLOSED
+        axes.plot(line[:, 0], line[:, 1], color=color, linewidth=1.4 if closed else 3.2,
                   solid_capstyle="butt", clip_on=False, zorder=3)
         x, y, horizontal, vertical, turn = LABELS[side]
         condition = style.minus(sides[side])
@@ -98,7 +99,7 @@ def draw_sides(axes, sides, lower, extent, width, height):
                   ha=horizontal, va=vertical)
 
 
-def sketch_2d(maps, units):
+def sketch_2d(maps, words):
     """The rectangle with its four sides, or the outline of any other mesh."""
     run = maps.run
     lower, upper = run.domain
@@ -110,18 +111,18 @@ def sketch_2d(maps, units):
     figure = style.figure(*size)
     axes = figure.add_axes([0.95 / size[0], 0.72 / size[1], width / size[0], height / size[1]])
     full = draw_material(axes, maps)
-    sides = run.get("sides", default={})
+    sides = run.sides(brief=True)
     draw_sides(axes, sides, lower, extent, width, height)
     if not any(side in sides for side in BOX_SIDES) and full:
         axes.plot(*(lower + np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)]) * extent).T,
                   color="#52606d", linewidth=1.2, clip_on=False)
     contours.draw_cracks(axes, contours.segments_of(run.cracks()), 1.8)
     draw_points(axes, run)
-    finish_2d(axes, lower, upper, units, size)
+    finish_2d(axes, lower, upper, words, size)
     return figure
 
 
-def finish_2d(axes, lower, upper, units, size):
+def finish_2d(axes, lower, upper, words, size):
     """Extents instead of axes."""
     axes.set_xlim(lower[0], upper[0])
     axes.set_ylim(lower[1], upper[1])
@@ -131,17 +132,17 @@ def finish_2d(axes, lower, upper, units, size):
     axes.set_yticks([])
     text = ",   ".join(f"${'xyz'[d]}$ = {style.plain(lower[d])} … {style.plain(upper[d])}"
                      for d in range(len(lower)))
-    axes.figure.text(0.95 / size[0], 0.12 / size[1], f"{text} {units.length}", fontsize=8,
+    axes.figure.text(0.95 / size[0], 0.12 / size[1], f"{text} {words.length}", fontsize=8,
                      color="#52606d", ha="left", va="bottom")
 
 
-def sketch_1d(run, units):
+def sketch_1d(run, words):
     """A bar with its two ends."""
     lower, upper = run.domain
     figure = style.figure(4.8, 1.5)
     axes = figure.add_axes([0.06, 0.42, 0.88, 0.2])
     axes.axvspan(lower[0], upper[0], color=BODY)
-    sides = run.get("sides", default={})
+    sides = run.sides(brief=True)
     for side, x, align in (("left", lower[0], "left"), ("right", upper[0], "right")):
         text = style.minus(sides.get(side, ""))
         color = side_color(text)
@@ -150,7 +151,7 @@ def sketch_1d(run, units):
         axes.text(fraction, 1.25, shorten(text, 26), transform=axes.transAxes, color=color,
                   fontsize=8.5, ha=align, va="bottom")
         axes.text(fraction, -0.25, f"{'x = ' if align == 'left' else ''}{style.plain(x)} "
-                  f"{units.length}", transform=axes.transAxes, color="#52606d", fontsize=8,
+                  f"{words.length}", transform=axes.transAxes, color="#52606d", fontsize=8,
                   ha=align, va="top")
     for crack in run.cracks():
         axes.axvline(crack[:, 0].mean(), color="black", linewidth=2)
@@ -160,7 +161,7 @@ def sketch_1d(run, units):
     return figure
 
 
-def sketch_3d(run, units):
+def sketch_3d(run, words):
     """An isometric box with its cracks; the sides are named beside it."""
     lower, upper = run.domain
     figure = style.figure(4.8, 3.5)
@@ -168,7 +169,7 @@ def sketch_3d(run, units):
     corners = {(i, j, k): solids.project([(lower, upper)[i][0], (lower, upper)[j][1],
                                           (lower, upper)[k][2]])
                for i in (0, 1) for j in (0, 1) for k in (0, 1)}
-    sides = run.get("sides", default={})
+    sides = run.sides(brief=True)
     faces = {"top": [(0, 1, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1)],
              "front": [(0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
              "right": [(1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0, 1)]}
@@ -184,7 +185,7 @@ def sketch_3d(run, units):
             points = solids.project(polygon)
             axes.fill(points[:, 0], points[:, 1], facecolor="#1f293355", edgecolor="black",
                       linewidth=1.3)
-    solids.label_body(axes, lower, upper, units)
+    solids.label_body(axes, lower, upper, words)
     solids.frame_body(axes, lower, upper)
     names = ("left", "right", "bottom", "top", "back", "front")
     listed = [(n, style.minus(sides[n])) for n in names if n in sides]
@@ -194,10 +195,10 @@ def sketch_3d(run, units):
     return figure
 
 
-def problem_sketch(maps, units):
+def problem_sketch(maps, words):
     """The sketch of a run of any dimension."""
     if maps.run.dimension == 1:
-        return sketch_1d(maps.run, units)
+        return sketch_1d(maps.run, words)
     if maps.run.dimension == 2:
-        return sketch_2d(maps, units)
-    return sketch_3d(maps.run, units)
+        return sketch_2d(maps, words)
+    return sketch_3d(maps.run, words)

@@ -40,7 +40,7 @@ def slice_positions(run, index):
     """Where the three slices lie: through the first crack's centre, else the body's centre.
 
     A slice in the crack's own plane is moved to the first nodes off the crack, on its left
-    side: on the crack the temperature has two values.
+    side: on the crack the solution has two values.
     """
     lower, upper = run.domain
     position = 0.5 * (lower + upper)
@@ -132,9 +132,9 @@ class Slices:
                                    (view.axis, float(view.position), view.shape), view)
                  for view, segments in group] for group in (self.slices, self.faces)]
 
-    def title(self, view, units):
+    def title(self, view, words):
         """Name of a slice."""
-        text = f"{'xyz'[view.axis]} = {style.plain(view.position)} {units.length}".strip()
+        text = f"{'xyz'[view.axis]} = {style.plain(view.position)} {words.length}".strip()
         if view.axis in self.remark:
             return f"{text}: {self.remark[view.axis]}"
         return text + (": along an edge of a crack" if self.outlines[view.axis] else "")
@@ -184,7 +184,7 @@ def draw_hidden_cracks(axes, cracks):
                   linestyle=(0, (3.5, 2)), zorder=6)
 
 
-def label_body(axes, lower, upper, units, size=8):
+def label_body(axes, lower, upper, words, size=8):
     """Coordinate names and end values along three edges."""
     extent = upper - lower
     offset = 0.075 * np.ptp(body_corners(lower, upper), axis=0).max()
@@ -244,13 +244,13 @@ class Grid:
         contours.color_bar(self.figure, box, scale, label)
 
 
-def draw_column(grid, column, slices, pictures, scale, units, title):
+def draw_column(grid, column, slices, pictures, scale, words, title):
     """The body and its slices for one model."""
     sections, faces = pictures
     axes = grid.panel(0, column)
     draw_body(axes, slices, faces, scale)
     draw_hidden_cracks(axes, slices.cracks)
-    label_body(axes, slices.lower, slices.upper, units, 7.5)
+    label_body(axes, slices.lower, slices.upper, words, 7.5)
     frame_body(axes, slices.lower, slices.upper)
     axes.set_title(title, loc="left", pad=4, fontsize=9.5)
     for row, ((view, segments), picture) in enumerate(zip(slices.slices, sections), 1):
@@ -259,31 +259,31 @@ def draw_column(grid, column, slices, pictures, scale, units, title):
         for edge in slices.outlines[view.axis]:
             axes.plot(*edge.T, color="black", linewidth=1.2, linestyle=(0, (3.5, 2)), zorder=6)
         axes.set_anchor("W")
-        axes.set_title(slices.title(view, units), loc="left", pad=3, fontsize=8,
+        axes.set_title(slices.title(view, words), loc="left", pad=3, fontsize=8,
                        fontweight="normal")
-        axes.set_xlabel(units.axis("xyz"[view.axes[0]]), labelpad=0)
+        axes.set_xlabel(words.axis("xyz"[view.axes[0]]), labelpad=0)
         contours.sparse_ticks(axes, grid.column, grid.heights[row])
         if column == 0:
-            axes.set_ylabel(units.axis("xyz"[view.axes[1]]), labelpad=2)
+            axes.set_ylabel(words.axis("xyz"[view.axes[1]]), labelpad=2)
         else:
             axes.tick_params(labelleft=False)
 
 
-def difference_pictures(maps, index, slices, pictures):
-    """PD minus FEM in all views: of the nodes, else (two meshes) of the pictures."""
-    values = difference_field(maps.run, index)
+def difference_pictures(maps, index, field, slices, pictures):
+    """PD minus FEM of a field in all views: of the nodes, else (two meshes) of the pictures."""
+    values = difference_field(maps.run, index, field.name)
     if values is not None:
         return slices.pictures(contours.PD, values)
     return [[p - f for p, f in zip(*groups)]
             for groups in zip(pictures[contours.PD], pictures[contours.FEM])]
 
 
-def temperature_figure(maps, index, units, largest=None, scale=None):
-    """Body and slices of all models and the difference, if there is one."""
+def field_figure(maps, index, words, field, largest=None, scale=None):
+    """A field on the body and its slices, of all models and the difference, if there is one."""
     run = maps.run
     slices = Slices(maps, index)
     models = [m for m in run.models if run.field_file(index, m) is not None]
-    pictures = {m: slices.pictures(m, run.field(index, m, "temperature")) for m in models}
+    pictures = {m: slices.pictures(m, run.field(index, m, field.name)) for m in models}
     both = contours.FEM in pictures and contours.PD in pictures and \
         not (largest is not None and largest.zero)
     extents = [(1.0, 1.0)] + [(v.extent[1] - v.extent[0], v.extent[3] - v.extent[2])
@@ -292,13 +292,12 @@ def temperature_figure(maps, index, units, largest=None, scale=None):
     scale = scale or style.value_scale([p for group in pictures.values() for part in group
                                         for p in part])
     for column, model in enumerate(models):
-        draw_column(grid, column, slices, pictures[model], scale, units, style.name(model))
-    grid.bar(0, len(models) - 1, scale, units.value())
+        draw_column(grid, column, slices, pictures[model], scale, words, style.name(model))
+    grid.bar(0, len(models) - 1, scale, field.label())
     if both:
-        difference = difference_pictures(maps, index, slices, pictures)
+        difference = difference_pictures(maps, index, field, slices, pictures)
         shown = style.difference_scale([p for part in difference for p in part])
-        draw_column(grid, len(models), slices, difference, shown, units,
+        draw_column(grid, len(models), slices, difference, shown, words,
                     "Peridynamics − finite elements")
-        grid.bar(len(models), len(models), shown,
-                 units.with_unit("Difference", units.temperature))
+        grid.bar(len(models), len(models), shown, field.label("Difference"))
     return grid.figure

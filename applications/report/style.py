@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Colours, fonts, labels and number formats shared by all figures and tables."""
+"""Colours, fonts and number formats shared by all figures and tables."""
 
 import math
 import re
@@ -39,34 +39,6 @@ matplotlib.rcParams.update({
     "legend.fontsize": 8, "axes.formatter.limits": (-3, 4), "axes.formatter.use_mathtext": True,
     "mathtext.fontset": "dejavusans", "figure.facecolor": "white", "svg.fonttype": "path",
     "svg.hashsalt": "perideal", "image.interpolation": "nearest"})
-
-
-class Units:
-    """Labels of the scene's units."""
-
-    def __init__(self, units):
-        self.length = (units or {}).get("length", "") or ""
-        self.time = (units or {}).get("time", "") or ""
-        temperature = (units or {}).get("temperature", "") or ""
-        self.temperature = {"C": "°C", "F": "°F", "degC": "°C"}.get(temperature, temperature)
-
-    def with_unit(self, name, unit):
-        """'name (unit)', or the name alone without a unit."""
-        return f"{name} ({unit})" if unit else name
-
-    def axis(self, name):
-        """Label of a coordinate axis."""
-        return self.with_unit(f"${name}$", self.length)
-
-    def value(self):
-        """Label of the solution."""
-        return self.with_unit("Temperature", self.temperature)
-
-    def at_time(self, time, steady=False):
-        """'t = 0.5 s', or 'steady state'."""
-        if steady:
-            return "steady state"
-        return f"t = {plain(time)} {self.time}".strip()
 
 
 def plain(value, digits=4):
@@ -135,7 +107,7 @@ def refined(levels, parts):
 
 
 class Scale:
-    """One colour scale: bands, the levels of its isotherms, and whether values exceed it."""
+    """One colour scale: bands, the levels of its isolines, and whether values exceed it."""
 
     def __init__(self, levels, colormap, lines, extend="neither"):
         self.levels, self.lines, self.extend = np.asarray(levels), np.asarray(lines), extend
@@ -147,7 +119,7 @@ class Scale:
         self.norm = BoundaryNorm(self.levels, n_bands)
 
     def clean(self, picture, relative=1e-9):
-        """A picture without round-off, whose isotherms would be noise where values are equal."""
+        """A picture without round-off, whose isolines would be noise where values are equal."""
         grain = relative * max(self.levels[-1] - self.levels[0], 1e-300)
         return np.round(picture / grain) * grain + 0.0
 
@@ -211,5 +183,5 @@ def tidy(axes):
 
 
 def name(model):
-    """Name of a model with a capital, for titles."""
+    """Name of a model or quantity with a capital, for titles."""
     return model[:1].upper() + model[1:]

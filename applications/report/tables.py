@@ -7,6 +7,7 @@ from html import escape
 import findings
 from curves import probe_name, probe_points
 from style import minus, name, plain
+from words import with_unit
 
 
 def cell(value, digits=4):
@@ -67,7 +68,7 @@ def final(*path):
     return lambda model: findings.last(entry(*path)(model))
 
 
-def size_rows(run, units):
+def size_rows(run, words):
     """Sizes and methods."""
     rows = []
     for title, key in (("Unknowns", "unknowns"), ("Bonds", "bonds"), ("Nonzeros", "nonzeros"),
@@ -76,9 +77,10 @@ def size_rows(run, units):
                        ("Operator applications", "operator applications"),
                        ("Solver iterations", "iterations")):
         rows += model_rows(run, title, entry(key))
-    unit = f" ({units.time})" if units.time else ""
-    rows += model_rows(run, f"Stable step, sharp{unit}", entry("stable step", "sharp"))
-    rows += model_rows(run, f"Stable step, safe bound{unit}", entry("stable step", "safe"))
+    rows += model_rows(run, with_unit("Stable step, sharp", words.time),
+                       entry("stable step", "sharp"))
+    rows += model_rows(run, with_unit("Stable step, safe bound", words.time),
+                       entry("stable step", "safe"))
     return rows
 
 
@@ -115,21 +117,22 @@ def shared_cost(run):
     return text.strip()
 
 
-def error_rows(run, units):
+def error_rows(run, words):
     """Errors at the end."""
     when = "" if run.get("steady", default=False) else " at the end"
     errors = model_rows(run, f"Relative L2 error{when}", final("errors", "relative l2"))
-    at = f" ({units.temperature})" if units.temperature else ""
-    errors += model_rows(run, f"Largest error{when}{at}", final("errors", "maximum"))
-    errors += model_rows(run, "Heat throughput", entry("heat balance", "throughput"))
-    errors += model_rows(run, "Heat imbalance", entry("heat balance", "imbalance"))
+    errors += model_rows(run, words.solution.label(f"Largest error{when}"),
+                         final("errors", "maximum"))
+    for part in ("throughput", "imbalance"):
+        errors += model_rows(run, f"{name(words.quantity)} {part}",
+                             lambda m, p=part: findings.balance(m, words).get(p))
     return errors
 
 
-def cost_table(run, units):
+def cost_table(run, words):
     """Cost and error of each model."""
-    groups = (("Size and method", size_rows(run, units)), ("Cost", cost_rows(run)),
-              ("Error", error_rows(run, units)))
+    groups = (("Size and method", size_rows(run, words)), ("Cost", cost_rows(run)),
+              ("Error", error_rows(run, words)))
     listed = []
     for title, part in groups:
         if part:
@@ -145,7 +148,7 @@ def boundary_table(run):
                   if s not in sides]
     if not sides:
         return ""
-    conditions = run.get("sides", default={})
+    conditions = run.sides()
     rows = []
     for side in sides:
         values = [entry("boundary flux", side)(run.summary["models"][m]) for m in run.models]
@@ -161,13 +164,13 @@ def boundary_table(run):
 
 def sides_table(run):
     """The boundary conditions in full."""
-    sides = run.get("sides", default={})
+    sides = run.sides()
     if not sides:
         return ""
     return table(["Side", "Condition"], [[escape(s), escape(minus(c))] for s, c in sides.items()])
 
 
-def error_table(run, units):
+def error_table(run, words):
     """Difference and errors at every written time; empty with nothing to tell."""
     columns = []
     for key, title in (("relative l2", "relative L2"), ("maximum", "largest")):
@@ -185,11 +188,11 @@ def error_table(run, units):
     steady = run.get("steady", default=False)
     rows = [[escape("Steady state" if steady else plain(t))]
             + [cell(series.get(t)) for _, series in columns] for t in times]
-    first = "" if steady else units.with_unit("Time", units.time)
+    first = "" if steady else words.time_axis()
     return table([first] + [title for title, _ in columns], rows, "numbers")
 
 
-def probe_table(run, units, at_most=60):
+def probe_table(run, words, at_most=60):
     """Values at the probes."""
     probes = run.probes
     times, points = probes.times(), probe_points(probes)
@@ -205,7 +208,7 @@ def probe_table(run, units, at_most=60):
             rows.append(lead + [cell(v, 6) for v in values])
     if not rows:
         return "", 0
-    header = ["Probe"] + ([] if steady else [units.with_unit("Time", units.time)])
+    header = ["Probe"] + ([] if steady else [words.time_axis()])
     header += [name(m) for m in models]
     return table(header, rows[:at_most], "numbers"), max(0, len(rows) - at_most)
 

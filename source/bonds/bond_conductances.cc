@@ -56,9 +56,6 @@ namespace PeriDeal
     const double a = conductivity(node), b = conductivity(neighbor);
     if (material.interface_rule != InterfaceRule::harmonic)
       return interface_conductivity(material.interface_rule, a, b);
-    // Beyond the side the material is the mirror image of the body's, which no formula gives: half the bond in each.
-    if (neighbor >= own_nodes->n_local())
-      return interface_conductivity(InterfaceRule::harmonic, a, b);
     // From the end that comes first in space, so that both ends of a bond see the same value to the last bit.
     Point<dim> start = position(node), end = position(neighbor);
     for (unsigned int d = 0; d < dim; ++d)
@@ -68,8 +65,17 @@ namespace PeriDeal
             std::swap(start, end);
           break;
         }
-    return harmonic_conductivity(
-      [&](const double s) { return material.conductivity.value(start + s * (end - start)); });
+    const bool real = neighbor < own_nodes->n_local();
+    return harmonic_conductivity([&](const double s) {
+      Point<dim> p = start + s * (end - start);
+      // Beyond a side the material is the mirror image of the body's.
+      for (unsigned int d = 0; d < dim && !real; ++d)
+        if (p[d] < own_nodes->lattice()->lower[d])
+          p[d] = 2. * own_nodes->lattice()->lower[d] - p[d];
+        else if (p[d] > own_nodes->lattice()->upper[d])
+          p[d] = 2. * own_nodes->lattice()->upper[d] - p[d];
+      return material.conductivity.value(p);
+    });
   }
 
 

@@ -212,30 +212,32 @@ namespace PeriDeal
     }
 
 
-    /** An empty triangulation of the kind that suits the dimension. */
+    /** The most coarse cells that a mesh distributed by p4est may have. */
+    constexpr std::size_t most_coarse_cells = 100000;
+
+    /** An empty triangulation, distributed by p4est or with all cells on every process. */
     template <int dim>
-    std::unique_ptr<Triangulation<dim>> empty_triangulation(const MPI_Comm communicator)
+    std::unique_ptr<Triangulation<dim>> empty_triangulation(const bool     every_cell,
+                                                            const MPI_Comm communicator)
     {
-      if constexpr (dim == 1)
-        {
-          auto mesh = std::make_unique<parallel::shared::Triangulation<1>>(
-            communicator,
-            Triangulation<1>::none,
-            false,
-            parallel::shared::Triangulation<1>::partition_custom_signal);
-          parallel::shared::Triangulation<1> *pointer   = mesh.get();
-          const auto                          partition = [pointer, communicator]() {
-            const std::size_t n_proc = Utilities::MPI::n_mpi_processes(communicator);
-            std::size_t       n = 0;
-            for (const auto &cell : pointer->active_cell_iterators())
-              cell->set_subdomain_id(n++ * n_proc / pointer->n_active_cells());
-          };
-          mesh->signals.create.connect(partition);
-          mesh->signals.post_refinement.connect(partition);
-          return mesh;
-        }
-      else
-        return std::make_unique<parallel::distributed::Triangulation<dim>>(communicator);
+      if constexpr (dim > 1)
+        if (!every_cell)
+          return std::make_unique<parallel::distributed::Triangulation<dim>>(communicator);
+      using Shared            = parallel::shared::Triangulation<dim>;
+      auto          mesh      = std::make_unique<Shared>(communicator,
+                                           Triangulation<dim>::none,
+                                           dim > 1,
+                                           Shared::partition_custom_signal);
+      Shared *const pointer   = mesh.get();
+      const auto    partition = [pointer, communicator]() {
+        const std::size_t n_proc = Utilities::MPI::n_mpi_processes(communicator);
+        std::size_t       n      = 0;
+        for (const auto &cell : pointer->active_cell_iterators())
+          cell->set_subdomain_id(n++ * n_proc / pointer->n_active_cells());
+      };
+      mesh->signals.create.connect(partition);
+      mesh->signals.post_refinement.connect(partition);
+      return mesh;
     }
   } // namespace
 
@@ -268,13 +270,16 @@ namespace PeriDeal
       std::tie(coarse, n_refinements) = box_mesh(domain, cut);
     if (domain.shape != Shape::box)
       require_resolved(coarse, cut);
-    if (Utilities::MPI::n_mpi_processes(communicator) > 1 && coarse.cells.size() > 100000)
-      notes.push_back(
-        "Every process keeps all " + std::to_string(coarse.cells.size()) +
-        " coarse cells. Cell counts divisible by a higher power of two need less memory.");
+    // p4est sorts its coarse cells in a time that grows with the square of their number.
+    const bool every_cell = dim == 1 || coarse.cells.size() > most_coarse_cells;
+    if (dim > 1 && every_cell && Utilities::MPI::n_mpi_processes(communicator) > 1)
+      notes.push_back("Every process keeps all cells of the mesh, since it has " +
+                      std::to_string(coarse.cells.size()) +
+                      " coarse ones. 'Cells' (section 'Domain') divisible by a higher power of two "
+                      "need less memory.");
     cut_along_faces(coarse, cut);
 
-    std::unique_ptr<Triangulation<dim>> mesh = empty_triangulation<dim>(communicator);
+    std::unique_ptr<Triangulation<dim>> mesh = empty_triangulation<dim>(every_cell, communicator);
     mesh->create_triangulation(coarse.vertices, coarse.cells, SubCellData());
     for (const auto &cell : mesh->cell_iterators_on_level(0))
       for (const unsigned int f : cell->face_indices())

@@ -249,6 +249,11 @@ namespace PeriDeal
     declare("Length", EntryType::text, "m", "", "Name of the unit of length." + label);
     declare("Time", EntryType::text, "s", "", "Name of the unit of time." + label);
     declare("Temperature", EntryType::text, "K", "", "Name of the unit of temperature." + label);
+    declare("Potential",
+            EntryType::text,
+            "V",
+            "",
+            "Name of the unit of the electric potential." + label);
   }
 
 
@@ -257,6 +262,15 @@ namespace PeriDeal
     length      = text("Length");
     time        = text("Time");
     temperature = text("Temperature");
+    potential   = text("Potential");
+  }
+
+
+  std::string Units::of_field(const Physics physics) const
+  {
+    return physics == Physics::heat        ? temperature :
+           physics == Physics::electricity ? potential :
+                                             "";
   }
 
 

@@ -20,17 +20,27 @@ namespace PeriDeal
   Material::Material()
     : SceneSection("Material")
   {
-    declare("Conductivity",
-            EntryType::formula,
-            "1",
-            "power/(length temperature)",
-            "Thermal conductivity, a number or a formula of x, y, z.");
+    declare(
+      "Conductivity",
+      EntryType::formula,
+      "1",
+      "power/(length temperature)",
+      "Thermal conductivity, diffusivity (moisture) or electrical conductivity: a number or a formula of x, y, z.");
     declare("Density", EntryType::formula, "1", "mass/length^3", "Ignored when steady.");
-    declare("Heat capacity",
-            EntryType::formula,
-            "1",
-            "energy/(mass temperature)",
-            "Per mass; the body stores Density x Heat capacity. Ignored when steady.");
+    declare(
+      "Heat capacity",
+      EntryType::formula,
+      "1",
+      "energy/(mass temperature)",
+      "Per mass; the body stores Density x Heat capacity. Ignored when steady. With electricity their product is the "
+      "capacitance per volume, and 0 means a steady state.");
+    declare(
+      "Saturated concentration",
+      EntryType::formula,
+      "1",
+      "mass/length^3",
+      "Moisture only: the concentration at wetness 1, a number or a formula of x, y, z. For the concentration field and the "
+      "weight; bonds and elements conduct wetness by Conductivity alone.");
     declare("Interface rule",
             EntryType::choice,
             "arithmetic",
@@ -55,12 +65,19 @@ namespace PeriDeal
   }
 
 
-  void Material::parse()
+  void Material::parse(const Physics physics)
   {
     phases.parse();
-    const auto read = [this](const std::string &entry, MaterialProperty &property) {
-      const Expression value(text(entry), where(entry));
+    stores          = true;
+    const auto read = [&](const std::string &entry, MaterialProperty &property) {
+      Expression value(text(entry), where(entry));
       refuse_time(value, where(entry));
+      const bool may_vanish = physics == Physics::electricity && entry == "Heat capacity";
+      if (may_vanish && value.is_constant() && value.value(dealii::Point<1>()) == 0.)
+        {
+          stores = false;
+          value  = Expression(1.); // not used
+        }
       if (value.is_constant() && !(value.value(dealii::Point<1>()) > 0.))
         error(entry, "found " + text(entry) + ", needs a value greater than 0.");
       property = phases.property(entry, value);
@@ -68,6 +85,7 @@ namespace PeriDeal
     read("Conductivity", conductivity);
     read("Density", density);
     read("Heat capacity", heat_capacity);
+    read("Saturated concentration", saturated_concentration);
     interface_rule = choice<InterfaceRule>("Interface rule");
   }
 

@@ -223,6 +223,11 @@ namespace PeriDeal
             "",
             "energy/(mass temperature)",
             "Heat capacity" + form);
+    declare("Saturated concentration",
+            EntryType::list,
+            "",
+            "mass/length^3",
+            "Saturated concentration" + form);
     parse();
   }
 
@@ -273,7 +278,8 @@ namespace PeriDeal
       }
     regions = list;
     std::vector<bool> has_material(regions->names.size(), false);
-    for (const char *const entry : {"Conductivity", "Density", "Heat capacity"})
+    for (const char *const entry :
+         {"Conductivity", "Density", "Heat capacity", "Saturated concentration"})
       {
         const auto values = read(entry);
         for (std::size_t k = 0; k < values.size(); ++k)
@@ -281,10 +287,9 @@ namespace PeriDeal
       }
     for (std::size_t k = 0; k < has_material.size(); ++k)
       if (!has_material[k])
-        error(
-          "Regions",
-          "the phase '" + regions->names[k] +
-            "' has no material: name it in 'Conductivity', 'Density' or 'Heat capacity' of this section.");
+        error("Regions",
+              "the phase '" + regions->names[k] +
+                "' has no material: name it in 'Conductivity' or another entry of this section.");
   }
 
 

@@ -21,12 +21,14 @@ namespace PeriDeal
   {
     declare("Title", EntryType::text, "", "", "Headline of the report.");
     declare("Dimension", EntryType::whole_number, "2", "1", "Number of dimensions: 1, 2 or 3.");
-    declare("Physics",
-            EntryType::choice,
-            "heat",
-            "",
-            "What diffuses; this version knows heat only.",
-            {"heat"});
+    declare(
+      "Physics",
+      EntryType::choice,
+      "heat",
+      "",
+      "What diffuses: heat (temperature), moisture (wetness, the concentration over the saturated one) or electricity "
+      "(potential).",
+      physics_choices());
     declare("Models",
             EntryType::choices,
             "finite elements, peridynamics",
@@ -53,7 +55,7 @@ namespace PeriDeal
     dimension = whole_number("Dimension");
     if (dimension < 1 || dimension > 3)
       error("Dimension", "found " + text("Dimension") + ", needs 1, 2 or 3.");
-    choice_name("Physics");
+    physics = choice<Physics>("Physics");
     models.clear();
     for (const unsigned int index : choice_indices("Models"))
       models.push_back(static_cast<Model>(index));
@@ -186,7 +188,7 @@ namespace PeriDeal
       if (bc.dirichlet.empty() && bc.convection.empty())
         entry_error(scene.time.where("Steady"),
                     "without a side in 'Dirichlet' or 'Convection' (section 'Boundary conditions') "
-                    "the steady temperature is not determined.");
+                    "the steady state is not determined.");
     }
 
 
@@ -259,7 +261,7 @@ namespace PeriDeal
     general.parse();
     general.dimension = dim;
     domain.parse();
-    material.parse();
+    material.parse(general.physics);
     initial_and_source.parse();
     boundary_conditions.parse(domain.shape != Shape::mesh_file,
                               domain.shape == Shape::plate_with_hole);
@@ -267,6 +269,8 @@ namespace PeriDeal
     peridynamics.parse();
     finite_elements.parse();
     time.parse();
+    time.steady = time.steady ||
+                  !material.stores; // a conductor without capacitance is always in its steady state
     solver.parse();
     output.parse(time.end_time, time.steady);
     reference.parse();

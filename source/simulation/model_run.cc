@@ -122,8 +122,44 @@ namespace PeriDeal
           fem->initialize_vector(component);
         element_heat_flux<dim>(handler, scene.material, fem->cut_cells(), u, flux);
         std::vector<OutputField> fields;
-        fields.push_back(vector_field<dim>("heat_flux", flux));
+        fields.push_back(vector_field<dim>(names_of(scene.general.physics).flux, flux));
+        if (scene.general.physics == Physics::moisture)
+          {
+            std::array<Vector, 1> concentration{u};
+            for_each_node([&](const unsigned int i, const Point<dim> &p) {
+              concentration[0].local_element(i) =
+                scene.material.saturated_concentration.value(p) * u.local_element(i);
+            });
+            fields.push_back(vector_field<1>("concentration", concentration));
+          }
         return fields;
+      }
+
+      double weight(const Vector &u) const override
+      {
+        // With the lumped volumes of the nodes, as the capacity.
+        double                               sum = 0.;
+        Vector                               volume(u);
+        FEValues<dim>                        values(element,
+                             QGauss<dim>(element.degree + 1),
+                             update_values | update_quadrature_points | update_JxW_values);
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        volume = 0.;
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              values.reinit(cell);
+              cell->get_dof_indices(indices);
+              for (const unsigned int q : values.quadrature_point_indices())
+                for (unsigned int i = 0; i < indices.size(); ++i)
+                  volume(indices[i]) +=
+                    scene.material.saturated_concentration.value(values.quadrature_point(q)) *
+                    values.shape_value(i, q) * values.JxW(q);
+            }
+        volume.compress(VectorOperation::add);
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          sum += volume.local_element(i) * u.local_element(i);
+        return Utilities::MPI::sum(sum, handler.get_communicator());
       }
 
       Difference error(const Vector                                    &u,
@@ -146,6 +182,26 @@ namespace PeriDeal
       }
 
     private:
+      /** Call visit(local index, position) for each owned dof. */
+      void for_each_node(
+        const std::function<void(const unsigned int, const Point<dim> &)> &visit) const
+      {
+        FEValues<dim>                        values(element,
+                             Quadrature<dim>(element.get_unit_support_points()),
+                             update_quadrature_points);
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        const auto                          &owned = this->solution.get_partitioner();
+        for (const auto &cell : handler.active_cell_iterators())
+          if (!cell->is_artificial())
+            {
+              values.reinit(cell);
+              cell->get_dof_indices(indices);
+              for (unsigned int i = 0; i < indices.size(); ++i)
+                if (owned->in_local_range(indices[i]))
+                  visit(owned->global_to_local(indices[i]), values.quadrature_point(i));
+            }
+      }
+
       const Scene<dim>                 &scene;
       FE_Q<dim>                         element;
       DoFHandler<dim>                   handler;
@@ -225,11 +281,30 @@ namespace PeriDeal
           }
         std::array<Vector, 1>    volumes{volume}, cuts{cut};
         std::vector<OutputField> fields;
-        fields.push_back(vector_field<dim>("heat_flux", two_sided));
-        fields.push_back(vector_field<dim>("heat_flux_one_sided", one_sided));
+        const std::string        name = names_of(scene.general.physics).flux;
+        fields.push_back(vector_field<dim>(name, two_sided));
+        fields.push_back(vector_field<dim>(name + "_one_sided", one_sided));
+        if (scene.general.physics == Physics::moisture)
+          {
+            std::array<Vector, 1> concentration{u};
+            for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+              concentration[0].local_element(i) =
+                scene.material.saturated_concentration.value(node_set->position(i)) *
+                u.local_element(i);
+            fields.push_back(vector_field<1>("concentration", concentration));
+          }
         fields.push_back(vector_field<1>("node_volume", volumes));
         fields.push_back(vector_field<1>("cut_fraction", cuts));
         return fields;
+      }
+
+      double weight(const Vector &u) const override
+      {
+        double sum = 0.;
+        for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+          sum += scene.material.saturated_concentration.value(node_set->position(i)) *
+                 node_set->volume(i) * u.local_element(i);
+        return Utilities::MPI::sum(sum, handler.get_communicator());
       }
 
       Difference error(const Vector                                    &u,

@@ -442,7 +442,8 @@ namespace PeriDeal
     nlohmann::ordered_json files = nlohmann::ordered_json::object();
     for (std::size_t m = 0; m < models.size(); ++m)
       {
-        std::vector<OutputField> fields{{"temperature", {models[m]->solution}}};
+        std::vector<OutputField> fields{
+          {names_of(scene.general.physics).field, {models[m]->solution}}};
         fields[0].components[0].update_ghost_values();
         for (OutputField &field : models[m]->derived_fields(models[m]->solution, t))
           fields.push_back(std::move(field));
@@ -462,15 +463,18 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::add_totals(const double t, ModelRun<dim> &model)
   {
-    const Balance balance = model.op().balance(model.solution, t, scene.time.steady);
-    const auto    row     = [&](const std::string &quantity, const double value) {
+    const Balance       balance = model.op().balance(model.solution, t, scene.time.steady);
+    const PhysicsNames &names   = names_of(scene.general.physics);
+    const auto          row     = [&](const std::string &quantity, const double value) {
       record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
                         full_precision(value) + "\n";
     };
-    row("heat content", balance.content);
+    row(names.content,
+        scene.general.physics == Physics::moisture ? model.weight(model.solution) :
+                                                     balance.content);
     for (const auto &[side, value] : balance.sides)
-      row("heat flow through " + side, value);
-    row("heat flow from sources", balance.sources);
+      row(names.flow + " through " + side, value);
+    row(names.flow + " from sources", balance.sources);
     row("rate of storage", balance.stored);
     record->balances[model.name()] = {
       {"boundary flux", balance.sides},

@@ -175,7 +175,15 @@ namespace PeriDeal
     summary["processes"]              = Utilities::MPI::n_mpi_processes(communicator);
     summary["units"]                  = {{"length", scene.units.length},
                                          {"time", scene.units.time},
-                                         {"temperature", scene.units.temperature}};
+                                         {"temperature", scene.units.temperature},
+                                         {"field", scene.units.of_field(scene.general.physics)}};
+    const PhysicsNames &names         = names_of(scene.general.physics);
+    summary["physics"]                = names.physics;
+    summary["names"]                  = {{"field", names.field},
+                                         {"flux", names.flux},
+                                         {"content", names.content},
+                                         {"flow", names.flow},
+                                         {"quantity", names.quantity}};
     static const char *const shapes[] = {"box", "plate with hole", "mesh file"};
     const auto               corners  = bounding_box(*mesh, communicator);
     summary["domain"]                 = {{"lower", coordinates(corners.first)},

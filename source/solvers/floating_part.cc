@@ -162,7 +162,7 @@ namespace PeriDeal
         std::string message;
         if (part.in_local_range(index))
           message =
-            "The steady temperature is not determined in a part of the body with " +
+            "The steady state is not determined in a part of the body with " +
             std::to_string(static_cast<unsigned long long>(n)) + " unknowns, one of them at " +
             op.place_of(part.get_partitioner()->global_to_local(index)) +
             ": cracks (section 'Cracks') have cut it off from all sides with a 'Dirichlet' or 'Convection' condition. "

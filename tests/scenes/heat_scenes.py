@@ -61,17 +61,17 @@ def varying_conductivity():
 def layers():
     """Two phases in series and in parallel, 1:100, the interface between nodes: closed forms for the heat."""
     table = Comparison("Two layers, conductivity 1 and 100, steady: heat")
-    phases = {"Material/Conductivity": "1", "Material/Phases/Conductivity": "good: 100", "Material/Interface rule": "harmonic",
+    phases = {"Material/Conductivity": "1", "Material/Phases/Conductivity": "good: 100",
               "Domain/Cells": "21, 21", "Boundary conditions/Dirichlet": "top: 100; bottom: -100", "Output/Probes": "", "Output/Line": "",
               **STEADY}
     # The interface runs through the middle of a row of cells: finite elements take the mean there, which is right in parallel only.
-    # Measured: 4.8e-2, 4.0e-4, 1e-14 and 2.8e-2 (bonds across the interface, of first order in the horizon).
-    bounds = {("series", "finite elements"): 7.2e-2, ("series", "peridynamics"): 6e-4, ("parallel", "finite elements"): 1e-10,
-              ("parallel", "peridynamics"): 4.2e-2}
+    # Peridynamics is exact with the rule that suits. Measured: 4.8e-2 for elements in series, and at most 1e-11.
+    bounds = {("series", "finite elements"): 7.2e-2, ("series", "peridynamics"): 1e-10, ("parallel", "finite elements"): 1e-10,
+              ("parallel", "peridynamics"): 1e-10}
     # Heights and widths of 1 around 0, 200 degrees over a length of 2.
     series, parallel = 200 * 2 / (1 / 1 + 1 / 100), 200 / 2 * (1 + 100)
-    for name, region, heat in (("series", "good: y > 0", series), ("parallel", "good: x > 0", parallel)):
-        run = run_quietly("composite", phases, {"Material/Phases/Regions": region})
+    for name, region, rule, heat in (("series", "good: y > 0", "harmonic", series), ("parallel", "good: x > 0", "arithmetic", parallel)):
+        run = run_quietly("composite", phases, {"Material/Phases/Regions": region, "Material/Interface rule": rule})
         for model in ("finite elements", "peridynamics"):
             found = run.model(model)["boundary flux"]["top"]
             table.add(f"{name}, {model}", found, heat, relative=bounds[name, model])

@@ -122,6 +122,15 @@ def scene_mistakes(folder):
         ("horizon beyond the body", {"Peridynamics/Horizon ratio": "1e10"}, ["'Horizon ratio'", "longer than the body"]),
         ("transmission of removed cells", {**CRACK, "Cracks/Mesh": "removed", "Cracks/Transmission": "0.5"},
          ["'Mesh'", "'Transmission'", "'pairs'"]),
+        # phases and other physics
+        ("phase without a material", {"Material/Phases/Regions": "core: x > 0.5"}, ["'Regions'", "'core'", "no material"]),
+        ("material of no phase", {"Material/Phases/Regions": "core: x > 0.5", "Material/Phases/Conductivity": "cor: 2"},
+         ["'Conductivity'", "'cor'", "Did you mean 'core'?"]),
+        ("circle without a radius", {"Material/Phases/Regions": "core: circle(0, 0)", "Material/Phases/Conductivity": "core: 2"},
+         ["'Regions'", "circle(x, y, radius)"]),
+        ("zero saturation", {"Physics": "moisture", "Material/Saturated concentration": "0"}, ["'Saturated concentration'", "greater than 0"]),
+        ("heat without capacity", {"Material/Heat capacity": "0"}, ["'Heat capacity'", "greater than 0"]),
+        ("unknown physics", {"Physics": "moistrue"}, ["'Physics'", "Did you mean 'moisture'?"]),
         # expressions
         ("bad expression", {"Material/Conductivity": "1 + 2*(x"}, ["'Conductivity'", "column"]),
         ("unknown name in an expression", {"Initial and source/Source": "2*x + foo"}, ["'Source'", "foo", "column 7"]),
@@ -163,6 +172,8 @@ def scene_mistakes(folder):
          ["'Boundary treatment'", "sides of a box"]),
     ]
     late = [
+        ("overlapping phases", {"Material/Phases/Regions": "a: x > 0.4 ; b: y > 0.7", "Material/Phases/Conductivity": "a: 2 ; b: 3"},
+         ["'Regions'", "'a'", "'b'", "overlap at"]),
         ("not a directory", {"Output directory": file_of_directory + "/results"}, ["'Output directory'", "a_file"]),
         ("negative conductivity at a node", {"Material/Conductivity": "x - 0.5"}, ["'Conductivity'", "must be positive", "(0"]),
         ("negative conductivity in one corner", {"Material/Conductivity": "1.9 - x - y"}, ["'Conductivity'", "must be positive", "(0.9"]),

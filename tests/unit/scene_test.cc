@@ -172,8 +172,8 @@ end
 
   TEST(Scenes, general_errors)
   {
-    expect_parts(fault("set Physics = moisture\n"),
-                 {"a.prm:2: ", "'Physics' outside all sections", "'heat' only"});
+    expect_parts(fault("set Physics = moistrue\n"),
+                 {"a.prm:2: ", "'Physics' outside all sections", "Did you mean 'moisture'?"});
     expect_parts(fault("set Models =\n"), {"a.prm:2: ", "'Models'", "is empty"});
     expect_parts(fault("set Models = peridynamics, peridynamics\n"), {"'Models'", "named twice"});
     expect_parts(fault("set Models = peridynamic\n"), {"'Models'", "Did you mean 'peridynamics'?"});

@@ -21,7 +21,7 @@ namespace PeriDeal
     dealii::numbers::internal_face_boundary_id - 1;
 
   /**
-   * The mesh of a scene, distributed over the processes (in 1D every process knows all cells). Boxes are few coarse cells refined globally where the
+   * The mesh of a scene, distributed over the processes (in 1D, and with more than 100000 coarse cells, every process knows all cells). Boxes are few coarse cells refined globally where the
    * cell counts allow, because every process keeps the coarse mesh; `Cracks / Mesh = faces` keeps the crack on coarse faces and
    * doubles its vertices. Boundary ids as in BoundaryConditions. Notes for the user are appended to @p notes.
    *

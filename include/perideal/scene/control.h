@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 
 #include <string>
@@ -84,7 +85,10 @@ namespace PeriDeal
   public:
     Units();
 
-    std::string length = "m", time = "s", temperature = "K";
+    std::string length = "m", time = "s", temperature = "K", potential = "V";
+
+    /** Of the unknown field. */
+    std::string of_field(const Physics physics) const;
 
     void parse();
   };

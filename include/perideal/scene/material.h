@@ -6,6 +6,7 @@
 #include <perideal/scene/choices.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/phases.h>
+#include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 
 namespace PeriDeal
@@ -19,7 +20,8 @@ namespace PeriDeal
   public:
     Material();
 
-    MaterialProperty conductivity, density, heat_capacity;
+    MaterialProperty conductivity, density, heat_capacity, saturated_concentration;
+    bool             stores         = true; // the storage is not 0
     InterfaceRule    interface_rule = InterfaceRule::arithmetic;
     Phases           phases;
 
@@ -29,7 +31,8 @@ namespace PeriDeal
     template <int dim>
     double storage(const dealii::Point<dim> &p) const;
 
-    void parse();
+    /** The storage may be 0 with electricity only, which is then steady. */
+    void parse(const Physics physics = Physics::heat);
   };
 
 

@@ -9,6 +9,7 @@
 #include <perideal/scene/domain.h>
 #include <perideal/scene/material.h>
 #include <perideal/scene/models.h>
+#include <perideal/scene/physics.h>
 
 #include <mpi.h>
 
@@ -34,6 +35,7 @@ namespace PeriDeal
     General();
 
     std::string        title, output_directory;
+    Physics            physics   = Physics::heat;
     unsigned int       dimension = 2;
     std::vector<Model> models; // in the order the user named them
 

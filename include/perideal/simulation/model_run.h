@@ -47,6 +47,9 @@ namespace PeriDeal
     /** Fields for output besides the temperature; u has up-to-date ghosts. */
     virtual std::vector<OutputField> derived_fields(const Vector &u, const double t) const = 0;
 
+    /** Moisture: the sum of C_sat w V in the body; u need not have up-to-date ghosts. Collective. */
+    virtual double weight(const Vector &u) const = 0;
+
     virtual Difference error(
       const Vector                                            &u,
       const std::function<double(const dealii::Point<dim> &)> &exact) const = 0;

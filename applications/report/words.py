@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""The words and units of a run: what its physics calls the solution, the flux and the rest.
+
+Only this module tells one physics from another; all others take their words from here.
+"""
+
+import re
+from dataclasses import dataclass, replace
+
+import style
+
+
+@dataclass(frozen=True)
+class Field:
+    """A scalar field: its name in the files, its unit's label, lines on which it has one value."""
+
+    name: str
+    unit: str = ""
+    isolines: str = "isolines"
+    about: str = ""  # a remark on what it is
+
+    @property
+    def text(self):
+        """The name in running text."""
+        return self.name.replace("_", " ")
+
+    @property
+    def title(self):
+        """The name at the start of a line."""
+        return style.name(self.text)
+
+    def label(self, text=None):
+        """The name, or another text, with the unit: for axes and colour bars."""
+        return with_unit(text or self.title, self.unit)
+
+    def amount(self, value):
+        """A value with few digits and its unit."""
+        return f"{style.plain(value, 3)} {self.unit}".strip()
+
+
+@dataclass(frozen=True)
+class Physics:
+    """The words of one physics; the first five may be given by the run."""
+
+    field: str
+    flux: str
+    content: str
+    flow: str
+    quantity: str
+    values: str  # several values of the field
+    isolines: str  # lines on which the field has one value
+    closed: str = "insulated"  # a side that nothing passes
+    held: str = ""  # a Dirichlet side, where it has a name of its own
+    also: tuple = ()  # further fields, drawn where they are no multiple of the solution
+    content_apart: bool = False  # whether the content over time has a plot of its own
+
+
+NAMES = ("field", "flux", "content", "flow", "quantity")
+PHYSICS = {
+    "heat": Physics("temperature", "heat_flux", "heat content", "heat flow", "heat",
+                    "temperatures", "isotherms"),
+    "moisture": Physics(
+        "wetness", "moisture_flux", "weight", "moisture flow", "moisture",
+        "values of the wetness", "contours of equal wetness", closed="sealed",
+        also=(Field("concentration", isolines="contours of equal concentration",
+                    about="The wetness times the saturated concentration: where materials of "
+                    "different saturated concentration meet, the wetness is continuous and the "
+                    "concentration jumps."),),
+        content_apart=True),
+    "electricity": Physics("potential", "current_density", "charge", "current", "charge",
+                           "potentials", "equipotentials", held="electrode")}
+DEGREES = {"C": "°C", "F": "°F", "degC": "°C"}
+
+
+def with_unit(name, unit):
+    """'name (unit)', or the name alone without a unit."""
+    return f"{name} ({unit})" if unit else name
+
+
+class Words:
+    """What the report of a run calls things; a summary without 'physics' is one of heat."""
+
+    def __init__(self, summary=None):
+        summary = summary or {}
+        units, names = (part if isinstance(part, dict) else {}
+                        for part in (summary.get("units"), summary.get("names")))
+        physics = replace(PHYSICS[summary.get("physics") or "heat"],
+                          **{key: str(names[key]) for key in NAMES if names.get(key)})
+        self.length = units.get("length") or ""
+        self.time = units.get("time") or ""
+        unit = units.get("field", units.get(physics.field)) or ""
+        self.solution = Field(physics.field, DEGREES.get(unit, unit), physics.isolines)
+        self.flux = Field(physics.flux)
+        self.content, self.flow, self.quantity = physics.content, physics.flow, physics.quantity
+        self.values, self.also = physics.values, physics.also
+        self.plotted_apart = [physics.content] if physics.content_apart else []
+        self.closed, self.held = physics.closed, physics.held
+
+    @property
+    def passing(self):
+        """What passes a side: 'heat', 'moisture', 'current'."""
+        return self.flow.removesuffix(" flow")
+
+    def flux_datasets(self):
+        """Names of the flux in the files, the best first."""
+        return self.flux.name, f"{self.flux.name}_one_sided"
+
+    def condition(self, text, brief=False):
+        """The condition of a side; brief: without the name of a Dirichlet side."""
+        text = re.sub(r"\binsulated\b", self.closed, str(text))
+        named = self.held and not brief and "dirichlet" in text.lower()
+        return f"{self.held}, {text}" if named else text
+
+    def axis(self, name):
+        """Label of a coordinate axis."""
+        return with_unit(f"${name}$", self.length)
+
+    def time_axis(self):
+        """Label of the time."""
+        return with_unit("Time", self.time)
+
+    def at_time(self, time, steady=False):
+        """'t = 0.5 s', or 'steady state'."""
+        if steady:
+            return "steady state"
+        return f"t = {style.plain(time)} {self.time}".strip()

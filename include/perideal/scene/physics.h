@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * What diffuses. All obey rho c du/dt = div(kappa grad u) + source with
+   *
+   * | | u | kappa | rho c | flux |
+   * |---|---|---|---|---|
+   * | heat | temperature | conductivity | density x heat capacity | heat flux |
+   * | moisture | wetness, concentration over saturated concentration (Diyaroglu 2017, section II.B) | diffusivity | 1 | wetness flux |
+   * | electricity | potential | electrical conductivity | capacitance; 0: steady | current density |
+   */
+  enum class Physics
+  {
+    heat,
+    moisture,
+    electricity
+  };
+
+
+  /** The words of a physics in result files. */
+  struct PhysicsNames
+  {
+    std::string physics;  // as in scenes
+    std::string field;    // of the unknown
+    std::string flux;     // field of the flux
+    std::string content;  // what the body holds: heat, sum of C_sat w V, charge
+    std::string flow;     // what passes through sides
+    std::string quantity; // what is conserved
+  };
+
+  const PhysicsNames &names_of(const Physics physics);
+
+  /** As in scenes, in the order of the enumeration. */
+  std::vector<std::string> physics_choices();
+} // namespace PeriDeal

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Moisture and electricity: the same equations under their own names.
+
+    physics.py moisture          weight gain of a slab against the closed form (Diyaroglu 2017, example D)
+    physics.py electricity       two conductors in series and in parallel
+    physics.py names             fields, totals and summary
+"""
+
+import math
+import os
+import sys
+
+import h5py
+
+from scene_test import Comparison, check, finish, print_table, run_scene
+
+SLAB = "prm/papers/diyaroglu_2017/example_d.prm"
+CURRENT = "prm/electricity/two_phases.prm"
+
+
+def rows_of(run, quantity):
+    """Time, model and value of a quantity in totals.csv."""
+    with open(os.path.join(run.folder, "totals.csv")) as file:
+        rows = [line.strip().split(",") for line in file][1:]
+    return {(row[1], float(row[0])): float(row[3]) for row in rows if row[2] == quantity}
+
+
+def slab_weight(time):
+    """Of an eighth of the slab: what is missing is a product of three series."""
+    missing = 1.0
+    for length in (42, 37.7, 1.2):
+        missing *= sum(8 / ((2 * n + 1) * math.pi) ** 2 * math.exp(-0.01026 * ((2 * n + 1) * math.pi / length) ** 2 * time)
+                       for n in range(20000))
+    return 0.0125 * 21 * 18.85 * 0.6 * (1 - missing)
+
+
+def moisture():
+    table = Comparison("Weight of an eighth of the slab in mg, against the closed form")
+    rows = []
+    for treatment in ("fictitious mirror", "fictitious constant"):
+        run = run_scene(SLAB, {"Peridynamics/Boundary treatment": treatment})
+        weights = rows_of(run, "weight")
+        for time in (5, 20, 60, 120):
+            found, exact = weights["peridynamics", time], slab_weight(time)
+            rows.append((treatment, time, found, exact, found / exact - 1))
+            if treatment == "fictitious mirror":
+                table.add(f"mirror, {time} h", found, exact, relative=0.01)
+    check(abs(rows[4][-1]) > 5 * abs(rows[0][-1]), "the constant layer is much worse than the mirror at 5 h")
+    print_table("Both fictitious layers", ("treatment", "hours", "weight", "exact", "relative gap"), rows)
+    table.show()
+
+
+def electricity():
+    table = Comparison("Total current through two conductors")
+    for name, region, rule, current in (("series", "copper: y > 0", "harmonic", 200 * 2 / (1 + 1 / 100)),
+                                        ("parallel", "copper: x > 0", "arithmetic", 200 / 2 * (1 + 100))):
+        for nodes in ("vertices", "cell centers"):
+            # At vertices an interface through nodes is of neither phase: an odd number of cells for peridynamics, an even one for elements.
+            for model, cells in (("finite elements", 40), ("peridynamics", 40 if nodes == "cell centers" else 41)):
+                run = run_scene(CURRENT, {"Models": model, "Domain/Nodes": nodes, "Domain/Cells": f"{cells}, {cells}", "Output/Fields": "none",
+                                          "Material/Interface rule": rule, "Material/Phases/Regions": region})
+                flux = run.model(model)["boundary flux"]
+                table.add(f"{name}, {model}, {nodes}: top", flux["top"], current, relative=1e-8)
+                table.add(f"{name}, {model}, {nodes}: bottom", flux["bottom"], -current, relative=1e-8)
+    table.show()
+
+
+def names():
+    run = run_scene(CURRENT, {})
+    check(run.summary["physics"] == "electricity" and run.summary["steady"], "without capacitance the run is steady")
+    check(run.summary["names"]["field"] == "potential" and run.summary["units"]["field"] == "V", "names and units of electricity")
+    check(("peridynamics", 0.0) in rows_of(run, "current through top"), "totals.csv has the current through an electrode")
+    run_charging = run_scene(CURRENT, {"Material/Heat capacity": "2", "Time/End time": "0.1", "Output/Fields": "none"})
+    check(not run_charging.summary["steady"], "with capacitance the run is transient")
+    wet = run_scene(SLAB, {"Models": "finite elements, peridynamics", "Domain/Cells": "20, 18, 6", "Domain/Nodes": "vertices",
+                           "Peridynamics/Horizon": "2.2", "Peridynamics/Boundary treatment": "none", "Output/Fields": "hdf5",
+                           "Boundary conditions/Symmetry": "", "Material/Saturated concentration": "0.01 + 0.001*x"})
+    for model, series in (("finite elements", "finite_elements"), ("peridynamics", "peridynamics")):
+        folder = os.path.join(wet.folder, "fields")
+        path = sorted(name for name in os.listdir(folder) if name.startswith(series) and name.endswith(".h5"))[-1]
+        with h5py.File(os.path.join(folder, path)) as file:
+            check({"wetness", "concentration", "moisture_flux"} <= set(file), f"{model}: fields are {sorted(file)}")
+            wetness, concentration = file["wetness"][:].ravel(), file["concentration"][:].ravel()
+            x = file["nodes"][:, 0]
+        # Fields are written in single precision.
+        gap = max(abs(c - (0.01 + 0.001 * p) * w) for c, w, p in zip(concentration, wetness, x))
+        check(gap < 1e-8, f"{model}: concentration is wetness times the saturated one, gap {gap:.2g}")
+        check((model, 120.0) in rows_of(wet, "weight"), f"{model}: weight in totals.csv")
+
+
+def main():
+    parts = {"moisture": moisture, "electricity": electricity, "names": names}
+    for name in sys.argv[1:] or parts:
+        parts[name]()
+    finish()
+
+
+if __name__ == "__main__":
+    main()
