@@ -376,6 +376,23 @@ namespace PeriDeal
   }
 
   template <int dim>
+  double Families<dim>::effective_conductivity() const
+  {
+    if (members.empty())
+      return 1.;
+    const Lattice<dim> &lattice = *own_nodes->lattice();
+    double              sum     = 0.;
+    for (const auto *list : {&members, &self_additions})
+      for (const FamilyMember<dim> &member : *list)
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double xi = member.offset[d] * lattice.spacing[d];
+            sum += member.weight * lattice.cell_volume() * xi * xi / (2. * dim);
+          }
+    return sum;
+  }
+
+  template <int dim>
   bool Families<dim>::has_complete_families() const
   {
     return complete_families;

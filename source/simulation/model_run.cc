@@ -350,6 +350,26 @@ namespace PeriDeal
         return list;
       }
 
+      std::vector<std::string> notes() const override
+      {
+        const Peridynamics      &p = scene.peridynamics;
+        std::vector<std::string> list;
+        const double             effective = bonds->families().effective_conductivity();
+        if (std::abs(effective - 1.) > 5e-3)
+          list.push_back(
+            "complete families conduct " + to_text(effective) +
+            " times 'Conductivity' (section 'Material'), because of '" +
+            (p.self_term == SelfTerm::paper ? "Self term = paper" : "Calibration = analytic") +
+            "' in section 'Peridynamics'; with " +
+            (p.self_term == SelfTerm::paper ? "'Self term = none' and " : "") +
+            "'Calibration = discrete' it is 1.");
+        if (p.treatment == BoundaryTreatment::fictitious_constant)
+          list.emplace_back(
+            "'Boundary treatment = fictitious constant' in section 'Peridynamics' is of first order in the spacing "
+            "only; 'fictitious mirror' is of second order.");
+        return list;
+      }
+
     private:
       const Scene<dim>                  &scene;
       DoFHandler<dim>                    handler;

@@ -115,6 +115,8 @@ namespace PeriDeal
       {
         with_formulas([&] { models.push_back(make_model_run(model, *mesh, scene)); });
         describe(*models.back());
+        for (const std::string &note : models.back()->notes())
+          record->notes.push_back(models.back()->name() + ": " + note);
       }
     make_reference();
   }

@@ -88,6 +88,12 @@ namespace PeriDeal
     /** Crack-side scaling (doc/theory.md): factors of owned nodes and ghosts from the given rows; bonds_of() uses their pair means from now on. */
     void set_node_factors(std::vector<double> factors);
 
+    /**
+     * What the bonds of a complete family conduct of a linear field, over what the conductivity asks for: the mean over the directions of
+     * sum_j w V_j xi_a^2/(2 kappa), self term included. 1 with discrete calibration; also 1 off the lattice, where it is not known.
+     */
+    double effective_conductivity() const;
+
     /** Discrete calibration had a complete family to sum over. Off the lattice a body may be too narrow for any; then it is analytic. */
     bool has_complete_families() const;
 

@@ -57,6 +57,12 @@ namespace PeriDeal
     /** What was chosen, for the report: name and value. */
     virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
 
+    /** What the user should know of the chosen settings: where they are known to fail, and what to choose instead. */
+    virtual std::vector<std::string> notes() const
+    {
+      return {};
+    }
+
     Vector                   solution;
     std::unique_ptr<Stepper> stepper; // null if steady
     unsigned int             steady_iterations = 0;
