@@ -137,28 +137,22 @@ namespace PeriDeal
 
       double weight(const Vector &u) const override
       {
-        // With the lumped volumes of the nodes, as the capacity.
-        double                               sum = 0.;
-        Vector                               volume(u);
-        FEValues<dim>                        values(element,
+        FEValues<dim>       values(element,
                              QGauss<dim>(element.degree + 1),
                              update_values | update_quadrature_points | update_JxW_values);
-        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
-        volume = 0.;
+        std::vector<double> wetness(values.n_quadrature_points);
+        double              sum = 0.;
+        u.update_ghost_values();
         for (const auto &cell : handler.active_cell_iterators())
           if (cell->is_locally_owned())
             {
               values.reinit(cell);
-              cell->get_dof_indices(indices);
+              values.get_function_values(u, wetness);
               for (const unsigned int q : values.quadrature_point_indices())
-                for (unsigned int i = 0; i < indices.size(); ++i)
-                  volume(indices[i]) +=
-                    scene.material.saturated_concentration.value(values.quadrature_point(q)) *
-                    values.shape_value(i, q) * values.JxW(q);
+                sum += scene.material.saturated_concentration.value(values.quadrature_point(q)) *
+                       wetness[q] * values.JxW(q);
             }
-        volume.compress(VectorOperation::add);
-        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-          sum += volume.local_element(i) * u.local_element(i);
+        u.set_ghost_state(false);
         return Utilities::MPI::sum(sum, handler.get_communicator());
       }
 
