@@ -75,8 +75,9 @@ namespace PeriDeal
     , n_points(static_cast<unsigned int>(coordinates.size()))
     , n_slots(1u << dim)
   {
-    const std::vector<CrackGeometry<dim>> geometries = make_crack_geometries(cracks.cracks);
-    const bool                            at_centers = dofs.get_fe().n_dofs_per_vertex() == 0;
+    const std::vector<CrackGeometry<dim>> geometries =
+      make_crack_geometries(cracks.pieces(cracks.end_time));
+    const bool   at_centers = dofs.get_fe().n_dofs_per_vertex() == 0;
     const bool   on_lattice = nodes != nullptr && nodes->lattice() && !nodes->has_doubled_nodes();
     const double shift      = at_centers || cracks.mesh == CrackMesh::faces ?
                                 1e-7 * GridTools::minimal_cell_diameter(dofs.get_triangulation()) :

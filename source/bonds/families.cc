@@ -23,12 +23,14 @@ namespace PeriDeal
     : own_nodes(&nodes)
     , material(scene.material)
     , parameters(scene.peridynamics)
-    , transmission(scene.cracks.transmission)
+    , history(scene.crack_history())
+    , cracks_of(history.representative(0.))
+    , cracks(make_crack_geometries(history.pieces(cracks_of)))
+    , transmission(history.transmission(cracks_of))
     , contact_conductance(scene.cracks.contact_conductance)
     , delta(scene.horizon())
     , on_lattice(nodes.lattice().has_value() && !nodes.has_doubled_nodes())
   {
-    cracks = make_crack_geometries(scene.cracks.cracks);
     find_weights();
     // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away than any bond.
     const double layer = parameters.flux_treatment == FluxTreatment::layer_extrapolation ?
@@ -193,10 +195,32 @@ namespace PeriDeal
     bond.intact   = own_nodes->volume(node) * volume * w * bond_conductivity(node, neighbor);
     bond.weight   = bond.intact * kept_fraction(node, neighbor, bond.cut);
     if (!factors.empty())
-      bond.weight *=
-        0.5 * (factors[node] +
-               factors[real ? neighbor : outside[neighbor - own_nodes->n_local()].mirror]);
+      bond.weight *= bond_factor(node, neighbor);
     bonds.push_back(bond);
+  }
+
+
+  template <int dim>
+  double Families<dim>::node_factor(const unsigned int node, const unsigned int direction) const
+  {
+    const unsigned int n_real = own_nodes->n_local();
+    if (node >= n_real && !factors_mirrored)
+      return 1.;
+    return factors[(node < n_real ? node : outside[node - n_real].mirror) * n_factor_directions +
+                   direction];
+  }
+
+
+  template <int dim>
+  double Families<dim>::bond_factor(const unsigned int node, const unsigned int neighbor) const
+  {
+    if (n_factor_directions == 1)
+      return 0.5 * (node_factor(node, 0) + node_factor(neighbor, 0));
+    const Tensor<1, dim> xi  = bond_vector(node, neighbor);
+    double               sum = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      sum += 0.5 * (node_factor(node, d) + node_factor(neighbor, d)) * xi[d] * xi[d];
+    return sum / xi.norm_square();
   }
 
 
@@ -333,6 +357,12 @@ namespace PeriDeal
   }
 
   template <int dim>
+  bool Families<dim>::corrects_every_bond() const
+  {
+    return parameters.surface_correction == SurfaceCorrection::energy;
+  }
+
+  template <int dim>
   bool Families<dim>::has_unique_sites() const
   {
     return on_lattice;
@@ -355,10 +385,15 @@ namespace PeriDeal
   }
 
   template <int dim>
-  void Families<dim>::set_node_factors(std::vector<double> node_factors)
+  void Families<dim>::set_node_factors(std::vector<double> node_factors,
+                                       const unsigned int  n_directions,
+                                       const bool          mirrored)
   {
-    AssertDimension(node_factors.size(), own_nodes->n_local());
-    factors = std::move(node_factors);
+    Assert(node_factors.empty() || node_factors.size() == own_nodes->n_local() * n_directions,
+           ExcDimensionMismatch(node_factors.size(), own_nodes->n_local() * n_directions));
+    factors             = std::move(node_factors);
+    n_factor_directions = n_directions;
+    factors_mirrored    = mirrored;
   }
 
   template <int dim>

@@ -250,7 +250,7 @@ namespace PeriDeal
   {
     std::vector<CrackGeometry<dim>> cut;
     if (cracks.mesh == CrackMesh::faces)
-      cut = make_crack_geometries(cracks.cracks);
+      cut = make_crack_geometries(cracks.pieces(0.));
 
     CoarseMesh<dim> coarse;
     BoundaryIds     ids;

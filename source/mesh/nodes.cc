@@ -212,7 +212,7 @@ namespace PeriDeal
   {
     if (!is_vertex_element(*dofs))
       return;
-    const std::vector<CrackGeometry<dim>> geometries = make_crack_geometries(cracks.cracks);
+    const std::vector<CrackGeometry<dim>> geometries = make_crack_geometries(cracks.pieces(0.));
     std::unordered_map<unsigned int, std::pair<Point<dim>, unsigned int>> middle;
     for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &cell, const unsigned int) {
       for (const CrackGeometry<dim> &crack : geometries)

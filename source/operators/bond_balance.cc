@@ -19,7 +19,7 @@ namespace PeriDeal
     const auto       &dirichlet = scene.boundary_conditions.dirichlet;
     // Which condition prescribes a node, of ghosts too: its number from 1 on.
     Vector condition_of(nodes.partitioner());
-    for (const auto &entry : constraints.prescribed_nodes())
+    for (const auto &entry : constraints->prescribed_nodes())
       condition_of.local_element(entry.node) =
         1. + static_cast<double>(entry.condition - dirichlet.data());
     condition_of.update_ghost_values();
@@ -79,9 +79,41 @@ namespace PeriDeal
       for (const BoundaryShare &share : nodes.boundary_shares())
         if (const auto *flux =
               BoundaryConditions<dim>::find(scene.boundary_conditions.flux, share.id);
-            flux != nullptr && constraints.kind(share.node) == NodeConstraints<dim>::slave)
+            flux != nullptr && constraints->kind(share.node) == NodeConstraints<dim>::slave)
           balance.sides[flux->name] +=
             share.area * flux->value.value(nodes.position(share.node), t);
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::add_crack_heat(const Vector &u, Balance &balance) const
+  {
+    balance.cracks.assign(scene.cracks.cracks.size(), 0.);
+    if (!scene.cracks.conduct())
+      return;
+    const Nodes<dim>                         &nodes = bonds.nodes();
+    std::vector<typename Families<dim>::Bond> family;
+    std::vector<std::pair<unsigned int, int>> crossed;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        if (!bonds.near_crack(i))
+          continue;
+        bonds.bonds_of(i, family);
+        for (const auto &bond : family)
+          if (bond.cut && bond.weight != 0.)
+            {
+              // A bond between two real nodes comes up at both of its ends; with a self term they differ.
+              const bool   real  = bond.neighbor < nodes.n_local();
+              const double other = real ? u.local_element(bond.neighbor) :
+                                          outside_values[bond.neighbor - nodes.n_local()];
+              const double heat  = (real ? 0.5 : 1.) * bond.weight * (other - u.local_element(i));
+              bonds.crossed_cracks(i, bond.neighbor, crossed);
+              for (const auto &[crack, side] : crossed)
+                balance.cracks[crack] += side * heat;
+            }
+      }
+    for (double &heat : balance.cracks)
+      heat = Utilities::MPI::sum(heat, nodes.communicator());
   }
 
 
@@ -109,18 +141,19 @@ namespace PeriDeal
     for (const types::boundary_id side : conditions.symmetry)
       balance.sides[name_of_side(side, scene.domain.shape != Shape::mesh_file)];
     // In a prescribed node it has come in through the node's side.
-    for (const auto &entry : constraints.prescribed_nodes())
+    for (const auto &entry : constraints->prescribed_nodes())
       balance.sides[entry.condition->name] += heat.local_element(entry.node);
     add_fictitious_heat(u, balance);
     add_side_heat(u, t, balance);
+    add_crack_heat(u, balance);
 
     const Expression &source = scene.initial_and_source.source;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         balance.content += capacity.local_element(i) * u.local_element(i);
-        if (constraints.kind(i) != NodeConstraints<dim>::slave)
+        if (constraints->kind(i) != NodeConstraints<dim>::slave)
           balance.sources += nodes.volume(i) * source.value(nodes.position(i), t);
-        if (!steady && constraints.kind(i) == NodeConstraints<dim>::free)
+        if (!steady && constraints->kind(i) == NodeConstraints<dim>::free)
           balance.stored -= heat.local_element(i);
       }
     u.set_ghost_state(false);
@@ -136,6 +169,7 @@ namespace PeriDeal
 #define PERIDEAL_INSTANTIATE(dim)                                                                   \
   template void    BondOperator<dim>::add_fictitious_heat(const Vector &, Balance &) const;         \
   template void    BondOperator<dim>::add_side_heat(const Vector &, const double, Balance &) const; \
+  template void    BondOperator<dim>::add_crack_heat(const Vector &, Balance &) const;              \
   template Balance BondOperator<dim>::balance(const Vector &, const double, const bool) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

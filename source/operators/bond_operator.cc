@@ -20,17 +20,18 @@ namespace PeriDeal
   BondOperator<dim>::BondOperator(Nodes<dim> &nodes, const Scene<dim> &scene)
     : scene(scene)
     , bonds(nodes, scene)
-    , constraints(bonds, scene)
+    , constraints(std::make_unique<NodeConstraints<dim>>(bonds, scene))
+    , cracks_of(bonds.crack_history().representative(0.))
   {
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      if (constraints.kind(i) != NodeConstraints<dim>::free)
+      if (constraints->kind(i) != NodeConstraints<dim>::free)
         held.push_back(i);
-    if (constraints.any_slave())
+    if (constraints->any_slave())
       initialize_vector(scratch);
     find_capacity();
     find_side_loads();
-    if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling)
-      scale_crack_sides();
+    if (scene.peridynamics.surface_correction != SurfaceCorrection::none)
+      correct_surface(rows_to_correct());
     choose_form(scene.peridynamics.form);
     find_diagonal();
     outside_values.resize(bonds.fictitious().size());
@@ -93,7 +94,7 @@ namespace PeriDeal
     for (const BoundaryShare &share : bonds.nodes().boundary_shares())
       {
         // Prescribed nodes have no equation, but what enters there counts in the balance of heat.
-        if (constraints.kind(share.node) == NodeConstraints<dim>::slave)
+        if (constraints->kind(share.node) == NodeConstraints<dim>::slave)
           continue;
         const auto *flux       = BoundaryConditions<dim>::find(conditions.flux, share.id);
         const auto *convection = BoundaryConditions<dim>::find(conditions.convection, share.id);
@@ -111,39 +112,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondOperator<dim>::scale_crack_sides()
-  {
-    // Crack-side scaling (doc/theory.md): the trace of a full interior family is 2 d kappa, what the cut family lacks is made up for.
-    const Nodes<dim> &nodes = bonds.nodes();
-    Vector            factors;
-    initialize_vector(factors);
-    std::vector<typename Families<dim>::Bond> family;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        factors.local_element(i) = 1.;
-        if (!bonds.near_crack(i))
-          continue;
-        bonds.bonds_of(i, family);
-        double trace = 0.;
-        bool   cut   = false;
-        for (const auto &bond : family)
-          {
-            trace += 0.5 * bond.weight * bonds.bond_vector(i, bond.neighbor).norm_square();
-            cut = cut || bond.cut;
-          }
-        if (cut && trace > 0.)
-          factors.local_element(i) =
-            std::clamp(dim * bonds.conductivity(i) * nodes.volume(i) / trace, 0.5, 4.);
-      }
-    factors.update_ghost_values();
-    std::vector<double> local(nodes.n_local());
-    for (unsigned int i = 0; i < nodes.n_local(); ++i)
-      local[i] = factors.local_element(i);
-    bonds.set_node_factors(std::move(local));
-  }
-
-
-  template <int dim>
   void BondOperator<dim>::find_diagonal()
   {
     const Nodes<dim> &nodes = bonds.nodes();
@@ -152,7 +120,7 @@ namespace PeriDeal
     std::string  message;
     for (unsigned int i = 0; i < nodes.n_owned() && message.empty(); ++i)
       if (!(bond_diagonal.local_element(i) > 0.) &&
-          constraints.kind(i) == NodeConstraints<dim>::free)
+          constraints->kind(i) == NodeConstraints<dim>::free)
         {
           std::ostringstream where;
           where << "(" << nodes.position(i) << ")";
@@ -166,13 +134,29 @@ namespace PeriDeal
       bond_diagonal.local_element(node) += h;
     double bound = 0.;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      if (constraints.kind(i) == NodeConstraints<dim>::free)
-        bound = std::max(bound, 2. * bond_diagonal.local_element(i) / capacity.local_element(i));
+      bound = std::max(bound, row_bound(i));
     gershgorin = Utilities::MPI::max(bound, nodes.communicator());
-    n_bonds    = static_cast<unsigned long long>(
-      std::llround(Utilities::MPI::sum(n_own, nodes.communicator())));
-    n_nonzeros = Utilities::MPI::sum(form->n_stored(), nodes.communicator());
-    constraints.mask(bond_diagonal, 1.);
+    count_bonds(n_own);
+    constraints->mask(bond_diagonal, 1.);
+  }
+
+
+  template <int dim>
+  double BondOperator<dim>::row_bound(const unsigned int node) const
+  {
+    return constraints->kind(node) == NodeConstraints<dim>::free ?
+             2. * bond_diagonal.local_element(node) / capacity.local_element(node) :
+             0.;
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::count_bonds(const double n_own) const
+  {
+    const MPI_Comm communicator = bonds.nodes().communicator();
+    n_bonds =
+      static_cast<unsigned long long>(std::llround(Utilities::MPI::sum(n_own, communicator)));
+    n_nonzeros = Utilities::MPI::sum(form->n_stored(), communicator);
   }
 
 
@@ -244,10 +228,10 @@ namespace PeriDeal
   {
     ++applications;
     const Vector *input = &x;
-    if (constraints.any_slave())
+    if (constraints->any_slave())
       {
         scratch = x;
-        constraints.distribute_homogeneous(scratch);
+        constraints->distribute_homogeneous(scratch);
         input = &scratch;
       }
     input->update_ghost_values();
@@ -339,19 +323,19 @@ namespace PeriDeal
   template <int dim>
   void BondOperator<dim>::distribute(Vector &u, const double t) const
   {
-    constraints.distribute(u, t);
+    constraints->distribute(u, t);
   }
 
   template <int dim>
   void BondOperator<dim>::distribute_homogeneous(Vector &x) const
   {
-    constraints.distribute_homogeneous(x);
+    constraints->distribute_homogeneous(x);
   }
 
   template <int dim>
   void BondOperator<dim>::clear_constrained(Vector &y) const
   {
-    constraints.mask(y);
+    constraints->mask(y);
   }
 
   template <int dim>
@@ -396,7 +380,7 @@ namespace PeriDeal
   template <int dim>
   bool BondOperator<dim>::symmetric() const
   {
-    return bonds.symmetric() && !constraints.any_slave();
+    return bonds.symmetric() && !constraints->any_slave();
   }
 
   template <int dim>
@@ -408,7 +392,7 @@ namespace PeriDeal
   template <int dim>
   bool BondOperator<dim>::has_steady_state() const
   {
-    return constraints.any_prescribed() || !scene.boundary_conditions.convection.empty() ||
+    return constraints->any_prescribed() || !scene.boundary_conditions.convection.empty() ||
            !scene.boundary_conditions.dirichlet.empty();
   }
 
@@ -441,6 +425,12 @@ namespace PeriDeal
   template <int dim>
   OperatorSize BondOperator<dim>::size() const
   {
+    if (recount_bonds)
+      {
+        std::vector<double> sums(bonds.nodes().n_owned());
+        count_bonds(form->row_sums(sums.data()));
+        recount_bonds = false;
+      }
     OperatorSize size;
     size.unknowns = bonds.nodes().n_global();
     size.bonds    = n_bonds;

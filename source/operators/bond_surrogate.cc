@@ -60,7 +60,7 @@ namespace PeriDeal
     Vector free_nodes;
     initialize_vector(free_nodes);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      free_nodes.local_element(i) = constraints.kind(i) == NodeConstraints<dim>::free ? 1. : 0.;
+      free_nodes.local_element(i) = constraints->kind(i) == NodeConstraints<dim>::free ? 1. : 0.;
     free_nodes.update_ghost_values();
 
     std::vector<typename Families<dim>::Bond>    family;

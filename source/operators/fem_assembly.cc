@@ -15,33 +15,11 @@
 #include <algorithm>
 #include <sstream>
 
+#include "fem_cell_data.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
-
-  /** Scratch memory of the cell loops. */
-  template <int dim>
-  struct FEMOperator<dim>::CellData
-  {
-    explicit CellData(const FiniteElement<dim> &fe)
-      : values(fe,
-               QGauss<dim>(fe.degree + 1),
-               update_values | update_gradients | update_quadrature_points | update_JxW_values)
-      , face_values(fe,
-                    QGauss<dim - 1>(fe.degree + 1),
-                    update_values | update_quadrature_points | update_JxW_values)
-      , stiffness(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
-      , mass(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
-      , convection(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
-      , indices(fe.n_dofs_per_cell())
-    {}
-
-    FEValues<dim>                        values;
-    FEFaceValues<dim>                    face_values;
-    FullMatrix<double>                   stiffness, mass, convection;
-    std::vector<types::global_dof_index> indices;
-  };
-
 
   template <int dim>
   void FEMOperator<dim>::find_cut_cells()
@@ -51,15 +29,20 @@ namespace PeriDeal
       return;
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial())
-        for (const CrackGeometry<dim> &crack : cracks)
-          {
-            if (!crack.is_near(cell->center(), cell->diameter()))
-              continue;
-            for (const unsigned int a : cell->vertex_indices())
-              for (unsigned int b = 0; b < a; ++b)
-                if (crack.separates(cell->vertex(a), cell->vertex(b)))
-                  cut[cell->active_cell_index()] = true;
-          }
+        cut[cell->active_cell_index()] = is_cut(cell);
+  }
+
+
+  template <int dim>
+  bool FEMOperator<dim>::is_cut(const Cell &cell) const
+  {
+    for (const CrackGeometry<dim> &crack : cracks)
+      if (crack.is_near(cell->center(), cell->diameter()))
+        for (const unsigned int a : cell->vertex_indices())
+          for (unsigned int b = 0; b < a; ++b)
+            if (crack.separates(cell->vertex(a), cell->vertex(b)))
+              return true;
+    return false;
   }
 
 
@@ -93,39 +76,57 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::keep_unseparated_pairs(
-    const typename DoFHandler<dim>::active_cell_iterator &cell,
-    CellData                                             &data) const
+  double FEMOperator<dim>::kept_fraction(const Cell                                &cell,
+                                         const unsigned int                         a,
+                                         const unsigned int                         b,
+                                         std::vector<std::pair<unsigned int, int>> *crossed) const
   {
-    const double       t        = scene.cracks.transmission;
-    const bool         contact  = scene.cracks.contact_conductance >= 0.;
+    const Tensor<1, dim> xi      = cell->vertex(b) - cell->vertex(a);
+    const bool           contact = scene.cracks.contact_conductance >= 0.;
+    double               kept    = 1.;
+    for (std::size_t k = 0; k < cracks.size();)
+      {
+        double fraction = 1.; // several pieces of a crack between two vertices are one crossing
+        const unsigned int crack = cracks[k].crack;
+        bool               seen  = false;
+        for (; k < cracks.size() && cracks[k].crack == crack; ++k)
+          {
+            if (!cracks[k].separates(cell->vertex(a), cell->vertex(b)))
+              continue;
+            if (crossed != nullptr && !seen)
+              crossed->emplace_back(crack,
+                                    cracks[k].signed_distance(cell->vertex(a)) > 0. ? 1 : -1);
+            seen = true;
+            if (!contact && (transmission == 0. || transmission >= 1.)) // needs no horizon
+              {
+                fraction = std::min(fraction, transmission);
+                continue;
+              }
+            const double kappa = scene.material.conductivity.value(cell->center());
+            const double H     = contact ? scene.cracks.contact_conductance :
+                                           contact_conductance_of_transmission(
+                                         transmission,
+                                         kappa,
+                                         scene.horizon(),
+                                         scene.horizon() / cell->minimum_vertex_distance());
+            fraction =
+              std::min(fraction, contact_fraction(H, std::abs(xi * cracks[k].normal()), kappa));
+          }
+        kept *= fraction;
+      }
+    return kept;
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::keep_unseparated_pairs(const Cell &cell, CellData &data) const
+  {
     FullMatrix<double> original = data.stiffness;
     data.stiffness              = 0.;
     for (const unsigned int a : cell->vertex_indices())
       for (unsigned int b = 0; b < a; ++b)
         {
-          double               w     = std::max(0., -original(a, b));
-          const Tensor<1, dim> xi    = cell->vertex(b) - cell->vertex(a);
-          const double         kappa = scene.material.conductivity.value(cell->center());
-          for (const CrackGeometry<dim> &crack : cracks)
-            if (crack.separates(cell->vertex(a), cell->vertex(b)))
-              {
-                if (!contact && t >= 1.)
-                  continue;
-                if (!contact && t == 0.) // needs no horizon, which a mesh file may come without
-                  {
-                    w = 0.;
-                    continue;
-                  }
-                const double across = std::abs(xi * crack.normal());
-                const double H      = contact ? scene.cracks.contact_conductance :
-                                                contact_conductance_of_transmission(
-                                             t,
-                                             kappa,
-                                             scene.horizon(),
-                                             scene.horizon() / cell->minimum_vertex_distance());
-                w *= contact_fraction(H, across, kappa);
-              }
+          const double w = std::max(0., -original(a, b)) * kept_fraction(cell, a, b, nullptr);
           data.stiffness(a, b) -= w;
           data.stiffness(b, a) -= w;
           data.stiffness(a, a) += w;
@@ -135,8 +136,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::assemble_cell(const typename DoFHandler<dim>::active_cell_iterator &cell,
-                                       CellData &data) const
+  void FEMOperator<dim>::assemble_cell(const Cell &cell, CellData &data) const
   {
     data.values.reinit(cell);
     data.stiffness       = 0.;
@@ -234,6 +234,18 @@ namespace PeriDeal
 
 
   template <int dim>
+  void FEMOperator<dim>::scale_beside_cracks(CellData &data) const
+  {
+    if (crack_factors.size() == 0)
+      return;
+    double mean = 0.;
+    for (const auto i : data.indices)
+      mean += crack_factors(i) / data.indices.size();
+    data.stiffness *= mean;
+  }
+
+
+  template <int dim>
   void FEMOperator<dim>::assemble()
   {
     const IndexSet &owned = dofs.locally_owned_dofs();
@@ -250,19 +262,13 @@ namespace PeriDeal
     cell_data      = std::make_shared<CellData>(dofs.get_fe());
     CellData &data = *cell_data;
     if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling &&
-        scene.cracks.mesh == CrackMesh::pairs && !cracks.empty())
+        scene.cracks.mesh == CrackMesh::pairs && !scene.cracks.cracks.empty())
       find_crack_factors(data);
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
           assemble_cell(cell, data);
-          if (crack_factors.size() > 0)
-            {
-              double mean = 0.;
-              for (const auto i : data.indices)
-                mean += crack_factors(i) / data.indices.size();
-              data.stiffness *= mean;
-            }
+          scale_beside_cracks(data);
           data.stiffness.add(1., data.convection);
           stiffness.add(data.indices, data.stiffness);
           if (scene.finite_elements.consistent_capacity)
@@ -373,14 +379,26 @@ namespace PeriDeal
     u.set_ghost_state(false);
   }
 
-#define PERIDEAL_INSTANTIATE(dim)                                            \
-  template void FEMOperator<dim>::add_side_and_source_heat(const Vector &,   \
-                                                           const double,     \
-                                                           Balance &) const; \
-  template struct FEMOperator<dim>::CellData;                                \
-  template void FEMOperator<dim>::find_cut_cells();                          \
-  template void FEMOperator<dim>::check_material() const;                    \
-  template void FEMOperator<dim>::assemble();                                \
+#define PERIDEAL_INSTANTIATE(dim)                                                                \
+  template void FEMOperator<dim>::add_side_and_source_heat(const Vector &,                       \
+                                                           const double,                         \
+                                                           Balance &) const;                     \
+  template struct FEMOperator<dim>::CellData;                                                    \
+  template void FEMOperator<dim>::find_cut_cells();                                              \
+  template bool FEMOperator<dim>::is_cut(const typename DoFHandler<dim>::active_cell_iterator &) \
+    const;                                                                                       \
+  template double FEMOperator<dim>::kept_fraction(                                               \
+    const typename DoFHandler<dim>::active_cell_iterator &,                                      \
+    const unsigned int,                                                                          \
+    const unsigned int,                                                                          \
+    std::vector<std::pair<unsigned int, int>> *) const;                                          \
+  template void FEMOperator<dim>::assemble_cell(                                                 \
+    const typename DoFHandler<dim>::active_cell_iterator &,                                      \
+    CellData &) const;                                                                           \
+  template void FEMOperator<dim>::find_crack_factors(CellData &);                                \
+  template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                         \
+  template void FEMOperator<dim>::check_material() const;                                        \
+  template void FEMOperator<dim>::assemble();                                                    \
   template void FEMOperator<dim>::assemble_loads(Vector &, const double) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

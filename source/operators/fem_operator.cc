@@ -22,8 +22,11 @@ namespace PeriDeal
   FEMOperator<dim>::FEMOperator(const DoFHandler<dim> &dof_handler, const Scene<dim> &scene)
     : dofs(dof_handler)
     , scene(scene)
+    , history(scene.crack_history())
+    , cracks_of(history.representative(0.))
+    , cracks(make_crack_geometries(history.pieces(cracks_of)))
+    , transmission(history.transmission(cracks_of))
   {
-    cracks = make_crack_geometries(scene.cracks.cracks);
     check_material();
     find_cut_cells();
     find_prescribed();
@@ -275,6 +278,7 @@ namespace PeriDeal
     for (const Prescribed &entry : prescribed)
       balance.sides[entry.condition->name] += heat.local_element(entry.dof);
     add_side_and_source_heat(u, t, balance);
+    add_crack_heat(u, balance);
     for (unsigned int i = 0; i < heat.locally_owned_size(); ++i)
       balance.content += capacity.local_element(i) * u.local_element(i);
     mask(heat);

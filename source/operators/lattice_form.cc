@@ -74,8 +74,8 @@ namespace PeriDeal
             convolve(kernel, at.runs, end.runs, y);
             for (std::size_t k = at.pieces; k < end.pieces; ++k)
               combine(layout.pieces[k], values, y);
-            for (; row < correction_ends[g]; ++row)
-              y[corrected_rows[row]] += correction(row, values, outside);
+            for (; row < corrections.ends[g]; ++row)
+              y[corrections.rows[row]] += correction(row, values, outside);
             if (finish)
               for (std::size_t k = at.ranges; k < end.ranges; ++k)
                 finish(layout.ranges[k].first, layout.ranges[k].second);
@@ -94,12 +94,12 @@ namespace PeriDeal
         fill_grid_directly(std::vector<double>(n_local, 0.5),
                            std::vector<double>(families.fictitious().size(), 1.));
         convolve(make_kernel(families, true), 0, runs.size(), count.data());
-        std::vector<typename Families<dim>::Bond> bonds;
-        for (const std::uint32_t i : corrected_rows) // the plain way
+        std::vector<typename Families<dim>::Bond> family;
+        for (const std::uint32_t i : corrections.rows) // the plain way
           {
-            families.bonds_of(i, bonds);
+            families.bonds_of(i, family);
             sums[i] = count[i] = 0.;
-            for (const auto &bond : bonds)
+            for (const auto &bond : family)
               {
                 sums[i] += bond.weight;
                 if (bond.weight > 0.)
@@ -112,19 +112,54 @@ namespace PeriDeal
         return n_bonds;
       }
 
+      void update_rows(const std::vector<unsigned int> &rows, double *sums) override
+      {
+        if (ranks.empty())
+          rank_nodes();
+        std::vector<std::uint32_t> changed(rows.begin(), rows.end());
+        const auto                 comes_first = [&](const std::uint32_t a, const std::uint32_t b) {
+          return ranks[a] < ranks[b];
+        };
+        std::sort(changed.begin(), changed.end(), comes_first);
+        // Merge the changed rows with those that stay, in the order of the layout.
+        spare.clear();
+        spare.starts.push_back(0);
+        std::size_t old = 0, fresh = 0;
+        for (const std::uint32_t end : group_ends())
+          {
+            for (;;)
+              {
+                const bool any_old = old < corrections.rows.size() &&
+                                     ranks[corrections.rows[old]] < end,
+                           any_new = fresh < changed.size() && ranks[changed[fresh]] < end;
+                if (!any_old && !any_new)
+                  break;
+                if (any_new && (!any_old || !comes_first(corrections.rows[old], changed[fresh])))
+                  {
+                    const std::uint32_t i = changed[fresh++];
+                    if (any_old && corrections.rows[old] == i)
+                      ++old;
+                    sums[i] = correct(i, spare);
+                  }
+                else
+                  spare.copy_row(corrections, old++);
+              }
+            spare.ends.push_back(spare.rows.size());
+          }
+        std::swap(corrections, spare);
+      }
+
       std::size_t memory_consumption() const override
       {
         return sizeof(double) * grid.capacity() + layout.memory_consumption() +
-               runs.capacity() * sizeof(StencilKernel::Run) +
-               corrections.capacity() * sizeof(Correction) +
-               corrected_rows.capacity() * sizeof(std::uint32_t) +
-               (correction_starts.capacity() + correction_ends.capacity()) * sizeof(std::size_t) +
+               runs.capacity() * sizeof(StencilKernel::Run) + corrections.memory() +
+               spare.memory() + ranks.capacity() * sizeof(std::uint32_t) +
                outside_nodes.capacity() * sizeof(OutsideNode);
       }
 
       unsigned long long n_stored() const override
       {
-        return corrections.size();
+        return corrections.list.size();
       }
 
       std::string name() const override
@@ -138,6 +173,37 @@ namespace PeriDeal
       {
         std::uint32_t column;
         double        coefficient;
+      };
+
+      /** The corrected rows in the order of the layout. */
+      struct Corrections
+      {
+        void clear()
+        {
+          rows.clear();
+          starts.clear();
+          ends.clear();
+          list.clear();
+        }
+
+        void copy_row(const Corrections &from, const std::size_t row)
+        {
+          rows.push_back(from.rows[row]);
+          list.insert(list.end(),
+                      from.list.begin() + from.starts[row],
+                      from.list.begin() + from.starts[row + 1]);
+          starts.push_back(list.size());
+        }
+
+        std::size_t memory() const
+        {
+          return list.capacity() * sizeof(Correction) + rows.capacity() * sizeof(std::uint32_t) +
+                 (starts.capacity() + ends.capacity()) * sizeof(std::size_t);
+        }
+
+        std::vector<std::uint32_t> rows;
+        std::vector<std::size_t>   starts, ends; // of rows in the list; of groups in the rows
+        std::vector<Correction>    list;
       };
 
       struct OutsideNode
@@ -215,8 +281,7 @@ namespace PeriDeal
 
       void find_corrections()
       {
-        std::vector<typename Families<dim>::Bond> bonds;
-        correction_starts.push_back(0);
+        corrections.starts.push_back(0);
         std::size_t p = 0;
         for (const auto &group : layout.groups)
           {
@@ -225,41 +290,71 @@ namespace PeriDeal
                 {
                   const std::uint32_t i = layout.pieces[p].node + k;
                   if (families.near_crack(i) || !self_term_is_regular(i))
-                    correct(i, bonds);
+                    correct(i, corrections);
                 }
-            correction_ends.push_back(corrected_rows.size());
+            corrections.ends.push_back(corrections.rows.size());
           }
-        corrections.shrink_to_fit();
+        corrections.list.shrink_to_fit();
       }
 
 
-      void correct(const std::uint32_t i, std::vector<typename Families<dim>::Bond> &bonds)
+      /** Adds the row's corrections, if it has any. Returns the sum of its conductances. */
+      double correct(const std::uint32_t i, Corrections &to)
       {
+        double sum = 0.;
         families.bonds_of(i, bonds);
         for (const auto &bond : bonds)
           {
             const double expected   = template_weight(i, bond);
             const double difference = bond.weight - expected;
+            sum += bond.weight;
             if (std::abs(difference) > 1e-14 * expected)
-              corrections.push_back({bond.neighbor, difference});
+              to.list.push_back({bond.neighbor, difference});
           }
-        if (corrections.size() > correction_starts.back())
+        if (to.list.size() > to.starts.back())
           {
-            corrected_rows.push_back(i);
-            correction_starts.push_back(corrections.size());
+            to.rows.push_back(i);
+            to.starts.push_back(to.list.size());
           }
+        return sum;
+      }
+
+
+      /** Where each node comes in the order of the layout. */
+      void rank_nodes()
+      {
+        ranks.resize(families.nodes().n_owned());
+        std::uint32_t rank = 0;
+        for (const LatticePiece &piece : layout.pieces)
+          for (std::uint32_t k = 0; k < piece.n; ++k)
+            ranks[piece.node + k] = rank++;
+      }
+
+
+      /** Nodes of all groups up to each one. */
+      std::vector<std::uint32_t> group_ends() const
+      {
+        std::vector<std::uint32_t> ends;
+        std::uint32_t              n = 0;
+        std::size_t                p = 0;
+        for (const auto &group : layout.groups)
+          {
+            for (; p < group.pieces; ++p)
+              n += layout.pieces[p].n;
+            ends.push_back(n);
+          }
+        return ends;
       }
 
 
       double correction(const std::size_t row, const double *values, const double *outside) const
       {
-        const double u   = values[corrected_rows[row]];
+        const double u   = values[corrections.rows[row]];
         double       sum = 0.;
-        for (std::size_t c = correction_starts[row]; c < correction_starts[row + 1]; ++c)
+        for (std::size_t c = corrections.starts[row]; c < corrections.starts[row + 1]; ++c)
           {
-            const std::uint32_t j = corrections[c].column;
-            sum +=
-              corrections[c].coefficient * (u - (j < n_local ? values[j] : outside[j - n_local]));
+            const auto &[j, coefficient] = corrections.list[c];
+            sum += coefficient * (u - (j < n_local ? values[j] : outside[j - n_local]));
           }
         return sum;
       }
@@ -338,9 +433,10 @@ namespace PeriDeal
       mutable std::vector<StencilKernel::Run> runs;
       std::vector<OutsideNode>                outside_nodes;
       std::vector<std::size_t>                emptied_slots;
-      std::vector<std::uint32_t>              corrected_rows;
-      std::vector<std::size_t> correction_starts, correction_ends; // of rows; of groups
-      std::vector<Correction>  corrections;
+      Corrections                             corrections, spare;
+      std::vector<std::uint32_t> ranks; // of nodes in the order of the layout; once rows change
+
+      std::vector<typename Families<dim>::Bond> bonds; // of the row at work
     };
   } // namespace
 
@@ -359,6 +455,8 @@ namespace PeriDeal
       reason = "the nodes are not on a lattice with one node per site";
     else if (!families.uniform_conductivity())
       reason = "the conductivity varies";
+    else if (families.corrects_every_bond())
+      reason = "the energy correction gives each bond a factor of its own";
     else
       return true;
     return false;

@@ -58,16 +58,17 @@ namespace PeriDeal
     }
 
 
+    template <int dim>
     class StoredForm : public BondForm
     {
     public:
-      template <int dim>
       explicit StoredForm(const Families<dim> &families)
-        : n_values(families.nodes().n_local())
+        : families(families)
+        , keep_cut(families.crack_history().changes_ever())
+        , n_values(families.nodes().n_local())
         , extended(families.fictitious().empty() ? 0 : n_values + families.fictitious().size())
       {
-        std::vector<typename Families<dim>::Bond> bonds;
-        const unsigned int                        n_rows = families.nodes().n_owned();
+        const unsigned int n_rows = families.nodes().n_owned();
         row_starts.reserve(n_rows + 1);
         row_starts.push_back(0);
         // On a lattice a little more than enough, in one go: what is not written to takes no memory.
@@ -78,7 +79,7 @@ namespace PeriDeal
             if (i == n_rows / 2 && columns.capacity() < bonds.size() * n_rows)
               reserve(columns.size() + (bonds.size() + 1) * (n_rows - i));
             for (const auto &bond : bonds)
-              if (bond.weight != 0.)
+              if (keep_cut || bond.weight != 0.)
                 {
                   columns.push_back(bond.neighbor);
                   weights.push_back(bond.weight);
@@ -123,10 +124,27 @@ namespace PeriDeal
             for (std::size_t b = row_starts[i]; b < row_starts[i + 1]; ++b)
               {
                 sums[i] += weights[b];
-                n_bonds += columns[b] < n_values ? 0.5 : 1.;
+                if (weights[b] != 0.)
+                  n_bonds += columns[b] < n_values ? 0.5 : 1.;
               }
           }
         return n_bonds;
+      }
+
+      void update_rows(const std::vector<unsigned int> &rows, double *sums) override
+      {
+        for (const unsigned int i : rows)
+          {
+            families.bonds_of(i, bonds);
+            AssertDimension(bonds.size(), row_starts[i + 1] - row_starts[i]);
+            sums[i]       = 0.;
+            std::size_t b = row_starts[i];
+            for (const auto &bond : bonds)
+              {
+                weights[b++] = bond.weight;
+                sums[i] += bond.weight;
+              }
+          }
       }
 
       std::size_t memory_consumption() const override
@@ -155,11 +173,14 @@ namespace PeriDeal
         prefer_large_pages(weights.data(), weights.capacity() * sizeof(double));
       }
 
-      std::size_t                 n_values;
-      mutable std::vector<double> extended;
-      std::vector<std::size_t>    row_starts;
-      std::vector<std::uint32_t>  columns;
-      std::vector<double>         weights;
+      const Families<dim> &families;
+      const bool           keep_cut; // with weight 0, since their weights will change
+      std::vector<typename Families<dim>::Bond> bonds;
+      std::size_t                               n_values;
+      mutable std::vector<double>               extended;
+      std::vector<std::size_t>                  row_starts;
+      std::vector<std::uint32_t>                columns;
+      std::vector<double>                       weights;
     };
   } // namespace
 
@@ -167,7 +188,7 @@ namespace PeriDeal
   template <int dim>
   std::unique_ptr<BondForm> make_stored_form(const Families<dim> &families)
   {
-    return std::make_unique<StoredForm>(families);
+    return std::make_unique<StoredForm<dim>>(families);
   }
 
   template std::unique_ptr<BondForm> make_stored_form(const Families<1> &);

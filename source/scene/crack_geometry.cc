@@ -141,7 +141,7 @@ namespace PeriDeal
     for (unsigned int d = 0; d < dim; ++d)
       if (p[d] < lowest[d] - radius || p[d] > highest[d] + radius)
         return false;
-    return true;
+    return dim == 1 || std::abs((p - corner_points[0]) * unit_normal) <= radius + tolerance;
   }
 
 
@@ -181,12 +181,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<CrackGeometry<dim>> make_crack_geometries(
-    const std::vector<std::vector<Point<dim>>> &cracks)
+  std::vector<CrackGeometry<dim>> make_crack_geometries(const std::vector<CrackPiece<dim>> &pieces)
   {
     std::vector<CrackGeometry<dim>> list, alone;
-    for (const auto &corners : cracks)
-      alone.emplace_back(corners);
+    for (const CrackPiece<dim> &piece : pieces)
+      {
+        alone.emplace_back(piece.corners);
+        alone.back().crack = piece.crack;
+      }
     list = alone;
     for (std::size_t i = 0; i < list.size(); ++i)
       for (std::size_t j = 0; j < list.size(); ++j)
@@ -196,12 +198,9 @@ namespace PeriDeal
   }
 
 
-  template std::vector<CrackGeometry<1>> make_crack_geometries(
-    const std::vector<std::vector<Point<1>>> &);
-  template std::vector<CrackGeometry<2>> make_crack_geometries(
-    const std::vector<std::vector<Point<2>>> &);
-  template std::vector<CrackGeometry<3>> make_crack_geometries(
-    const std::vector<std::vector<Point<3>>> &);
+  template std::vector<CrackGeometry<1>> make_crack_geometries(const std::vector<CrackPiece<1>> &);
+  template std::vector<CrackGeometry<2>> make_crack_geometries(const std::vector<CrackPiece<2>> &);
+  template std::vector<CrackGeometry<3>> make_crack_geometries(const std::vector<CrackPiece<3>> &);
   template class CrackGeometry<1>;
   template class CrackGeometry<2>;
   template class CrackGeometry<3>;

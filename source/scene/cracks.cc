@@ -98,19 +98,22 @@ namespace PeriDeal
       "pairs that the crack does not separate; the crack lies on cell faces, which are doubled; "
       "or cut cells conduct nothing.",
       {"pairs", "faces", "removed"});
-    declare("Transmission",
-            EntryType::number,
-            "0",
-            "1",
-            "Fraction that a cut bond still conducts, from 0 (insulated) to 1 (intact). A contact "
-            "conductance H corresponds to t/(1-t) = H delta/(C kappa), C about 1.9 (horizon ratio "
-            "2) to 2.4 "
-            "(horizon ratio 3).");
+    declare(
+      "Transmission",
+      EntryType::formula,
+      "0",
+      "1",
+      "Fraction that a cut bond still conducts, from 0 (insulated) to 1 (intact), or a formula of t: a crack that closes "
+      "conducts again. A contact "
+      "conductance H corresponds to t/(1-t) = H delta/(C kappa), C about 1.9 (horizon ratio "
+      "2) to 2.4 "
+      "(horizon ratio 3).");
     declare("Contact conductance",
             EntryType::text,
             "",
             "power/(area temperature)",
             "Heat flux through the crack per difference of temperature, instead of Transmission.");
+    declare_growth();
   }
 
 
@@ -129,11 +132,7 @@ namespace PeriDeal
             "each crack needs two points (start ; end), found " + std::to_string(points.size()) +
               " points.");
     for (unsigned int i = 0; i < points.size(); i += 2)
-      {
-        cracks.push_back({points[i], points[i + 1]});
-        if (points[i] == points[i + 1])
-          error("Segments", crack_name(i / 2, cracks.back()) + " has no length.");
-      }
+      cracks.push_back({points[i], points[i + 1]});
   }
 
 
@@ -169,30 +168,56 @@ namespace PeriDeal
   void Cracks<dim>::parse()
   {
     cracks.clear();
+    tips.clear();
     parse_segments();
     parse_polygons();
-    mesh         = choice<CrackMesh>("Mesh");
-    transmission = number("Transmission");
-    if (transmission < 0. || transmission > 1.)
-      error("Transmission", "found " + text("Transmission") + ", needs a number from 0 to 1.");
-    contact_conductance = -1.;
-    if (!text("Contact conductance").empty())
-      {
-        if (transmission != 0.)
-          error("Contact conductance", "'Transmission' is given, too: give one of the two.");
-        contact_conductance =
-          parse_number(text("Contact conductance"), where("Contact conductance"));
-        if (contact_conductance < 0.)
-          error("Contact conductance",
-                "found " + text("Contact conductance") + ", needs a number of 0 or more.");
-      }
-    if (mesh != CrackMesh::pairs && (transmission > 0. || contact_conductance > 0.))
+    mesh = choice<CrackMesh>("Mesh");
+    parse_conductance();
+    parse_growth();
+    parse_paths();
+    check_tips();
+    for (unsigned int i = 0; i < cracks.size() && dim == 2; ++i)
+      if (cracks[i][0] == cracks[i][1] &&
+          std::none_of(tips.begin(), tips.end(), [&](const auto &tip) { return tip.crack == i; }))
+        error("Segments",
+              crack_name(i, cracks[i]) + " has no length, and no end of it grows ('Growth').");
+    if (mesh != CrackMesh::pairs && conduct())
       error("Mesh",
             std::string(mesh == CrackMesh::faces ?
                           "'faces' cuts the body along the crack, which then conducts nothing" :
                           "with 'removed' the cells along the crack conduct nothing") +
-              "; with '" + (transmission > 0. ? "Transmission" : "Contact conductance") +
+              "; with '" + (contact_conductance > 0. ? "Contact conductance" : "Transmission") +
               "' greater than 0 use 'pairs'.");
+    if (mesh == CrackMesh::faces && !tips.empty())
+      error(
+        "Mesh",
+        "'faces' cuts the cracks into the mesh before the run; for cracks that grow use 'pairs' "
+        "or 'removed'.");
+  }
+
+
+  template <int dim>
+  void Cracks<dim>::parse_conductance()
+  {
+    transmission = Expression(text("Transmission"), where("Transmission"));
+    if (transmission.depends_on_position())
+      error("Transmission",
+            "found '" + text("Transmission") + "'; it may change with the time t only.");
+    const double now = transmission.value(Point<dim>());
+    if (now < 0. || now > 1.)
+      error("Transmission",
+            "found " + text("Transmission") +
+              (transmission.is_constant() ? "" : ", which is " + number_text(now) + " at t = 0") +
+              ", needs a number from 0 to 1.");
+    contact_conductance = -1.;
+    if (text("Contact conductance").empty())
+      return;
+    if (!transmission.is_constant() || now != 0.)
+      error("Contact conductance", "'Transmission' is given, too: give one of the two.");
+    contact_conductance = parse_number(text("Contact conductance"), where("Contact conductance"));
+    if (contact_conductance < 0.)
+      error("Contact conductance",
+            "found " + text("Contact conductance") + ", needs a number of 0 or more.");
   }
 
 
@@ -204,7 +229,9 @@ namespace PeriDeal
         std::vector<Point<dim>> inside = cracks[i];
         for (unsigned int d = 0; d < dim; ++d)
           inside = clipped<dim>(clipped<dim>(inside, d, upper[d], 1.), d, lower[d], -1.);
-        if (inside.empty())
+        const bool grows =
+          std::any_of(tips.begin(), tips.end(), [&](const auto &tip) { return tip.crack == i; });
+        if (inside.empty() && !grows)
           error(dim == 2 ? "Segments" : "Polygons",
                 crack_name(i, cracks[i]) + " lies outside the body.");
       }

@@ -109,9 +109,18 @@ namespace PeriDeal
       EntryType::choice,
       "none",
       "",
-      "Scaling of bonds (and of finite elements with `Mesh = pairs`) beside cracks, which makes up "
-      "for the bonds that the crack has cut.",
-      {"none", "crack scaling"});
+      "Factors of bonds that make up for missing ones: beside cracks only (`crack scaling`, for finite elements with "
+      "`Mesh = pairs`, too); or wherever the energy of a unit gradient is not that of the classical body (`energy`), at sides, cracks and "
+      "voids.",
+      {"none", "crack scaling", "energy"});
+    declare(
+      "Correction direction",
+      EntryType::choice,
+      "both",
+      "",
+      "With `energy`: the direction of the unit gradient. `both`: one factor for each direction of space, "
+      "weighted with the squares of the bond's direction cosines.",
+      {"x", "y", "z", "both"});
   }
 
 
@@ -142,9 +151,10 @@ namespace PeriDeal
     layer_rows      = whole_number("Layer rows");
     if (layer_rows == 0)
       error("Layer rows", "found 0, needs 1 or more.");
-    flux_treatment     = choice<FluxTreatment>("Flux treatment");
-    surface_correction = choice<SurfaceCorrection>("Surface correction");
-    form               = choice<OperatorForm>("Operator form");
+    flux_treatment       = choice<FluxTreatment>("Flux treatment");
+    surface_correction   = choice<SurfaceCorrection>("Surface correction");
+    correction_direction = choice<CorrectionDirection>("Correction direction");
+    form                 = choice<OperatorForm>("Operator form");
   }
 
 

@@ -95,6 +95,10 @@ namespace PeriDeal
       require(dim < 3 || pd.self_term != SelfTerm::paper,
               "Self term",
               "'paper' is defined for 'Dimension' 1 and 2 only.");
+      require(pd.correction_direction == CorrectionDirection::both ||
+                static_cast<int>(pd.correction_direction) < dim,
+              "Correction direction",
+              "there is no such direction with 'Dimension' = " + std::to_string(dim) + ".");
       if (shape != Shape::mesh_file)
         return;
       require(pd.treatment != BoundaryTreatment::layer,
@@ -152,7 +156,7 @@ namespace PeriDeal
                 "' is named in 'Flux', too, and with 'Flux treatment' in section 'Peridynamics' = extrapolation its values "
                 "follow from the flux alone. Use 'natural' to have both.");
       if (scene.domain.shape == Shape::mesh_file && !(scene.peridynamics.horizon > 0.) &&
-          scene.cracks.transmission > 0. && scene.cracks.transmission < 1.)
+          scene.cracks.conduct() && scene.cracks.contact_conductance < 0.)
         entry_error(
           scene.peridynamics.where("Horizon"),
           "is empty; 'Transmission' in section 'Cracks' is the fraction that bonds of one horizon keep, in finite "
@@ -176,6 +180,10 @@ namespace PeriDeal
                         "' depends on t, but 'Steady' in section 'Time' is true.");
       };
       refuse_time(scene.initial_and_source.source, scene.initial_and_source.where("Source"));
+      refuse_time(scene.cracks.transmission, scene.cracks.where("Transmission"));
+      if (!scene.cracks.tips.empty())
+        scene.cracks.tip_error(scene.cracks.tips.front(),
+                               "moves, but 'Steady' in section 'Time' is true.");
       for (const SideCondition &condition : bc.dirichlet)
         refuse_time(condition.value, bc.where("Dirichlet"));
       for (const SideCondition &condition : bc.flux)
@@ -236,6 +244,24 @@ namespace PeriDeal
 
 
   template <int dim>
+  CrackHistory<dim> Scene<dim>::crack_history() const
+  {
+    double step = cracks.growth_step;
+    if (step < 0. && !cracks.tips.empty())
+      {
+        if (domain.shape == Shape::mesh_file)
+          entry_error(cracks.where("Growth step"),
+                      "is empty, but a mesh file has no node spacing: give a length.");
+        const Tensor<1, dim> h = domain.spacing();
+        step                   = 0.25 * h[0];
+        for (unsigned int d = 1; d < dim; ++d)
+          step = std::min(step, 0.25 * h[d]);
+      }
+    return CrackHistory<dim>(cracks, step, time.steady ? 1. : time.end_time, time.time_step);
+  }
+
+
+  template <int dim>
   std::vector<SceneSection *> Scene<dim>::sections()
   {
     return {&general,
@@ -276,8 +302,12 @@ namespace PeriDeal
     reference.parse();
     units.parse();
 
+    cracks.end_time = time.steady ? 0. : time.end_time;
     if (domain.shape != Shape::mesh_file)
-      cracks.check_inside(domain.lower, domain.upper);
+      {
+        cracks.check_inside(domain.lower, domain.upper);
+        cracks.check_tips_inside(domain.lower, domain.upper, cracks.end_time);
+      }
     if (runs(*this, Model::finite_elements) && finite_elements.degree > 1 &&
         !cracks.cracks.empty() && cracks.mesh == CrackMesh::pairs)
       entry_error(finite_elements.where("Degree"),
@@ -290,6 +320,7 @@ namespace PeriDeal
       }
     check_combinations(*this);
     check_steady(*this);
+    crack_history(); // for its errors
     check_points_of_output(*this);
   }
 

@@ -3,6 +3,7 @@
 
 #include <perideal/simulation/simulation.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "result_record.h"
@@ -52,10 +53,12 @@ namespace PeriDeal
   {
     double n = 0., t = 0.;
     for (const double next : output_times())
-      {
-        n += next > t ? model.stepper->expected_applications(next - t) : 0.;
-        t = next;
-      }
+      while (t < next)
+        {
+          const double to = std::min(next, model.op().next_event(t));
+          n += model.stepper->expected_applications(to - t);
+          t = to;
+        }
     return n;
   }
 

@@ -80,6 +80,11 @@ namespace PeriDeal
         return *fem;
       }
 
+      bool update(const double t) override
+      {
+        return fem->update(t);
+      }
+
       void set_initial_value(Vector &u) const override
       {
         // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for higher degrees, which it would spoil.
@@ -248,6 +253,14 @@ namespace PeriDeal
         return *bonds;
       }
 
+      bool update(const double t) override
+      {
+        const bool changed = bonds->update(t);
+        if (changed)
+          cut.reinit(0);
+        return changed;
+      }
+
       void set_initial_value(Vector &u) const override
       {
         for (unsigned int i = 0; i < node_set->n_owned(); ++i)
@@ -268,9 +281,12 @@ namespace PeriDeal
         if (volume.size() == 0)
           {
             bonds->initialize_vector(volume);
-            bonds->initialize_vector(cut);
             for (unsigned int i = 0; i < node_set->n_owned(); ++i)
               volume.local_element(i) = node_set->volume(i);
+          }
+        if (cut.size() == 0)
+          {
+            bonds->initialize_vector(cut);
             cut_fraction(bonds->families(), cut);
           }
         std::array<Vector, 1>    volumes{volume}, cuts{cut};
@@ -339,7 +355,13 @@ namespace PeriDeal
           {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
           {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},
           {"surface correction",
-           p.surface_correction == SurfaceCorrection::none ? "none" : "crack scaling"},
+           p.surface_correction == SurfaceCorrection::none ?
+             "none" :
+           p.surface_correction == SurfaceCorrection::crack_scaling ?
+             "crack scaling" :
+           p.correction_direction == CorrectionDirection::both ?
+             "energy, each direction" :
+             std::string("energy, direction ") + "xyz"[static_cast<int>(p.correction_direction)]},
           {"operator form", bonds->form_note()}};
         return list;
       }
@@ -369,7 +391,8 @@ namespace PeriDeal
       DoFHandler<dim>                    handler;
       std::unique_ptr<Nodes<dim>>        node_set;
       std::unique_ptr<BondOperator<dim>> bonds;
-      mutable Vector                     volume, cut; // for output; they do not change
+      mutable Vector                     volume,
+        cut; // for output; empty until needed, and when the cracks have changed
     };
   } // namespace
 

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <perideal/scene/crack_tips.h>
+
 #include <nlohmann/json.hpp>
 
 #include <string>
@@ -10,6 +12,27 @@
 
 namespace PeriDeal
 {
+  /** The corners of each piece of the cracks. */
+  template <int dim>
+  nlohmann::ordered_json corners_of(const std::vector<CrackPiece<dim>> &pieces)
+  {
+    auto list = nlohmann::ordered_json::array();
+    for (const CrackPiece<dim> &piece : pieces)
+      {
+        auto corners = nlohmann::ordered_json::array();
+        for (const auto &corner : piece.corners)
+          {
+            auto coordinates = nlohmann::ordered_json::array();
+            for (unsigned int d = 0; d < dim; ++d)
+              coordinates.push_back(corner[d]);
+            corners.push_back(coordinates);
+          }
+        list.push_back(corners);
+      }
+    return list;
+  }
+
+
   /** What has been collected for summary.json and totals.csv so far. */
   struct ResultRecord
   {

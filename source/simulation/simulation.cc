@@ -260,11 +260,25 @@ namespace PeriDeal
                                                     0.,
                                                     scene.solver.tolerance,
                                                     scene.solver.max_iterations);
-          else if (t > now)
-            model->stepper->advance(model->solution, now, t);
+          else
+            advance_through_events(*model, t);
         });
       }
     now = t;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::advance_through_events(ModelRun<dim> &model, const double t)
+  {
+    for (double from = now; from < t;)
+      {
+        if (model.update(from))
+          model.stepper->restart();
+        const double to = std::min(t, model.op().next_event(from));
+        model.stepper->advance(model.solution, from, to);
+        from = to;
+      }
   }
 
 
@@ -397,6 +411,8 @@ namespace PeriDeal
           files[models[m]->name()] = name;
       }
     record->fields.push_back({{"time", t}, {"files", files}});
+    if (scene.cracks.change())
+      record->fields.back()["cracks"] = corners_of(scene.cracks.pieces(t));
   }
 
 
@@ -416,9 +432,15 @@ namespace PeriDeal
       row(names.flow + " through " + side, value);
     row(names.flow + " from sources", balance.sources);
     row("rate of storage", balance.stored);
+    row("throughput", balance.throughput());
+    row("imbalance", balance.imbalance());
+    for (std::size_t crack = 0; crack < balance.cracks.size(); ++crack)
+      row(names.flow + " through crack " + std::to_string(crack + 1), balance.cracks[crack]);
     record->balances[model.name()] = {
       {"boundary flux", balance.sides},
       {"heat balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}}};
+    if (!balance.cracks.empty())
+      record->balances[model.name()]["crack flux"] = balance.cracks;
   }
 
 

@@ -46,6 +46,11 @@ namespace PeriDeal
         return fixed ? 15. * static_cast<double>(n_equal_steps(time_span, dt)) : 0.;
       }
 
+      void restart() override
+      {
+        solver.operator_changed();
+      }
+
       void advance(Vector &u, const double t_start, const double t_end) override
       {
         double                   t = t_start;
@@ -203,6 +208,7 @@ namespace PeriDeal
 
       void restart() override
       {
+        ImplicitStepper::restart();
         n_known = 0;
       }
 

@@ -55,8 +55,38 @@ namespace PeriDeal
     : op(op)
     , tolerance(tolerance)
     , max_iterations(max_iterations)
-    , preconditioner(op)
+    , preconditioner(std::make_unique<MultigridPreconditioner>(op))
   {}
+
+
+  void LinearSolver::operator_changed()
+  {
+    outdated = true;
+  }
+
+
+  void LinearSolver::prepare(const double a, const double b)
+  {
+    // An outdated preconditioner makes iterations slower, never wrong: making one costs as much as dozens of iterations.
+    const bool worn = outdated &&
+                      n_last_iterations > n_first_iterations + 3 + n_first_iterations / 3;
+    if (worn)
+      {
+        preconditioner = std::make_unique<MultigridPreconditioner>(op);
+        outdated       = false;
+      }
+    const bool   one_only = a == 0. || b == 0.; // C or K alone: built for the same one or not
+    const double ratio =
+      one_only ?
+        ((built_capacity == 0.) == (a == 0.) && (built_stiffness == 0.) == (b == 0.) ? 1. : 0.) :
+        (b / a) / (built_stiffness / built_capacity);
+    if (!worn && ratio > 1. / 3. && ratio < 3. && built_stiffness >= 0.)
+      return;
+    preconditioner->initialize(a, b);
+    built_capacity     = a;
+    built_stiffness    = b;
+    n_first_iterations = 0;
+  }
 
 
   unsigned int LinearSolver::solve(const double a, const double b, Vector &x, const Vector &rhs)
@@ -67,26 +97,16 @@ namespace PeriDeal
         x = 0.;
         return 0;
       }
-    const bool   one_only = a == 0. || b == 0.; // C or K alone: built for the same one or not
-    const double ratio =
-      one_only ?
-        ((built_capacity == 0.) == (a == 0.) && (built_stiffness == 0.) == (b == 0.) ? 1. : 0.) :
-        (b / a) / (built_stiffness / built_capacity);
-    if (!(ratio > 1. / 3. && ratio < 3.) || built_stiffness < 0.)
-      {
-        preconditioner.initialize(a, b);
-        built_capacity  = a;
-        built_stiffness = b;
-      }
+    prepare(a, b);
     SolverControl control(max_iterations, tolerance * size);
     const System  system(op, a, b);
     try
       {
         if (op.symmetric())
-          SolverCG<Vector>(control).solve(system, x, rhs, preconditioner);
+          SolverCG<Vector>(control).solve(system, x, rhs, *preconditioner);
         else
           SolverGMRES<Vector>(control, SolverGMRES<Vector>::AdditionalData(60, true))
-            .solve(system, x, rhs, preconditioner);
+            .solve(system, x, rhs, *preconditioner);
       }
     catch (const SolverControl::NoConvergence &failure)
       {
@@ -98,13 +118,15 @@ namespace PeriDeal
           << " in section 'Solver'. Raise 'Tolerance' or 'Maximum iterations' there, or check for parts of the body that cracks have cut off.";
         AssertThrow(false, UserError(message.str()));
       }
+    n_last_iterations  = control.last_step();
+    n_first_iterations = n_first_iterations == 0 ? n_last_iterations : n_first_iterations;
     return control.last_step();
   }
 
 
   const TrilinosWrappers::SparseMatrix &LinearSolver::surrogate() const
   {
-    return preconditioner.surrogate();
+    return preconditioner->surrogate();
   }
 
 

@@ -24,8 +24,9 @@ namespace PeriDeal
                    const double          share_of_bound)
         : op(op)
         , method(method)
-        , dt(options.time_step > 0. ? options.time_step :
-                                      share_of_bound * stable_step(method, op.spectrum().sharp))
+        , fixed(options.time_step > 0.)
+        , share_of_bound(share_of_bound)
+        , dt(fixed ? options.time_step : share_of_bound * stable_step(method, op.spectrum().sharp))
         , inverse(inverse_capacity(op))
       {}
 
@@ -50,6 +51,14 @@ namespace PeriDeal
         check_finite(u, method, t_end);
       }
 
+      void restart() override
+      {
+        if (fixed)
+          refuse_unstable_step(method, op, dt);
+        else
+          dt = share_of_bound * stable_step(method, op.spectrum().sharp);
+      }
+
       double current_step() const override
       {
         return dt;
@@ -62,7 +71,9 @@ namespace PeriDeal
 
     private:
       const std::string method;
-      const double      dt;
+      const bool        fixed;
+      const double      share_of_bound;
+      double            dt;
 
     protected:
       const std::vector<double> inverse; // of the capacity

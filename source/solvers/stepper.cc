@@ -31,26 +31,25 @@ namespace PeriDeal
                                               {"sdirk2", make_sdirk2, false}};
       return list;
     }
-
-
-    void refuse_unstable_step(const std::string &name, const Operator &op, const double dt)
-    {
-      if (dt <= 0. || stable_step(name, 1.) == std::numeric_limits<double>::infinity())
-        return;
-      const Spectrum spectrum = op.spectrum();
-      const double   sharp    = stable_step(name, spectrum.sharp),
-                   safe       = stable_step(name, spectrum.safe);
-      if (dt <= sharp)
-        return;
-      std::ostringstream message;
-      message
-        << "'Time step' in section 'Time' is " << dt << ", above the stability bound of '" << name
-        << "' for this scene: steps up to " << sharp
-        << " are stable (largest eigenvalue, Lanczos), up to " << safe
-        << " for sure (Gershgorin). Choose a smaller step, 'Time step = auto', or 'Stepper = auto'.";
-      AssertThrow(false, UserError(message.str()));
-    }
   } // namespace
+
+
+  void refuse_unstable_step(const std::string &name, const Operator &op, const double dt)
+  {
+    if (dt <= 0. || stable_step(name, 1.) == std::numeric_limits<double>::infinity())
+      return;
+    const Spectrum spectrum = op.spectrum();
+    const double sharp = stable_step(name, spectrum.sharp), safe = stable_step(name, spectrum.safe);
+    if (dt <= sharp)
+      return;
+    std::ostringstream message;
+    message
+      << "'Time step' in section 'Time' is " << dt << ", above the stability bound of '" << name
+      << "' for this scene: steps up to " << sharp
+      << " are stable (largest eigenvalue, Lanczos), up to " << safe
+      << " for sure (Gershgorin). Choose a smaller step, 'Time step = auto', or 'Stepper = auto'.";
+    AssertThrow(false, UserError(message.str()));
+  }
 
 
   const std::vector<std::string> &stepper_names()

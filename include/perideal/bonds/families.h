@@ -7,6 +7,7 @@
 #include <perideal/laws/lattice_family.h>
 #include <perideal/mesh/nodes.h>
 #include <perideal/scene/crack_geometry.h>
+#include <perideal/scene/crack_history.h>
 #include <perideal/scene/scene.h>
 
 #include <memory>
@@ -73,6 +74,9 @@ namespace PeriDeal
     bool   uniform_conductivity() const;
     double conductivity(const unsigned int node) const;
 
+    /** Surface correction by energy: bonds everywhere may have factors. */
+    bool corrects_every_bond() const;
+
     /** Whether a relative position is that of a lattice member. */
     bool is_offset(const dealii::Tensor<1, dim> &xi, const FamilyMember<dim> &member) const;
 
@@ -85,8 +89,32 @@ namespace PeriDeal
     /** Local number of the real node at a lattice site, or numbers::invalid_unsigned_int. Only without doubled nodes. */
     unsigned int node_at(const typename Lattice<dim>::Index &site) const;
 
-    /** Crack-side scaling (doc/theory.md): factors of owned nodes and ghosts from the given rows; bonds_of() uses their pair means from now on. */
-    void set_node_factors(std::vector<double> factors);
+    /**
+     * Surface correction (doc/theory.md): the factors of nodes, owned and ghosts, one for each direction in turn or a single one for all.
+     * From now on a bond's conductance is multiplied by the mean of its nodes' factors, those of the directions weighted with the squares of
+     * the bond's direction cosines. A fictitious node has the factor of its mirror, or 1. An empty list takes the factors away.
+     */
+    void set_node_factors(std::vector<double> factors,
+                          const unsigned int  n_directions,
+                          const bool          mirrored);
+
+    /**
+     * Make the cracks those of the representative time (CrackHistory), and return the boxes around what has changed: bonds of nodes farther
+     * from all of them than reach() are as before. Node factors stay as they are.
+     */
+    std::vector<dealii::BoundingBox<dim>> set_cracks_of(const double time);
+
+    /** Owned nodes within a distance of some box, in ascending order. */
+    std::vector<unsigned int> nodes_near(const std::vector<dealii::BoundingBox<dim>> &boxes,
+                                         const double distance) const;
+
+    /** Cracks or their transmission change with time: cut bonds have to be kept in mind. */
+    const CrackHistory<dim> &crack_history() const;
+
+    /** The cracks that a bond crosses: +1 if the node lies on the left side, -1 if its neighbour does. @p crossed is overwritten. */
+    void crossed_cracks(const unsigned int                         node,
+                        const unsigned int                         neighbor,
+                        std::vector<std::pair<unsigned int, int>> &crossed) const;
 
     /**
      * What the bonds of a complete family conduct of a linear field, over what the conductivity asks for: the mean over the directions of
@@ -119,6 +147,13 @@ namespace PeriDeal
                                               std::vector<Bond>                    &bonds) const;
     void   bonds_off_lattice(const unsigned int node, std::vector<Bond> &bonds) const;
     double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const;
+    double node_factor(const unsigned int node, const unsigned int direction) const;
+    double bond_factor(const unsigned int node, const unsigned int neighbor) const;
+    template <typename Test>
+    void test_crossings(const unsigned int        node,
+                        const unsigned int        neighbor,
+                        const CrackGeometry<dim> &crack,
+                        const Test               &test) const;
     template <typename Test>
     void   test_images(const unsigned int         node,
                        const FictitiousNode<dim> &fictitious,
@@ -126,17 +161,22 @@ namespace PeriDeal
     double bond_conductivity(const unsigned int node, const unsigned int neighbor) const;
     double off_lattice_weight(const double r) const;
     void   add_self_term(const unsigned int node, std::vector<Bond> &bonds) const;
+    void   sites_in(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &found) const;
     dealii::Point<dim> position(const unsigned int node) const;
 
     Nodes<dim>                      *own_nodes;
     const Material                  &material;
     const Peridynamics              &parameters;
+    const CrackHistory<dim>          history;
+    double                           cracks_of; // the representative time
     std::vector<CrackGeometry<dim>>  cracks;
     double                           transmission, contact_conductance;
     double                           delta, farthest = 0., factor = 1.;
     bool                             on_lattice = false, uniform = true, complete_families = true;
     std::vector<FamilyMember<dim>>   members, nearest, self_additions;
     std::vector<double>              conductivities, factors;
+    unsigned int                     n_factor_directions = 1; // 1: all alike
+    bool                             factors_mirrored    = true;
     std::vector<FictitiousNode<dim>> outside;
     typename Lattice<dim>::Index     corner, extent; // of the table of sites
     std::vector<unsigned int>        node_of_site;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace PeriDeal
 {
@@ -45,6 +46,14 @@ namespace PeriDeal
      * counts half at each.
      */
     virtual double row_sums(double *sums) const = 0;
+
+    /**
+     * The conductances of these owned nodes' bonds have changed (Families::set_cracks_of(), set_node_factors()): take them anew, and write the
+     * rows' sums of W_ij to sums[node]. Costs in proportion to the rows, apart from a copy of the stored corrections.
+     *
+     * @param rows in ascending order
+     */
+    virtual void update_rows(const std::vector<unsigned int> &rows, double *sums) = 0;
 
     /** Bytes held. */
     virtual std::size_t memory_consumption() const = 0;

@@ -45,6 +45,8 @@ namespace PeriDeal
     bool          has_steady_state() const override;
     void          surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
     bool          surrogate_is_exact() const override;
+    double        next_event(const double t) const override;
+    bool          update(const double t) override;
     Balance       balance(const Vector &u, const double t, const bool steady) const override;
     std::string   place_of(const unsigned int local_index) const override;
     OperatorSize  size() const override;
@@ -65,13 +67,17 @@ namespace PeriDeal
       const SideCondition *condition;
     };
 
-    void choose_form(const OperatorForm wanted);
-    void find_capacity();
-    void find_side_loads();
-    void find_diagonal();
-    void scale_crack_sides();
-    void sum_bonds(Vector &y, const Vector &x, const double *outside) const;
-    void add_fictitious_heat(const Vector &u, Balance &balance) const;
+    void                      choose_form(const OperatorForm wanted);
+    void                      find_capacity();
+    void                      find_side_loads();
+    void                      find_diagonal();
+    std::vector<unsigned int> rows_to_correct() const;
+    void                      correct_surface(const std::vector<unsigned int> &rows);
+    double                    row_bound(const unsigned int node) const;
+    void                      count_bonds(const double n_own) const;
+    void                      add_crack_heat(const Vector &u, Balance &balance) const;
+    void                      sum_bonds(Vector &y, const Vector &x, const double *outside) const;
+    void                      add_fictitious_heat(const Vector &u, Balance &balance) const;
     void add_side_heat(const Vector &u, const double t, Balance &balance) const;
     void add_convection(Vector            &y,
                         const Vector      &x,
@@ -81,20 +87,23 @@ namespace PeriDeal
     void add_loads(Vector &r, const double t) const;
     void add_loads_now(Vector &r, const double t) const;
 
-    const Scene<dim>                            &scene;
-    Families<dim>                                bonds;
-    NodeConstraints<dim>                         constraints;
-    std::unique_ptr<BondForm>                    form;
-    std::string                                  note;
-    Vector                                       capacity, bond_diagonal, constant_loads;
-    std::vector<SideLoad>                        fluxes, convections;
+    const Scene<dim>                     &scene;
+    Families<dim>                         bonds;
+    std::unique_ptr<NodeConstraints<dim>> constraints;
+    double                                cracks_of; // representative time of the cracks in K
+    std::unique_ptr<BondForm>             form;
+    std::string                           note;
+    Vector                                capacity, bond_diagonal, constant_loads;
+    std::vector<SideLoad>                 fluxes, convections;
     std::vector<std::pair<unsigned int, double>> convection_diagonal; // in the order of nodes
     std::vector<unsigned int>                    held; // owned nodes that are not free, in order
     bool                                         loads_vary = false;
-    unsigned long long                           n_bonds = 0, n_nonzeros = 0;
-    double                                       gershgorin = 0.;
-    mutable Spectrum                             bounds;
-    mutable std::vector<double>                  outside_values, outside_signs_only;
-    mutable Vector                               scratch;
+    std::vector<Vector>         node_factors; // of the surface correction, one for each direction
+    mutable bool                recount_bonds = false;
+    mutable unsigned long long  n_bonds = 0, n_nonzeros = 0;
+    double                      gershgorin = 0.;
+    mutable Spectrum            bounds;
+    mutable std::vector<double> outside_values, outside_signs_only;
+    mutable Vector              scratch;
   };
 } // namespace PeriDeal

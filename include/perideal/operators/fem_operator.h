@@ -49,6 +49,8 @@ namespace PeriDeal
     bool          has_steady_state() const override;
     void          surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
     bool          surrogate_is_exact() const override;
+    double        next_event(const double t) const override;
+    bool          update(const double t) override;
     Balance       balance(const Vector &u, const double t, const bool steady) const override;
     std::string   place_of(const unsigned int local_index) const override;
     OperatorSize  size() const override;
@@ -67,24 +69,34 @@ namespace PeriDeal
     };
 
     struct CellData;
+    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
-    void find_prescribed();
-    void find_cut_cells();
-    void check_material() const;
-    void assemble();
-    void assemble_cell(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-                       CellData                                                     &data) const;
-    void keep_unseparated_pairs(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-                                CellData &data) const;
-    void assemble_loads(Vector &loads, const double t) const;
-    void add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
-    void find_crack_factors(CellData &data);
-    void find_gershgorin();
-    void mask(Vector &y, const double value = 0.) const;
+    void   find_prescribed();
+    void   find_cut_cells();
+    bool   is_cut(const Cell &cell) const;
+    double kept_fraction(const Cell                                &cell,
+                         const unsigned int                         a,
+                         const unsigned int                         b,
+                         std::vector<std::pair<unsigned int, int>> *crossed) const;
+    void   scale_beside_cracks(CellData &data) const;
+    void   update_rows(const Vector &touched);
+    void   add_crack_heat(const Vector &u, Balance &balance) const;
+    void   check_material() const;
+    void   assemble();
+    void   assemble_cell(const Cell &cell, CellData &data) const;
+    void   keep_unseparated_pairs(const Cell &cell, CellData &data) const;
+    void   assemble_loads(Vector &loads, const double t) const;
+    void   add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
+    void   find_crack_factors(CellData &data);
+    void   find_gershgorin();
+    void   mask(Vector &y, const double value = 0.) const;
 
     const dealii::DoFHandler<dim>         &dofs;
     const Scene<dim>                      &scene;
+    const CrackHistory<dim>                history;
+    double                                 cracks_of; // representative time of the cracks in K
     std::vector<CrackGeometry<dim>>        cracks;
+    double                                 transmission;
     dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
     Vector                                 capacity, stiffness_diagonal, constant_loads;
     mutable Vector                         scratch;

@@ -6,8 +6,10 @@
 #include <perideal/base/types.h>
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace dealii::TrilinosWrappers
 {
@@ -27,10 +29,12 @@ namespace PeriDeal
   /** Heat flows at one instant, all positive into the body. */
   struct Balance
   {
-    std::map<std::string, double> sides;        // by the side's name
-    double                        sources = 0.; // volume sources
-    double                        stored  = 0.; // rate of change of the heat in the free unknowns
-    double                        content = 0.; // sum C_i T_i
+    std::map<std::string, double> sides; // by the side's name
+    std::vector<double>
+           cracks;       // from the right side of each crack to its left; not part of the balance
+    double sources = 0.; // volume sources
+    double stored  = 0.; // rate of change of the heat in the free unknowns
+    double content = 0.; // sum C_i T_i
 
     /** Sum of everything that enters. */
     double throughput() const;
@@ -138,6 +142,21 @@ namespace PeriDeal
 
     /** The surrogate is K itself, so that multigrid on it needs no further smoothing. Not collective. */
     virtual bool surrogate_is_exact() const = 0;
+
+    /** First time after t at which K changes by itself, infinity if it never does: cracks that grow or close. Not collective. */
+    virtual double next_event(const double) const
+    {
+      return std::numeric_limits<double>::infinity();
+    }
+
+    /**
+     * Make K that of the span of time between events that holds t (an event belongs to the span that begins with it). Returns whether K has
+     * changed; then steppers have to be restarted. Heat stays where it is: only conductances change.
+     */
+    virtual bool update(const double)
+    {
+      return false;
+    }
 
     /** Heat through each side and in the body; u must have been through distribute(u, t). @p steady leaves out storage. */
     virtual Balance balance(const Vector &u, const double t, const bool steady) const = 0;

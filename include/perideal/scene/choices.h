@@ -61,7 +61,16 @@ namespace PeriDeal
   enum class SurfaceCorrection
   {
     none,
-    crack_scaling
+    crack_scaling,
+    energy
+  };
+
+  enum class CorrectionDirection
+  {
+    x,
+    y,
+    z,
+    both
   };
 
   enum class OperatorForm

@@ -5,12 +5,14 @@
 
 #include <deal.II/base/point.h>
 
+#include <perideal/scene/crack_tips.h>
+
 #include <vector>
 
 namespace PeriDeal
 {
   /**
-   * One static crack: a segment in 2D, a planar polygon in 3D. Pure geometry.
+   * One straight piece of a crack: a segment in 2D, a planar polygon in 3D. Pure geometry.
    *
    * The normal points to the crack's *left* side: in 2D the direction from start to end turned by +90 degrees, in 3D the polygon's
    * right-hand normal. A point exactly on the crack (within 1e-10 of the crack's size) belongs to that side, so that
@@ -34,7 +36,7 @@ namespace PeriDeal
     /** Whether the point lies on the crack itself (not only on its line or plane). */
     bool contains(const dealii::Point<dim> &p) const;
 
-    /** Whether the ball of the given radius about p meets the crack's bounding box: a quick test to skip far nodes. */
+    /** Whether the ball of the given radius about p meets the crack's bounding box and its line or plane: a quick test to skip far nodes. */
     bool is_near(const dealii::Point<dim> &p, const double radius) const;
 
     const dealii::Tensor<1, dim> &normal() const;
@@ -50,6 +52,8 @@ namespace PeriDeal
      */
     void close_joints(const CrackGeometry &other);
 
+    unsigned int crack = 0; // that this is a piece of
+
   private:
     bool plane_point_inside(const dealii::Point<dim> &p) const;
 
@@ -57,11 +61,11 @@ namespace PeriDeal
     dealii::Point<dim>              lowest, highest;
     dealii::Tensor<1, dim>          unit_normal, first_axis, second_axis;
     double                          size = 0., tolerance = 0., content = 0.;
-    std::vector<double>             margins; // of each end (2D) or edge (3D), beyond which points are off the crack
+    std::vector<double>
+      margins; // of each end (2D) or edge (3D), beyond which points are off the crack
   };
 
-  /** The cracks of a scene, given by their corners, with closed joints. */
+  /** The pieces of the cracks of a scene in the given order, with closed joints. */
   template <int dim>
-  std::vector<CrackGeometry<dim>> make_crack_geometries(
-    const std::vector<std::vector<dealii::Point<dim>>> &cracks);
+  std::vector<CrackGeometry<dim>> make_crack_geometries(const std::vector<CrackPiece<dim>> &pieces);
 } // namespace PeriDeal

@@ -5,6 +5,8 @@
 
 #include <deal.II/base/point.h>
 
+#include <perideal/scene/crack_tips.h>
+#include <perideal/scene/expression.h>
 #include <perideal/scene/section.h>
 
 #include <string>
@@ -22,7 +24,7 @@ namespace PeriDeal
 
   /**
    * Section `Cracks`: segments in 2D (two points each), planar polygons in 3D (three or more
-   * corners each).
+   * corners each), and how their ends and corners move.
    */
   template <int dim>
   class Cracks : public SceneSection
@@ -30,23 +32,56 @@ namespace PeriDeal
   public:
     Cracks();
 
-    std::vector<std::vector<dealii::Point<dim>>> cracks;
-    CrackMesh                                    mesh                = CrackMesh::pairs;
-    double                                       transmission        = 0.;
-    double                                       contact_conductance = -1.; // negative: not given
+    std::vector<std::vector<dealii::Point<dim>>>
+                               cracks; // before they grow; a segment that grows may have no length
+    std::vector<CrackTip<dim>> tips;   // that move
+    CrackMesh                  mesh = CrackMesh::pairs;
+    Expression                 transmission;              // of t alone
+    double                     contact_conductance = -1.; // negative: not given
+    double                     growth_step         = -1.; // length; negative: not given
+    double end_time = 0.; // of the run; from section `Time` by Scene::parse_and_validate()
 
     /**
      * Throws UserError: wrong points, no length or area, not planar, cracks of another dimension,
-     * contradicting entries.
+     * contradicting entries, tips twice or not there, polygons that do not grow in their plane.
      */
     void parse();
+
+    /** Cracks or their transmission change with time. */
+    bool change() const;
+
+    /** Some heat may pass through a crack at some time. */
+    bool conduct() const;
+
+    /** The pieces of all cracks at time t, the whole way of each tip included. */
+    std::vector<CrackPiece<dim>> pieces(const double t) const;
 
     /** Throws UserError naming the first crack that lies completely outside a box. */
     void check_inside(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper) const;
 
+    /** Throws UserError naming the first tip that leaves a box before the end of the run. */
+    void check_tips_inside(const dealii::Point<dim> &lower,
+                           const dealii::Point<dim> &upper,
+                           const double              end_time) const;
+
+    /** Throws UserError naming the entry that makes this tip move. */
+    [[noreturn]] void tip_error(const CrackTip<dim> &tip, const std::string &what) const;
+
   private:
+    void declare_growth();
+
     void parse_segments();
 
     void parse_polygons();
+
+    void parse_conductance();
+
+    void parse_growth();
+
+    void parse_paths();
+
+    CrackTip<dim> tip_of(const std::string &number, const std::string &entry) const;
+
+    void check_tips() const;
   };
 } // namespace PeriDeal

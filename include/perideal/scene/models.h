@@ -16,18 +16,19 @@ namespace PeriDeal
   public:
     Peridynamics();
 
-    double            horizon_ratio      = 3.;  // m, used when horizon is not given
-    double            horizon            = -1.; // length; negative: not given
-    KernelShape       kernel             = KernelShape::conical;
-    unsigned int      kernel_exponent    = 2;
-    VolumeFraction    volume_fraction    = VolumeFraction::linear;
-    Calibration       calibration        = Calibration::discrete;
-    SelfTerm          self_term          = SelfTerm::none;
-    NodalVolume       nodal_volume       = NodalVolume::partial;
-    BoundaryTreatment treatment          = BoundaryTreatment::none;
-    unsigned int      layer_rows         = 1;
-    FluxTreatment     flux_treatment     = FluxTreatment::natural;
-    SurfaceCorrection surface_correction = SurfaceCorrection::none;
+    double              horizon_ratio        = 3.;  // m, used when horizon is not given
+    double              horizon              = -1.; // length; negative: not given
+    KernelShape         kernel               = KernelShape::conical;
+    unsigned int        kernel_exponent      = 2;
+    VolumeFraction      volume_fraction      = VolumeFraction::linear;
+    Calibration         calibration          = Calibration::discrete;
+    SelfTerm            self_term            = SelfTerm::none;
+    NodalVolume         nodal_volume         = NodalVolume::partial;
+    BoundaryTreatment   treatment            = BoundaryTreatment::none;
+    unsigned int        layer_rows           = 1;
+    FluxTreatment       flux_treatment       = FluxTreatment::natural;
+    SurfaceCorrection   surface_correction   = SurfaceCorrection::none;
+    CorrectionDirection correction_direction = CorrectionDirection::both;
     OperatorForm form = OperatorForm::automatic; // entry `Operator form` = auto | lattice | stored
 
     /** Throws UserError for values out of range and contradicting entries. */

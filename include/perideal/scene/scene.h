@@ -5,7 +5,7 @@
 
 #include <perideal/scene/boundary_conditions.h>
 #include <perideal/scene/control.h>
-#include <perideal/scene/cracks.h>
+#include <perideal/scene/crack_history.h>
 #include <perideal/scene/domain.h>
 #include <perideal/scene/material.h>
 #include <perideal/scene/models.h>
@@ -78,6 +78,12 @@ namespace PeriDeal
      * lattice.
      */
     double horizon() const;
+
+    /**
+     * When the cracks change, and how they are in between. Throws UserError, among others where a mesh file needs `Growth step`.
+     * The scene must outlive it.
+     */
+    CrackHistory<dim> crack_history() const;
 
     /** All sections in the order of a scene file. */
     std::vector<SceneSection *> sections();

@@ -41,6 +41,9 @@ namespace PeriDeal
 
     virtual const Operator &op() const = 0;
 
+    /** As Operator::update(). */
+    virtual bool update(const double t) = 0;
+
     /** Initial value on the unknowns. */
     virtual void set_initial_value(Vector &u) const = 0;
 

@@ -48,6 +48,7 @@ namespace PeriDeal
     void                make_writers();
     void                make_reference();
     void                advance_to(const double t);
+    void                advance_through_events(ModelRun<dim> &model, const double t);
     void                write_output(const double t);
     void                add_points(const double t);
     void                add_totals(const double t, ModelRun<dim> &model);

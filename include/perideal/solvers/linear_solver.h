@@ -6,11 +6,14 @@
 #include <perideal/operators/operator.h>
 #include <perideal/solvers/preconditioner.h>
 
+#include <memory>
+
 namespace PeriDeal
 {
   /**
    * Solves (a C + b K) x = rhs on the free unknowns: CG if K is symmetric, else restarted GMRES, with the multigrid preconditioner. The preconditioner
-   * is kept while b/a stays within a factor of three of what it was made for.
+   * is kept while b/a stays within a factor of three of what it was made for and, when K has changed, while it needs hardly more
+   * iterations than before.
    */
   class LinearSolver
   {
@@ -26,15 +29,22 @@ namespace PeriDeal
                        Vector       &x,
                        const Vector &rhs);
 
+    /** K is no longer what the preconditioner was made for. Not collective. */
+    void operator_changed();
+
     /** The operator's surrogate matrix, from which the preconditioner is made. */
     const dealii::TrilinosWrappers::SparseMatrix &surrogate() const;
 
   private:
-    const Operator         &op;
-    const double            tolerance;
-    const unsigned int      max_iterations;
-    MultigridPreconditioner preconditioner;
-    double                  built_capacity = -1., built_stiffness = -1.;
+    void prepare(const double capacity_factor, const double stiffness_factor);
+
+    const Operator                          &op;
+    const double                             tolerance;
+    const unsigned int                       max_iterations;
+    std::unique_ptr<MultigridPreconditioner> preconditioner;
+    double                                   built_capacity = -1., built_stiffness = -1.;
+    bool                                     outdated           = false;
+    unsigned int                             n_first_iterations = 0, n_last_iterations = 0;
   };
 
 

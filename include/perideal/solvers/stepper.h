@@ -89,6 +89,9 @@ namespace PeriDeal
   /** Largest stable step of an explicit method (`euler` 2/lambda, `rk4` 2.785/lambda); infinite for all others. */
   double stable_step(const std::string &name, const double largest_eigenvalue);
 
+  /** Throws UserError, with both bounds in the message, for a step of an explicit method above the stability bound. Collective. */
+  void refuse_unstable_step(const std::string &name, const Operator &op, const double dt);
+
   // One maker per family of methods, each in its own file.
   std::unique_ptr<Stepper> make_euler(const Operator &op, const StepperOptions &options);
   std::unique_ptr<Stepper> make_rk4(const Operator &op, const StepperOptions &options);

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <perideal/operators/fem_operator.h>
+
+namespace PeriDeal
+{
+  /** Scratch memory of the cell loops. */
+  template <int dim>
+  struct FEMOperator<dim>::CellData
+  {
+    explicit CellData(const dealii::FiniteElement<dim> &fe)
+      : values(fe,
+               dealii::QGauss<dim>(fe.degree + 1),
+               dealii::update_values | dealii::update_gradients | dealii::update_quadrature_points |
+                 dealii::update_JxW_values)
+      , face_values(fe,
+                    dealii::QGauss<dim - 1>(fe.degree + 1),
+                    dealii::update_values | dealii::update_quadrature_points |
+                      dealii::update_JxW_values)
+      , stiffness(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
+      , mass(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
+      , convection(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
+      , indices(fe.n_dofs_per_cell())
+    {}
+
+    dealii::FEValues<dim>                        values;
+    dealii::FEFaceValues<dim>                    face_values;
+    dealii::FullMatrix<double>                   stiffness, mass, convection;
+    std::vector<dealii::types::global_dof_index> indices;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Cut cells that change with time.
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/matrix_rows.h>
+#include <perideal/base/user_error.h>
+#include <perideal/operators/fem_operator.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fem_cell_data.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  double FEMOperator<dim>::next_event(const double t) const
+  {
+    return history.next_event(t);
+  }
+
+
+  template <int dim>
+  bool FEMOperator<dim>::update(const double t)
+  {
+    const double time = history.representative(t);
+    if (time == cracks_of || !history.changes_ever())
+      return false;
+    const auto boxes = history.changes(cracks_of, time);
+    cracks_of        = time;
+    if (boxes.empty())
+      return false;
+    CellData                       &data   = *cell_data;
+    const bool                      scaled = crack_factors.size() > 0;
+    std::vector<Cell>               near;
+    std::vector<FullMatrix<double>> old;
+    for (const auto &cell : dofs.active_cell_iterators())
+      {
+        // The factors of crack-side scaling change as far as the neighbours of cut cells.
+        const double reach = (scaled ? 3. : 1.) * cell->diameter();
+        if (cell->is_artificial() || std::none_of(boxes.begin(), boxes.end(), [&](auto box) {
+              box.extend(reach);
+              return box.point_inside(cell->center());
+            }))
+          continue;
+        near.push_back(cell);
+        old.emplace_back();
+        if (!cell->is_locally_owned())
+          continue;
+        assemble_cell(cell, data);
+        scale_beside_cracks(data);
+        old.back() = data.stiffness;
+      }
+    cracks       = make_crack_geometries(history.pieces(time));
+    transmission = history.transmission(time);
+    for (const Cell &cell : near)
+      cut[cell->active_cell_index()] = is_cut(cell);
+    if (scaled)
+      find_crack_factors(data);
+    Vector touched;
+    initialize_vector(touched);
+    for (std::size_t k = 0; k < near.size(); ++k)
+      if (near[k]->is_locally_owned())
+        {
+          assemble_cell(near[k], data);
+          scale_beside_cracks(data);
+          data.stiffness.add(-1., old[k]);
+          if (data.stiffness.linfty_norm() == 0.)
+            continue;
+          stiffness.add(data.indices, data.stiffness);
+          for (const auto i : data.indices)
+            touched(i) = 1.;
+        }
+    stiffness.compress(VectorOperation::add);
+    touched.compress(VectorOperation::max);
+    update_rows(touched);
+    return true;
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::update_rows(const Vector &touched)
+  {
+    const auto &partitioner = *stiffness_diagonal.get_partitioner();
+    std::string message;
+    double      bound = 0.;
+    for (unsigned int i = 0; i < touched.locally_owned_size(); ++i)
+      if (touched.local_element(i) > 0.)
+        {
+          double sum = 0.;
+          for_each_entry_of_row(stiffness, i, [&](const auto column, const double value) {
+            sum += std::abs(value);
+            if (column == partitioner.local_to_global(i))
+              stiffness_diagonal.local_element(i) = value;
+          });
+          bound = std::max(bound, sum / capacity.local_element(i));
+          if (!(stiffness_diagonal.local_element(i) > 0.) && message.empty())
+            message =
+              "'Mesh' in section 'Cracks': the growing cracks leave the finite element node at " +
+              place_of(i) + " without any conducting cell. Use 'pairs' or a finer mesh.";
+        }
+    throw_on_all_if_any(dofs.get_communicator(), message);
+    if (crack_factors.size() > 0 || history.may_close())
+      {
+        // Rates can have grown. Where cells are only cut, the old bounds still hold.
+        gershgorin = std::max(gershgorin, Utilities::MPI::max(bound, dofs.get_communicator()));
+        bounds     = Spectrum();
+      }
+    mask(stiffness_diagonal, 1.);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::add_crack_heat(const Vector &u, Balance &balance) const
+  {
+    balance.cracks.assign(scene.cracks.cracks.size(), 0.);
+    if (!scene.cracks.conduct())
+      return;
+    CellData                                 &data = *cell_data;
+    std::vector<std::pair<unsigned int, int>> crossed;
+    u.update_ghost_values();
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && cut[cell->active_cell_index()])
+        {
+          assemble_cell(cell, data);
+          scale_beside_cracks(data);
+          for (const unsigned int a : cell->vertex_indices())
+            for (unsigned int b = 0; b < a; ++b)
+              {
+                crossed.clear();
+                kept_fraction(cell, a, b, &crossed);
+                for (const auto &[crack, side] : crossed)
+                  balance.cracks[crack] +=
+                    side * -data.stiffness(a, b) * (u(data.indices[b]) - u(data.indices[a]));
+              }
+        }
+    u.set_ghost_state(false);
+    for (double &heat : balance.cracks)
+      heat = Utilities::MPI::sum(heat, dofs.get_communicator());
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                   \
+  template double FEMOperator<dim>::next_event(const double) const; \
+  template bool   FEMOperator<dim>::update(const double);           \
+  template void   FEMOperator<dim>::add_crack_heat(const Vector &, Balance &) const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

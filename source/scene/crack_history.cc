@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/crack_history.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Of the end time: events closer than this are one. */
+    constexpr double same_time = 1e-12;
+
+    constexpr std::size_t most_events = 1000000;
+
+    /** Largest change of the transmission between two events. */
+    constexpr double transmission_step = 0.02;
+  } // namespace
+
+
+  template <int dim>
+  CrackHistory<dim>::CrackHistory(const Cracks<dim> &cracks,
+                                  const double       step,
+                                  const double       end_time,
+                                  const double       time_step)
+    : cracks(&cracks)
+    , end(end_time)
+  {
+    if (!cracks.change())
+      return;
+    add_growth_events(step, end_time, time_step);
+    if (cracks.transmission.depends_on_time())
+      add_transmission_events(end_time);
+    std::sort(times.begin(), times.end());
+    std::vector<double> apart;
+    for (const double t : times)
+      if (t > same_time * end && t < (1. - same_time) * end &&
+          (apart.empty() || t - apart.back() > same_time * end))
+        apart.push_back(t);
+    times = apart;
+  }
+
+
+  template <int dim>
+  void CrackHistory<dim>::add_growth_events(const double step,
+                                            const double end_time,
+                                            const double time_step)
+  {
+    std::vector<double> turns{0., end_time}; // when a tip starts, turns or stops
+    for (const CrackTip<dim> &tip : cracks->tips)
+      for (const auto &[time, point] : tip.path)
+        if (time < end_time)
+          turns.push_back(time);
+    std::sort(turns.begin(), turns.end());
+    for (std::size_t k = 0; k + 1 < turns.size(); ++k)
+      {
+        const double         from = turns[k], span = turns[k + 1] - from;
+        double               fastest = 0.;
+        const CrackTip<dim> *leader  = nullptr;
+        for (const CrackTip<dim> &tip : cracks->tips)
+          if (tip.speed(from) > fastest)
+            {
+              fastest = tip.speed(from);
+              leader  = &tip;
+            }
+        if (span <= same_time * end_time)
+          continue;
+        times.push_back(from);
+        if (leader == nullptr)
+          continue;
+        double n = std::max(1., std::ceil(span * fastest / step * (1. - 1e-10)));
+        if (time_step > 0.)
+          {
+            if (fastest * time_step > 4. * step * (1. + 1e-10))
+              cracks->tip_error(
+                *leader,
+                "advances by " + number_text(fastest * time_step) +
+                  " in one 'Time step' of section 'Time', farther than four growth steps of " +
+                  number_text(step) +
+                  ". Choose a smaller 'Time step', or a larger 'Growth step' in section 'Cracks'.");
+            n = span /
+                (time_step * std::max(1., std::floor(step / (fastest * time_step) * (1. + 1e-10))));
+          }
+        if (!(n < most_events))
+          cracks->tip_error(*leader,
+                            "needs " + number_text(n) + " events with 'Growth step' = " +
+                              number_text(step) + "; choose a larger one.");
+        advance = std::max(advance, fastest * span / n);
+        for (unsigned int j = 1; j < n * (1. - 1e-10); ++j)
+          times.push_back(from + span * (j / n));
+      }
+  }
+
+
+  template <int dim>
+  void CrackHistory<dim>::refine_transmission(const double a, const double b, const double end_time)
+  {
+    const double middle = 0.5 * (a + b);
+    const double change = std::max(std::abs(transmission(a) - transmission(middle)),
+                                   std::abs(transmission(b) - transmission(middle)));
+    if (change > 0.)
+      times.push_back(b); // what is constant needs no event but its end
+    if (change <= 0.5 * transmission_step || b - a < 1e-7 * end_time)
+      return;
+    refine_transmission(a, middle, end_time);
+    refine_transmission(middle, b, end_time);
+  }
+
+
+  template <int dim>
+  void CrackHistory<dim>::add_transmission_events(const double end_time)
+  {
+    constexpr unsigned int n_samples = 128;
+    for (unsigned int k = 0; k < n_samples; ++k)
+      {
+        const double a = end_time * k / n_samples, b = end_time * (k + 1) / n_samples;
+        const double found = transmission(b);
+        if (found < 0. || found > 1.)
+          entry_error(cracks->where("Transmission"),
+                      "'" + cracks->transmission.text() + "' is " + number_text(found) +
+                        " at t = " + number_text(b) + ", needs a number from 0 to 1.");
+        const std::size_t n_before = times.size();
+        refine_transmission(a, b, end_time);
+        if (times.size() > n_before)
+          times.push_back(a);
+      }
+  }
+
+
+  template <int dim>
+  double CrackHistory<dim>::next_event(const double t) const
+  {
+    const auto next = std::upper_bound(times.begin(), times.end(), t + same_time * end);
+    return next == times.end() ? std::numeric_limits<double>::infinity() : *next;
+  }
+
+
+  template <int dim>
+  double CrackHistory<dim>::representative(const double t) const
+  {
+    if (times.empty())
+      return cracks->change() ? 0.5 * end : t;
+    const auto   next  = std::upper_bound(times.begin(), times.end(), t + same_time * end);
+    const double until = next == times.end() ? end : *next,
+                 from  = next == times.begin() ? 0. : *(next - 1);
+    return 0.5 * (from + until);
+  }
+
+
+  template <int dim>
+  std::vector<CrackPiece<dim>> CrackHistory<dim>::pieces(const double t) const
+  {
+    return cracks->pieces(t);
+  }
+
+
+  template <int dim>
+  double CrackHistory<dim>::transmission(const double t) const
+  {
+    return cracks->transmission.value(Point<dim>(), t);
+  }
+
+
+  template <int dim>
+  std::vector<BoundingBox<dim>> CrackHistory<dim>::changes(const double t_1, const double t_2) const
+  {
+    std::vector<BoundingBox<dim>> boxes;
+    const auto                    around = [](const std::vector<Point<dim>> &points) {
+      std::pair<Point<dim>, Point<dim>> corners(points[0], points[0]);
+      for (const Point<dim> &p : points)
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            corners.first[d]  = std::min(corners.first[d], p[d]);
+            corners.second[d] = std::max(corners.second[d], p[d]);
+          }
+      return BoundingBox<dim>(corners);
+    };
+    if (transmission(t_1) != transmission(t_2))
+      for (const CrackPiece<dim> &piece : pieces(t_2))
+        boxes.push_back(around(piece.corners));
+    for (const CrackTip<dim> &tip : cracks->tips)
+      {
+        std::vector<Point<dim>> way{tip.at(t_1)};
+        for (const auto &[time, point] : tip.path)
+          if (time > t_1 && time < t_2)
+            way.push_back(point);
+        way.push_back(tip.at(t_2));
+        if (std::all_of(way.begin(), way.end(), [&](const auto &p) { return p == way[0]; }))
+          continue;
+        if (dim == 3) // the polygon between the corner and its neighbours
+          for (const double t : {t_1, t_2})
+            {
+              const auto corners = pieces(t)[tip.crack].corners;
+              for (const std::size_t step : {std::size_t(1), corners.size() - 1})
+                way.push_back(corners[(tip.corner + step) % corners.size()]);
+            }
+        boxes.push_back(around(way));
+      }
+    return boxes;
+  }
+
+
+  template <int dim>
+  bool CrackHistory<dim>::changes_ever() const
+  {
+    return cracks->change();
+  }
+
+
+  template <int dim>
+  bool CrackHistory<dim>::may_close() const
+  {
+    return !cracks->cracks.empty() && cracks->transmission.depends_on_time();
+  }
+
+
+  template <int dim>
+  const std::vector<double> &CrackHistory<dim>::events() const
+  {
+    return times;
+  }
+
+
+  template <int dim>
+  double CrackHistory<dim>::longest_advance() const
+  {
+    return advance;
+  }
+
+
+  template class CrackHistory<1>;
+  template class CrackHistory<2>;
+  template class CrackHistory<3>;
+} // namespace PeriDeal
