@@ -16,8 +16,8 @@ namespace PeriDeal
     /** Fraction of a crack's size within which a point counts as lying on it. */
     constexpr double on_crack = 1e-10;
 
-    /** Fraction of a crack's size by which its edge is extended: far more than on_crack, so that bonds through the very tip are cut
-     * whichever way they lean and on whichever side of the nodes the crack runs. */
+    /** Fraction of a crack's size: closer to an end counts as being at it. Far more than on_crack, so that bonds through the very tip are
+     * treated alike whichever way they lean and on whichever side of the nodes the crack runs. */
     constexpr double edge = 1e-7;
 
     /** Newell's vector: twice the area of a planar polygon times its right-hand normal. */
@@ -50,7 +50,7 @@ namespace PeriDeal
     tolerance = std::max(on_crack * size,
                          16. * std::numeric_limits<double>::epsilon() *
                            std::max(lowest.norm(), highest.norm()));
-    margins.assign(corners.size(), edge * size);
+    closed.assign(corners.size(), false);
     first_axis = corners[1] - corners[0];
     first_axis /= first_axis.norm();
     if constexpr (dim == 2)
@@ -77,19 +77,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool CrackGeometry<dim>::plane_point_inside(const Point<dim> &p) const
+  bool CrackGeometry<dim>::plane_point_inside(const Point<dim> &p, const bool with_tips) const
   {
     const Tensor<1, dim> from_start = p - corner_points[0];
+    const double         margin     = edge * size;
     if constexpr (dim == 2)
       {
         const double along = from_start * first_axis;
-        return along >= -margins[0] && along <= content + margins[1];
+        return along >= (with_tips || closed[0] ? -margin : margin) &&
+               along <= content + (with_tips || closed[1] ? margin : -margin);
       }
     else if constexpr (dim == 3)
       {
-        // Crossing number of a ray along the first axis; points within the margin of an edge are inside.
+        // Crossing number of a ray along the first axis; what is within the margin of an edge lies at it.
         const double x = from_start * first_axis, y = from_start * second_axis;
-        bool         inside = false;
+        bool         inside = false, at_closed = false, at_tip = false;
         for (std::size_t i = 0; i < corner_points.size(); ++i)
           {
             const Tensor<1, dim> a = corner_points[i] - corner_points[0],
@@ -100,12 +102,12 @@ namespace PeriDeal
             const double length_square = ex * ex + ey * ey;
             const double along =
               std::clamp(((x - ax) * ex + (y - ay) * ey) / length_square, 0., 1.);
-            if (std::hypot(ax + along * ex - x, ay + along * ey - y) <= margins[i])
-              return true;
+            if (std::hypot(ax + along * ex - x, ay + along * ey - y) <= margin)
+              (with_tips || closed[i] ? at_closed : at_tip) = true;
             if ((ay > y) != (by > y) && x < ax + (y - ay) / ey * ex)
               inside = !inside;
           }
-        return inside;
+        return at_closed || (inside && !at_tip);
       }
     else
       return false;
@@ -123,7 +125,7 @@ namespace PeriDeal
     const Point<dim> &start = from_a ? a : b, &end = from_a ? b : a;
     const double      at_start = from_a ? at_a : at_b, at_end = from_a ? at_b : at_a;
     const Point<dim>  crossing = start + at_start / (at_start - at_end) * (end - start);
-    return plane_point_inside(crossing);
+    return plane_point_inside(crossing, false);
   }
 
 
@@ -131,7 +133,7 @@ namespace PeriDeal
   bool CrackGeometry<dim>::contains(const Point<dim> &p) const
   {
     const double distance = (p - corner_points[0]) * unit_normal;
-    return std::abs(distance) <= tolerance && plane_point_inside(p);
+    return std::abs(distance) <= tolerance && plane_point_inside(p, true);
   }
 
 
@@ -168,15 +170,21 @@ namespace PeriDeal
   template <int dim>
   void CrackGeometry<dim>::close_joints(const CrackGeometry &other)
   {
-    constexpr double   reach = 4.;
-    const unsigned int n     = static_cast<unsigned int>(corner_points.size());
+    const unsigned int n = static_cast<unsigned int>(corner_points.size());
     for (unsigned int i = 0; i < n; ++i)
       {
         const Point<dim> &a = corner_points[i], &b = corner_points[(i + 1) % n];
         if (other.contains(a) &&
             (dim == 2 || (other.contains(b) && other.contains(a + 0.5 * (b - a)))))
-          margins[i] = std::max(margins[i], reach * std::max(tolerance, other.tolerance));
+          close(i);
       }
+  }
+
+
+  template <int dim>
+  void CrackGeometry<dim>::close(const unsigned int end)
+  {
+    closed[end] = true;
   }
 
 
@@ -188,6 +196,9 @@ namespace PeriDeal
       {
         alone.emplace_back(piece.corners);
         alone.back().crack = piece.crack;
+        for (unsigned int i = 0; i < piece.closed.size(); ++i)
+          if (piece.closed[i])
+            alone.back().close(i);
       }
     list = alone;
     for (std::size_t i = 0; i < list.size(); ++i)

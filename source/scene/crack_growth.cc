@@ -40,7 +40,7 @@ namespace PeriDeal
       "Growth",
       EntryType::list,
       "",
-      "",
+      "time, length/time",
       "Ends that move: `end point: start time, velocity`, and after another comma the time at which it stops; several "
       "separated by `;`. End points are counted from 1 through Segments, in 3D corners through Polygons, whose corners may move outwards "
       "in their plane. What has been cut stays cut.");
@@ -48,7 +48,7 @@ namespace PeriDeal
       "Paths",
       EntryType::list,
       "",
-      "",
+      "time, length",
       "Ends that move from point to point: `end point: time, position | time, position | ...`; several separated by "
       "`;`. The first position is that of the end itself, which rests until then.");
     declare(
@@ -223,7 +223,36 @@ namespace PeriDeal
   template <int dim>
   std::vector<CrackPiece<dim>> Cracks<dim>::pieces(const double t) const
   {
-    return crack_pieces(cracks, tips, t);
+    auto pieces = crack_pieces(cracks, tips, t);
+    for (CrackPiece<dim> &piece : pieces)
+      {
+        const std::size_t n = piece.corners.size();
+        piece.closed.assign(n, !in_box);
+        for (std::size_t i = 0; i < n && in_box; ++i)
+          for (unsigned int side = 0; side < 2 * dim; ++side)
+            if (on_side(piece.corners[i], side) &&
+                (dim == 2 || on_side(piece.corners[(i + 1) % n], side)))
+              piece.closed[i] = true;
+      }
+    return pieces;
+  }
+
+
+  template <int dim>
+  void Cracks<dim>::set_box(const Point<dim> &lower, const Point<dim> &upper)
+  {
+    lowest  = lower;
+    highest = upper;
+    in_box  = true;
+  }
+
+
+  template <int dim>
+  bool Cracks<dim>::on_side(const Point<dim> &p, const unsigned int side) const
+  {
+    const unsigned int d = side / 2;
+    const double       x = side % 2 == 0 ? lowest[d] : highest[d];
+    return std::abs(p[d] - x) <= 1e-9 * (highest[d] - lowest[d]);
   }
 
 
@@ -266,6 +295,7 @@ namespace PeriDeal
   template void          Cracks<dim>::check_tips() const;                                          \
   template bool          Cracks<dim>::change() const;                                              \
   template bool          Cracks<dim>::conduct() const;                                             \
+  template void          Cracks<dim>::set_box(const Point<dim> &, const Point<dim> &);             \
   template std::vector<CrackPiece<dim>> Cracks<dim>::pieces(const double) const;                   \
   template void                         Cracks<dim>::check_tips_inside(const Point<dim> &,         \
                                                const Point<dim> &,         \

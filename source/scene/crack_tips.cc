@@ -106,11 +106,11 @@ namespace PeriDeal
         {
           const std::vector<Point<dim>> line = line_of(corners[crack], crack, tips, t);
           for (std::size_t i = 0; i + 1 < line.size(); ++i)
-            pieces.push_back({{line[i], line[i + 1]}, crack});
+            pieces.push_back({{line[i], line[i + 1]}, crack, {}});
         }
       else
         {
-          pieces.push_back({corners[crack], crack});
+          pieces.push_back({corners[crack], crack, {}});
           for (const CrackTip<dim> &tip : tips)
             if (tip.crack == crack)
               pieces.back().corners[tip.corner] = tip.at(t);

@@ -305,6 +305,7 @@ namespace PeriDeal
     cracks.end_time = time.steady ? 0. : time.end_time;
     if (domain.shape != Shape::mesh_file)
       {
+        cracks.set_box(domain.lower, domain.upper);
         cracks.check_inside(domain.lower, domain.upper);
         cracks.check_tips_inside(domain.lower, domain.upper, cracks.end_time);
       }

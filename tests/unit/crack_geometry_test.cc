@@ -37,13 +37,25 @@ namespace PeriDeal
     EXPECT_FALSE(crack.separates(Point<2>(0.5, 0.), Point<2>(1.5, 0.)));
     EXPECT_FALSE(crack.separates(Point<2>(1.5, 0.), Point<2>(2.5, 0.)));
     EXPECT_FALSE(crack.separates(Point<2>(-1., 0.), Point<2>(3., 0.)));
-    // Through the tip: the tip belongs to the crack; just beyond it does not.
-    EXPECT_TRUE(crack.separates(Point<2>(2., 0.5), Point<2>(2., -0.5)));
-    // Obliquely through the tip: cut, whichever way the bond leans.
-    EXPECT_TRUE(crack.separates(Point<2>(1.5, 0.5), Point<2>(2.5, -0.5)));
-    EXPECT_TRUE(crack.separates(Point<2>(2.5, 0.5), Point<2>(1.5, -0.5)));
+    // Through the tip: not cut, whichever way the bond leans; just before it, cut.
+    for (const double dx : {-0.5, 0., 0.5})
+      {
+        EXPECT_FALSE(crack.separates(Point<2>(2. + dx, 0.5), Point<2>(2. - dx, -0.5)));
+        EXPECT_FALSE(crack.separates(Point<2>(dx, 0.5), Point<2>(-dx, -0.5)));
+        EXPECT_TRUE(crack.separates(Point<2>(2. - 1e-6 + dx, 0.5), Point<2>(2. - 1e-6 - dx, -0.5)));
+        EXPECT_TRUE(crack.separates(Point<2>(1e-6 + dx, 0.5), Point<2>(1e-6 - dx, -0.5)));
+      }
     EXPECT_FALSE(crack.separates(Point<2>(2. + 1e-6, 0.5), Point<2>(2. + 1e-6, -0.5)));
-    EXPECT_FALSE(crack.separates(Point<2>(-1e-6, 0.5), Point<2>(-1e-6, -0.5)));
+    // An end on the surface of the body, or on another crack, is no tip.
+    CrackGeometry<2> edge_crack(crack);
+    edge_crack.close(1);
+    EXPECT_TRUE(edge_crack.separates(Point<2>(2., 0.5), Point<2>(2., -0.5)));
+    EXPECT_TRUE(edge_crack.separates(Point<2>(2.5, 0.5), Point<2>(1.5, -0.5)));
+    EXPECT_FALSE(edge_crack.separates(Point<2>(0., 0.5), Point<2>(0., -0.5)));
+    CrackGeometry<2> branch(crack);
+    branch.close_joints(CrackGeometry<2>({Point<2>(0., -1.), Point<2>(0., 1.)}));
+    EXPECT_TRUE(branch.separates(Point<2>(0., 0.5), Point<2>(0., -0.5)));
+    EXPECT_FALSE(branch.separates(Point<2>(2., 0.5), Point<2>(2., -0.5)));
     EXPECT_TRUE(crack.contains(Point<2>(0., 0.)));
     EXPECT_TRUE(crack.contains(Point<2>(1., 0.)));
     EXPECT_FALSE(crack.contains(Point<2>(2.1, 0.)));
@@ -130,12 +142,19 @@ namespace PeriDeal
     EXPECT_FALSE(cuts_at(1.5, 1.5));
     EXPECT_FALSE(cuts_at(-0.1, 0.5));
     EXPECT_FALSE(cuts_at(2.1, 1.));
-    // The edge belongs to the crack: corners, edges, the notch's corner.
+    // The edge cuts nothing: corners, edges, the notch's corner; just inside it does.
     for (const Point<3> &p : corners)
-      EXPECT_TRUE(cuts_at(p[0], p[1])) << p;
-    EXPECT_TRUE(cuts_at(1., 1.5));
-    EXPECT_TRUE(cuts_at(1.5, 1.));
-    EXPECT_TRUE(cuts_at(0., 1.));
+      EXPECT_FALSE(cuts_at(p[0], p[1])) << p;
+    EXPECT_FALSE(cuts_at(1., 1.5));
+    EXPECT_FALSE(cuts_at(1.5, 1.));
+    EXPECT_FALSE(cuts_at(0., 1.));
+    EXPECT_TRUE(cuts_at(1. - 1e-6, 1.5));
+    EXPECT_TRUE(cuts_at(1e-6, 1.));
+    // Unless it lies on the surface of the body.
+    CrackGeometry<3> closed(corners);
+    closed.close(5); // from (0, 2) to (0, 0)
+    EXPECT_TRUE(closed.separates(Point<3>(0., 1., 1.5), Point<3>(0., 1., 0.5)));
+    EXPECT_FALSE(closed.separates(Point<3>(1., 0., 1.5), Point<3>(1., 0., 0.5)));
     EXPECT_FALSE(cuts_at(1. + 1e-6, 1. + 1e-6));
     // Points on the polygon belong to the side of the right-hand normal; beyond it, nothing is cut.
     EXPECT_TRUE(crack.separates(Point<3>(0.5, 0.5, 1.), Point<3>(0.5, 0.5, 0.)));

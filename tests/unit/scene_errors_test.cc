@@ -244,7 +244,7 @@ namespace PeriDeal
                  s,
                  "Boundary treatment",
                  {"fictitious mirror"});
-    expect_fault(fault(s, "Surface correction = energy"),
+    expect_fault(fault(s, "Surface correction = crack scalng"),
                  s,
                  "Surface correction",
                  {"crack scaling"});

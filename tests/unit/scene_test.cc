@@ -110,7 +110,7 @@ end
     EXPECT_TRUE(bc.depends_on_time());
     ASSERT_EQ(scene.cracks.cracks.size(), 2u);
     EXPECT_EQ(scene.cracks.cracks[1][1], Point<2>(0.4, 0.5));
-    EXPECT_EQ(scene.cracks.transmission, 0.25);
+    EXPECT_EQ(scene.cracks.transmission.value(Point<2>()), 0.25);
     EXPECT_LT(scene.cracks.contact_conductance, 0.);
     EXPECT_EQ(scene.peridynamics.kernel, KernelShape::constant);
     EXPECT_EQ(scene.peridynamics.kernel_exponent, 1u);

@@ -26,14 +26,17 @@ namespace PeriDeal
     /** @param corners two points in 2D; three or more corners of a planar polygon in 3D. */
     explicit CrackGeometry(const std::vector<dealii::Point<dim>> &corners);
 
-    /** Whether the straight line between two points crosses the crack. Symmetric in its arguments. The tip belongs to the
-     * crack, with all that passes within 1e-7 of the crack's size: mirror images of a bond about the crack or through a tip are treated alike. */
+    /**
+     * Whether the straight line between two points crosses the crack. Symmetric in its arguments. What passes through a tip (in 3D an
+     * edge), or within 1e-7 of the crack's size, does not: mirror images of a bond about the crack or through a tip are treated
+     * alike. Ends on another crack or on the surface of the body are no tips; there it does.
+     */
     bool separates(const dealii::Point<dim> &a, const dealii::Point<dim> &b) const;
 
     /** Signed distance to the crack's line or plane, positive on the left side; points on it count as positive. */
     double signed_distance(const dealii::Point<dim> &p) const;
 
-    /** Whether the point lies on the crack itself (not only on its line or plane). */
+    /** Whether the point lies on the crack itself, tips included (not only on its line or plane). */
     bool contains(const dealii::Point<dim> &p) const;
 
     /** Whether the ball of the given radius about p meets the crack's bounding box and its line or plane: a quick test to skip far nodes. */
@@ -47,22 +50,24 @@ namespace PeriDeal
     const std::vector<dealii::Point<dim>> &corners() const;
 
     /**
-     * Extend the ends (3D: the edges) that lie on another crack by a few tolerances, so that cracks that meet leave no gap: each acts
+     * Close the ends (3D: the edges) that lie on another crack, so that cracks that meet leave no gap: each acts
      * from an infinitesimal distance beside its line, and bonds through the very joint would else slip through between them.
      */
     void close_joints(const CrackGeometry &other);
 
+    /** Close an end (3D: the edge from this corner to the next). */
+    void close(const unsigned int end);
+
     unsigned int crack = 0; // that this is a piece of
 
   private:
-    bool plane_point_inside(const dealii::Point<dim> &p) const;
+    bool plane_point_inside(const dealii::Point<dim> &p, const bool with_tips) const;
 
     std::vector<dealii::Point<dim>> corner_points;
     dealii::Point<dim>              lowest, highest;
     dealii::Tensor<1, dim>          unit_normal, first_axis, second_axis;
     double                          size = 0., tolerance = 0., content = 0.;
-    std::vector<double>
-      margins; // of each end (2D) or edge (3D), beyond which points are off the crack
+    std::vector<bool>               closed; // ends (2D) or edges (3D)
   };
 
   /** The pieces of the cracks of a scene in the given order, with closed joints. */

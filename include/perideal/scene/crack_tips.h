@@ -16,6 +16,8 @@ namespace PeriDeal
   {
     std::vector<dealii::Point<dim>> corners;
     unsigned int                    crack; // from 0, in the order of the scene
+    std::vector<bool>
+      closed; // ends (2D) or edges (3D, from each corner to the next) on the surface of the body; empty: none
   };
 
 

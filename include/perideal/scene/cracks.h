@@ -53,8 +53,14 @@ namespace PeriDeal
     /** Some heat may pass through a crack at some time. */
     bool conduct() const;
 
-    /** The pieces of all cracks at time t, the whole way of each tip included. */
+    /**
+     * The pieces of all cracks at time t, the whole way of each tip included; closed where they end on a side of the box, and without a box at
+     * all ends.
+     */
     std::vector<CrackPiece<dim>> pieces(const double t) const;
+
+    /** The box that the body fills, so that ends on its sides are known. Without it any end may lie on the surface of the body. */
+    void set_box(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper);
 
     /** Throws UserError naming the first crack that lies completely outside a box. */
     void check_inside(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper) const;
@@ -83,5 +89,10 @@ namespace PeriDeal
     CrackTip<dim> tip_of(const std::string &number, const std::string &entry) const;
 
     void check_tips() const;
+
+    bool on_side(const dealii::Point<dim> &p, const unsigned int side) const;
+
+    dealii::Point<dim> lowest, highest; // of the box
+    bool               in_box = false;
   };
 } // namespace PeriDeal
