@@ -6,6 +6,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/simulation.h>
+#include <perideal/study/study.h>
 
 #include <CLI/CLI.hpp>
 
@@ -54,7 +55,85 @@ namespace
     std::string              scene, format = "prm";
     std::vector<std::string> overrides;
     bool                     quiet = false;
+
+    std::vector<std::string> files,
+      variations; // of a study: one study file, or scenes and what varies
+    std::string  output;
+    StudyOptions study;
   };
+
+
+  bool is_study_file(const std::string &file)
+  {
+    const std::string ending = ".json";
+    return file.size() > ending.size() &&
+           file.compare(file.size() - ending.size(), ending.size(), ending) == 0;
+  }
+
+
+  void compute_study(const Request &request)
+  {
+    const MPI_Comm communicator = MPI_COMM_WORLD;
+    Study          study;
+    if (std::any_of(request.files.begin(), request.files.end(), is_study_file))
+      {
+        AssertThrow(request.files.size() == 1,
+                    UserError("A study is one file (.json), or one or more scenes (.prm); found " +
+                              join_names(request.files) + "."));
+        AssertThrow(request.variations.empty(),
+                    UserError("--vary is for scenes; in the study file '" + request.files[0] +
+                              "' a row says \"vary\"."));
+        study = read_study(request.files[0], communicator);
+      }
+    else
+      {
+        std::vector<Variation> variations;
+        for (const std::string &text : request.variations)
+          variations.push_back(parse_variation(text));
+        study = sweep_of_scenes(request.files, variations, communicator);
+      }
+    override_rows(study, request.overrides);
+    if (!request.output.empty())
+      study.output = request.output;
+    StudyOptions options = request.study;
+    options.quiet        = request.quiet;
+    run_study(study, options, communicator);
+  }
+
+
+  void describe_study(CLI::App &app, Request &request)
+  {
+    CLI::App *study = app.add_subcommand(
+      "study",
+      "Compute many runs: the rows of a study file (.json), or all combinations of what --vary names; "
+      "finished rows are kept, so an interrupted study goes on where it was");
+    study->add_option("files", request.files, "study file (.json), or scenes (.prm)")->required();
+    study
+      ->add_option(
+        "--vary",
+        request.variations,
+        "vary an entry of the scenes: \"Section/Entry=value | value | value\"; may be given "
+        "several times, the first varies slowest")
+      ->allow_extra_args(false);
+    study
+      ->add_option(
+        "-s,--set",
+        request.overrides,
+        "override an entry in all rows: \"Section/Entry=value\"; may be given several times")
+      ->allow_extra_args(false);
+    study->add_option("--output", request.output, "directory of the results");
+    study->add_option("--only",
+                      request.study.only,
+                      "compute the rows or groups of these names only");
+    study->add_flag("--quick", request.study.quick, "compute the rows marked \"quick\" only");
+    study->add_flag("--redo", request.study.redo, "compute finished rows again");
+    study
+      ->add_option("--repeat",
+                   request.study.repeats,
+                   "run every row so often and keep the smallest times")
+      ->check(CLI::Range(1u, 1000u));
+    study->add_flag("-q,--quiet", request.quiet, "print nothing but errors");
+  }
 
 
   void describe_commands(CLI::App &app, Request &request)
@@ -66,8 +145,10 @@ namespace
       "  perideal run prm/quick_start.prm\n"
       "  perideal run prm/quick_start.prm -s \"Domain/Cells=120, 120\" -s \"Time/Stepper=rkc2\"\n"
       "  mpirun -np 4 perideal run prm/quick_start.prm\n"
+      "  perideal study prm/studies/delta_convergence.json\n"
+      "  perideal study prm/quick_start.prm --vary \"Domain/Cells=30, 30 | 60, 60\" --vary \"Peridynamics/Horizon ratio=2 | 3\"\n"
       "  perideal parameters markdown\n"
-      "Scenes to start from are in prm/; the format is explained in doc/scene_format.md.");
+      "Scenes to start from are in prm/; the format is explained in doc/scene_format.md, that of studies in doc/study.md.");
 
     CLI::App *run =
       app.add_subcommand("run",
@@ -86,6 +167,7 @@ namespace
           ->allow_extra_args(false);
         command->add_flag("-q,--quiet", request.quiet, "print nothing but errors");
       }
+    describe_study(app, request);
     CLI::App *parameters = app.add_subcommand(
       "parameters",
       "Print every entry of a scene file with type, default, unit and explanation");
@@ -97,7 +179,7 @@ namespace
   /** A word that is no command, or no command at all. Throws UserError. */
   void require_command(const int argc, char **argv)
   {
-    const std::vector<std::string> commands = {"run", "check", "parameters"};
+    const std::vector<std::string> commands = {"run", "check", "study", "parameters"};
     const std::string              help =
       " Commands: " + join_names(commands) + ". `perideal --help` explains them.";
     AssertThrow(argc > 1, UserError("A command is missing." + help));
@@ -112,14 +194,18 @@ namespace
   /** What CLI11 has to say about the arguments, with the nearest option and where to read on. */
   std::string explain(const CLI::ParseError &problem, const CLI::App &app)
   {
-    std::string                    message   = problem.what();
-    const std::vector<std::string> options   = {"--set", "--quiet", "--help", "--version"};
+    std::string              message = problem.what();
+    std::vector<std::string> options = {"--set", "--quiet", "--help", "--version"};
+    if (app.got_subcommand("study"))
+      options.insert(options.end(),
+                     {"--vary", "--output", "--only", "--quick", "--redo", "--repeat"});
     const std::vector<std::string> remaining = app.remaining(true);
     if (!remaining.empty() && remaining.front().compare(0, 2, "--") == 0)
       message +=
         "." + did_you_mean(remaining.front().substr(0, remaining.front().find('=')), options);
     return message + (message.back() == '.' || message.back() == '?' ? "" : ".") +
-           " `perideal --help` and `perideal run --help` explain the arguments.";
+           " `perideal --help` and `perideal " + (app.got_subcommand("study") ? "study" : "run") +
+           " --help` explain the arguments.";
   }
 
 
@@ -148,6 +234,8 @@ namespace
         if (first_rank)
           std::cout << manual;
       }
+    else if (app.got_subcommand("study"))
+      compute_study(request);
     else
       compute(request.scene, request.overrides, app.got_subcommand("check"), request.quiet);
     return 0;
