@@ -115,7 +115,7 @@ namespace PeriDeal
   std::vector<BoundingBox<dim>> Families<dim>::set_cracks_of(const double time)
   {
     const auto boxes = history.changes(cracks_of, time);
-    cracks           = make_crack_geometries(history.pieces(time));
+    cracks           = make_crack_geometries(history.pieces(time, cut_at_tips));
     transmission     = history.transmission(time);
     cracks_of        = time;
     return boxes;

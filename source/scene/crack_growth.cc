@@ -221,13 +221,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<CrackPiece<dim>> Cracks<dim>::pieces(const double t) const
+  std::vector<CrackPiece<dim>> Cracks<dim>::pieces(const double t, const bool cut_at_tips) const
   {
     auto pieces = crack_pieces(cracks, tips, t);
     for (CrackPiece<dim> &piece : pieces)
       {
         const std::size_t n = piece.corners.size();
-        piece.closed.assign(n, !in_box);
+        piece.closed.assign(n, cut_at_tips || !in_box);
         for (std::size_t i = 0; i < n && in_box; ++i)
           for (unsigned int side = 0; side < 2 * dim; ++side)
             if (on_side(piece.corners[i], side) &&
@@ -235,6 +235,14 @@ namespace PeriDeal
               piece.closed[i] = true;
       }
     return pieces;
+  }
+
+
+  template <int dim>
+  bool Cracks<dim>::cuts_bonds_at_tips(const SurfaceCorrection correction) const
+  {
+    return through_tips == ThroughTips::cut ||
+           (through_tips == ThroughTips::automatic && correction != SurfaceCorrection::energy);
   }
 
 
@@ -287,6 +295,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template bool          Cracks<dim>::cuts_bonds_at_tips(const SurfaceCorrection) const;           \
   template void          Cracks<dim>::declare_growth();                                            \
   template CrackTip<dim> Cracks<dim>::tip_of(const std::string &, const std::string &) const;      \
   template void          Cracks<dim>::parse_growth();                                              \
@@ -296,7 +305,7 @@ namespace PeriDeal
   template bool          Cracks<dim>::change() const;                                              \
   template bool          Cracks<dim>::conduct() const;                                             \
   template void          Cracks<dim>::set_box(const Point<dim> &, const Point<dim> &);             \
-  template std::vector<CrackPiece<dim>> Cracks<dim>::pieces(const double) const;                   \
+  template std::vector<CrackPiece<dim>> Cracks<dim>::pieces(const double, const bool) const;       \
   template void                         Cracks<dim>::check_tips_inside(const Point<dim> &,         \
                                                const Point<dim> &,         \
                                                const double) const;

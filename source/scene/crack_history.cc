@@ -154,9 +154,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<CrackPiece<dim>> CrackHistory<dim>::pieces(const double t) const
+  std::vector<CrackPiece<dim>> CrackHistory<dim>::pieces(const double t,
+                                                         const bool   cut_at_tips) const
   {
-    return cracks->pieces(t);
+    return cracks->pieces(t, cut_at_tips);
   }
 
 

@@ -171,7 +171,8 @@ namespace PeriDeal
     tips.clear();
     parse_segments();
     parse_polygons();
-    mesh = choice<CrackMesh>("Mesh");
+    mesh         = choice<CrackMesh>("Mesh");
+    through_tips = choice<ThroughTips>("Bonds through tips");
     parse_conductance();
     parse_growth();
     parse_paths();

@@ -5,7 +5,7 @@
 A square plate from -1 to 1, 100 on top and -100 below, initially 0, with an insulated crack from (-0.5, 0) to (0.5, 0).
 The numbers of cells a side are multiples of 4, so that the crack runs through a row of nodes from one node to another.
 Finite elements: bilinear squares, doubled vertices within the crack, lumped capacity. Peridynamics: default settings, m = 3;
-nodes on the crack belong to its left (upper) side, and bonds that pass through it are cut, not those that only touch its very tips.
+nodes on the crack belong to its left (upper) side, and bonds that pass through it or through its very tips are cut.
 """
 
 import numpy as np
@@ -51,9 +51,9 @@ def is_cut_by_crack(n_cells):
     def is_cut(i, offset):
         rows, columns = offset
         y, x = i // (n_cells + 1) - n_cells // 2, i % (n_cells + 1) - n_cells // 2
-        # The bond meets the line at x - y columns/rows; all numbers are integers, and a tip is met exactly (and then does not cut) or not at all.
+        # The bond meets the line at x - y columns/rows; all numbers are integers, and a tip is met exactly or not at all.
         is_across = (y >= 0) != (y + rows >= 0)
-        return is_across & (abs(x * rows - y * columns) < n_cells // 4 * abs(rows))
+        return is_across & (abs(x * rows - y * columns) <= n_cells // 4 * abs(rows))
     return is_cut
 
 

@@ -169,6 +169,7 @@ namespace PeriDeal
     const Peridynamics              &parameters;
     const CrackHistory<dim>          history;
     double                           cracks_of; // the representative time
+    bool                             cut_at_tips;
     std::vector<CrackGeometry<dim>>  cracks;
     double                           transmission, contact_conductance;
     double                           delta, farthest = 0., factor = 1.;

@@ -43,7 +43,7 @@ namespace PeriDeal
     double representative(const double t) const;
 
     /** The pieces of all cracks, whole history included, at that very time. */
-    std::vector<CrackPiece<dim>> pieces(const double t) const;
+    std::vector<CrackPiece<dim>> pieces(const double t, const bool cut_at_tips = true) const;
 
     double transmission(const double t) const;
 

@@ -5,6 +5,7 @@
 
 #include <deal.II/base/point.h>
 
+#include <perideal/scene/choices.h>
 #include <perideal/scene/crack_tips.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/section.h>
@@ -22,6 +23,15 @@ namespace PeriDeal
     removed
   };
 
+  /** Entry `Bonds through tips` of section `Cracks`. */
+  enum class ThroughTips
+  {
+    automatic,
+    cut,
+    keep
+  };
+
+
   /**
    * Section `Cracks`: segments in 2D (two points each), planar polygons in 3D (three or more
    * corners each), and how their ends and corners move.
@@ -35,7 +45,8 @@ namespace PeriDeal
     std::vector<std::vector<dealii::Point<dim>>>
                                cracks; // before they grow; a segment that grows may have no length
     std::vector<CrackTip<dim>> tips;   // that move
-    CrackMesh                  mesh = CrackMesh::pairs;
+    CrackMesh                  mesh         = CrackMesh::pairs;
+    ThroughTips                through_tips = ThroughTips::automatic;
     Expression                 transmission;              // of t alone
     double                     contact_conductance = -1.; // negative: not given
     double                     growth_step         = -1.; // length; negative: not given
@@ -54,10 +65,13 @@ namespace PeriDeal
     bool conduct() const;
 
     /**
-     * The pieces of all cracks at time t, the whole way of each tip included; closed where they end on a side of the box, and without a box at
-     * all ends.
+     * The pieces of all cracks at time t, the whole way of each tip included. With @p cut_at_tips their ends are closed: what touches a
+     * tip is cut. Ends on a side of the box always are, and without a box all ends.
      */
-    std::vector<CrackPiece<dim>> pieces(const double t) const;
+    std::vector<CrackPiece<dim>> pieces(const double t, const bool cut_at_tips = true) const;
+
+    /** What `Bonds through tips` means for bonds with this correction. */
+    bool cuts_bonds_at_tips(const SurfaceCorrection correction) const;
 
     /** The box that the body fills, so that ends on its sides are known. Without it any end may lie on the surface of the body. */
     void set_box(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper);
