@@ -52,6 +52,14 @@ namespace PeriDeal
       "Ends that move from point to point: `end point: time, position | time, position | ...`; several separated by "
       "`;`. The first position is that of the end itself, which rests until then.");
     declare(
+      "Bonds through tips",
+      EntryType::choice,
+      "auto",
+      "",
+      "Whether a bond that only touches a crack's tip is cut. `auto`: not with `Surface correction = energy`, else it is; each "
+      "was measured to be the more accurate there. Finite elements always cut such pairs.",
+      {"auto", "cut", "keep"});
+    declare(
       "Growth step",
       EntryType::text,
       "",
