@@ -77,8 +77,9 @@ namespace PeriDeal
     const FiniteElement<dim>            &fe = dofs.get_fe();
     FEValues<dim>                        values(fe,
                          Quadrature<dim>(fe.get_unit_support_points()),
-                         update_gradients | update_quadrature_points);
+                         update_values | update_gradients | update_quadrature_points);
     std::vector<Tensor<1, dim>>          gradients(fe.n_dofs_per_cell());
+    std::vector<double>                  temperatures(fe.n_dofs_per_cell());
     std::vector<types::global_dof_index> indices(fe.n_dofs_per_cell());
     Vector                               weight(u.get_partitioner());
     for (Vector &component : flux)
@@ -90,13 +91,15 @@ namespace PeriDeal
         {
           values.reinit(cell);
           values.get_function_gradients(u, gradients);
+          values.get_function_values(u, temperatures);
           cell->get_dof_indices(indices);
           const double size =
             cell->measure() * (cut[cell->active_cell_index()] ? share_of_cut_cells : 1.);
           for (unsigned int i = 0; i < indices.size(); ++i)
             if (weight.in_local_range(indices[i]))
               {
-                const double kappa = material.conductivity.value(values.quadrature_point(i));
+                const double kappa =
+                  material.conductivity.value(values.quadrature_point(i), temperatures[i]);
                 weight(indices[i]) += size;
                 for (unsigned int d = 0; d < dim; ++d)
                   flux[d](indices[i]) -= size * kappa * gradients[i][d];

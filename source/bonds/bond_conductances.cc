@@ -8,6 +8,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/bonds/families.h>
 #include <perideal/laws/interface.h>
+#include <perideal/scene/lists.h>
 
 #include <algorithm>
 
@@ -25,10 +26,30 @@ namespace PeriDeal
     for (unsigned int i = 0; i < n && message.empty(); ++i)
       {
         const Point<dim> p = own_nodes->n_local() > 0 ? own_nodes->position(i) : Point<dim>();
-        conductivities[i]  = scene.material.conductivity.value(p);
+        conductivities[i] =
+          material.conductivity.value(p, scene.initial_and_source.initial_value.value(p));
         if (!(conductivities[i] > 0.))
           message = "'Conductivity' in section 'Material' is " + std::to_string(conductivities[i]) +
                     " at a node; it must be positive everywhere in the body.";
+      }
+    throw_on_all_if_any(own_nodes->communicator(), message);
+  }
+
+
+  template <int dim>
+  void Families<dim>::take_conductivities_at(const Vector &u)
+  {
+    if (!material.conductivity.depends_on_temperature())
+      return;
+    std::string message;
+    for (unsigned int i = 0; i < own_nodes->n_local(); ++i)
+      {
+        const double T    = u.local_element(i);
+        conductivities[i] = material.conductivity.value(own_nodes->position(i), T);
+        if (!(conductivities[i] > 0.) && message.empty())
+          message = "'Conductivity' in section 'Material' is " + number_text(conductivities[i]) +
+                    " at T = " + number_text(T) +
+                    "; it must be positive at every temperature that the run reaches.";
       }
     throw_on_all_if_any(own_nodes->communicator(), message);
   }
@@ -79,6 +100,7 @@ namespace PeriDeal
 
 #define PERIDEAL_INSTANTIATE(dim)                                         \
   template void   Families<dim>::find_conductivities(const Scene<dim> &); \
+  template void   Families<dim>::take_conductivities_at(const Vector &);  \
   template double Families<dim>::conductivity(const unsigned int) const;  \
   template double Families<dim>::bond_conductivity(const unsigned int, const unsigned int) const;
   PERIDEAL_INSTANTIATE(1)

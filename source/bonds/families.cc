@@ -358,6 +358,12 @@ namespace PeriDeal
   }
 
   template <int dim>
+  bool Families<dim>::conductivity_depends_on_temperature() const
+  {
+    return material.conductivity.depends_on_temperature();
+  }
+
+  template <int dim>
   bool Families<dim>::corrects_every_bond() const
   {
     return parameters.surface_correction == SurfaceCorrection::energy;

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/operators/bond_operator.h>
+#include <perideal/operators/heat_content.h>
 
 #include <algorithm>
 #include <map>
@@ -150,7 +151,8 @@ namespace PeriDeal
     const Expression &source = scene.initial_and_source.source;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        balance.content += capacity.local_element(i) * u.local_element(i);
+        balance.content +=
+          nodes.volume(i) * heat_content(scene.material, nodes.position(i), u.local_element(i));
         if (constraints->kind(i) != NodeConstraints<dim>::slave)
           balance.sources += nodes.volume(i) * source.value(nodes.position(i), t);
         if (!steady && constraints->kind(i) == NodeConstraints<dim>::free)

@@ -28,7 +28,8 @@ namespace PeriDeal
         held.push_back(i);
     if (constraints->any_slave())
       initialize_vector(scratch);
-    find_capacity();
+    initialize_vector(capacity);
+    find_capacity(nullptr);
     find_side_loads();
     if (scene.peridynamics.surface_correction != SurfaceCorrection::none)
       correct_surface(rows_to_correct());
@@ -68,18 +69,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondOperator<dim>::find_capacity()
+  void BondOperator<dim>::find_capacity(const Vector *u)
   {
     const Nodes<dim> &nodes = bonds.nodes();
-    initialize_vector(capacity);
-    std::string message;
+    std::string       message;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        const double storage = scene.material.storage(nodes.position(i));
+        const double T       = u != nullptr ?
+                                 u->local_element(i) :
+                                 scene.initial_and_source.initial_value.value(nodes.position(i));
+        const double storage = scene.material.storage(nodes.position(i), T);
         if (!(storage > 0.) && message.empty())
-          message = "'Density' times 'Heat capacity' in section 'Material' is " +
-                    std::to_string(storage) +
-                    " at a node; it must be positive everywhere in the body.";
+          message =
+            "'Density' times 'Heat capacity' in section 'Material' is " + std::to_string(storage) +
+            " at a node; it must be positive everywhere in the body, at every temperature that the run reaches.";
         capacity.local_element(i) = storage * nodes.volume(i);
       }
     throw_on_all_if_any(nodes.communicator(), message);
@@ -366,6 +369,8 @@ namespace PeriDeal
   template <int dim>
   Spectrum BondOperator<dim>::spectrum() const
   {
+    if (depends_on_solution()) // changes with each step: the safe bound, which costs nothing
+      return {gershgorin, gershgorin};
     if (bounds.safe == 0.)
       {
         bounds.sharp = sharp_bound(*this, gershgorin, [&](Vector &vector) {

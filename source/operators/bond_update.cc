@@ -160,9 +160,42 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  bool BondOperator<dim>::depends_on_solution() const
+  {
+    return scene.material.depends_on_temperature();
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::take_material_at(const Vector &u)
+  {
+    if (!depends_on_solution())
+      return;
+    if (scene.material.storage_depends_on_temperature())
+      find_capacity(&u);
+    if (scene.material.conductivity.depends_on_temperature())
+      {
+        u.update_ghost_values();
+        bonds.take_conductivities_at(u);
+        u.set_ghost_state(false);
+        form->update_conductivities(bond_diagonal.begin());
+        for (const auto &[node, h] : convection_diagonal)
+          bond_diagonal.local_element(node) += h;
+      }
+    double bound = 0.;
+    for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
+      bound = std::max(bound, row_bound(i));
+    gershgorin = Utilities::MPI::max(bound, bonds.nodes().communicator());
+    constraints->mask(bond_diagonal, 1.);
+  }
+
+
 #define PERIDEAL_INSTANTIATE(dim)                                                        \
   template std::vector<unsigned int> BondOperator<dim>::rows_to_correct() const;         \
   template void   BondOperator<dim>::correct_surface(const std::vector<unsigned int> &); \
+  template bool   BondOperator<dim>::depends_on_solution() const;                        \
+  template void   BondOperator<dim>::take_material_at(const Vector &);                   \
   template double BondOperator<dim>::next_event(const double) const;                     \
   template bool   BondOperator<dim>::update(const double);
   PERIDEAL_INSTANTIATE(1)

@@ -63,9 +63,10 @@ namespace PeriDeal
               {
                 std::ostringstream where;
                 where << " at (" << p << "); it must be positive everywhere in the body.";
-                if (!(scene.material.conductivity.value(p) > 0.))
+                const double T = scene.initial_and_source.initial_value.value(p);
+                if (!(scene.material.conductivity.value(p, T) > 0.))
                   message = "'Conductivity' in section 'Material' is not positive" + where.str();
-                else if (!(scene.material.storage(p) > 0.))
+                else if (!(scene.material.storage(p, T) > 0.))
                   message =
                     "'Density' times 'Heat capacity' in section 'Material' is not positive" +
                     where.str();
@@ -102,7 +103,7 @@ namespace PeriDeal
                 fraction = std::min(fraction, transmission);
                 continue;
               }
-            const double kappa = scene.material.conductivity.value(cell->center());
+            const double kappa = center_conductivity(cell);
             const double H     = contact ? scene.cracks.contact_conductance :
                                            contact_conductance_of_transmission(
                                          transmission,
@@ -139,6 +140,7 @@ namespace PeriDeal
   void FEMOperator<dim>::assemble_cell(const Cell &cell, CellData &data) const
   {
     data.values.reinit(cell);
+    find_temperatures(data);
     data.stiffness       = 0.;
     data.mass            = 0.;
     data.convection      = 0.;
@@ -146,8 +148,9 @@ namespace PeriDeal
     for (const unsigned int q : data.values.quadrature_point_indices())
       {
         const Point<dim> &p       = data.values.quadrature_point(q);
-        const double      kappa   = scene.material.conductivity.value(p) * data.values.JxW(q);
-        const double      storage = scene.material.storage(p) * data.values.JxW(q);
+        const double      T       = data.temperatures[q];
+        const double      kappa   = scene.material.conductivity.value(p, T) * data.values.JxW(q);
+        const double      storage = scene.material.storage(p, T) * data.values.JxW(q);
         for (unsigned int i = 0; i < n; ++i)
           for (unsigned int j = 0; j < n; ++j)
             {
@@ -211,8 +214,8 @@ namespace PeriDeal
               }))
             continue;
           assemble_cell(cell, data);
-          const double share = dim * scene.material.conductivity.value(cell->center()) *
-                               cell->measure() / data.indices.size();
+          const double share =
+            dim * center_conductivity(cell) * cell->measure() / data.indices.size();
           for (unsigned int a = 0; a < data.indices.size(); ++a)
             {
               expected(data.indices[a]) += share;
@@ -258,8 +261,14 @@ namespace PeriDeal
     if (scene.finite_elements.consistent_capacity)
       mass.reinit(pattern);
     initialize_vector(capacity);
+    cell_data = std::make_shared<CellData>(dofs.get_fe());
+    fill();
+  }
 
-    cell_data      = std::make_shared<CellData>(dofs.get_fe());
+
+  template <int dim>
+  void FEMOperator<dim>::fill()
+  {
     CellData &data = *cell_data;
     if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling &&
         scene.cracks.mesh == CrackMesh::pairs && !scene.cracks.cracks.empty())
@@ -384,6 +393,7 @@ namespace PeriDeal
                                                            const double,                         \
                                                            Balance &) const;                     \
   template struct FEMOperator<dim>::CellData;                                                    \
+  template void FEMOperator<dim>::fill();                                                        \
   template void FEMOperator<dim>::find_cut_cells();                                              \
   template bool FEMOperator<dim>::is_cut(const typename DoFHandler<dim>::active_cell_iterator &) \
     const;                                                                                       \

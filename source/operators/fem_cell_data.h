@@ -27,11 +27,13 @@ namespace PeriDeal
       , mass(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
       , convection(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
       , indices(fe.n_dofs_per_cell())
+      , temperatures(values.n_quadrature_points, 0.)
     {}
 
     dealii::FEValues<dim>                        values;
     dealii::FEFaceValues<dim>                    face_values;
     dealii::FullMatrix<double>                   stiffness, mass, convection;
     std::vector<dealii::types::global_dof_index> indices;
+    std::vector<double>                          temperatures; // at the quadrature points
   };
 } // namespace PeriDeal

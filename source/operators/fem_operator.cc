@@ -195,6 +195,8 @@ namespace PeriDeal
   template <int dim>
   Spectrum FEMOperator<dim>::spectrum() const
   {
+    if (depends_on_solution()) // changes with each step: the safe bound, which costs nothing
+      return {gershgorin, gershgorin};
     if (bounds.safe == 0.)
       {
         const auto fill = [&](Vector &vector) {
@@ -279,8 +281,7 @@ namespace PeriDeal
       balance.sides[entry.condition->name] += heat.local_element(entry.dof);
     add_side_and_source_heat(u, t, balance);
     add_crack_heat(u, balance);
-    for (unsigned int i = 0; i < heat.locally_owned_size(); ++i)
-      balance.content += capacity.local_element(i) * u.local_element(i);
+    balance.content = heat_of(u);
     mask(heat);
     if (!steady)
       for (unsigned int i = 0; i < heat.locally_owned_size(); ++i)

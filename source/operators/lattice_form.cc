@@ -149,6 +149,11 @@ namespace PeriDeal
         std::swap(corrections, spare);
       }
 
+      void update_conductivities(double *) override
+      {
+        Assert(false, ExcMessage("one conductivity everywhere"));
+      }
+
       std::size_t memory_consumption() const override
       {
         return sizeof(double) * grid.capacity() + layout.memory_consumption() +

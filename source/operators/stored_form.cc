@@ -65,6 +65,7 @@ namespace PeriDeal
       explicit StoredForm(const Families<dim> &families)
         : families(families)
         , keep_cut(families.crack_history().changes_ever())
+        , varying(families.conductivity_depends_on_temperature())
         , n_values(families.nodes().n_local())
         , extended(families.fictitious().empty() ? 0 : n_values + families.fictitious().size())
       {
@@ -83,6 +84,9 @@ namespace PeriDeal
                 {
                   columns.push_back(bond.neighbor);
                   weights.push_back(bond.weight);
+                  if (varying)
+                    unit_weights.push_back(bond.weight /
+                                           families.bond_conductivity(i, bond.neighbor));
                 }
             row_starts.push_back(columns.size());
           }
@@ -141,8 +145,23 @@ namespace PeriDeal
             std::size_t b = row_starts[i];
             for (const auto &bond : bonds)
               {
+                if (varying)
+                  unit_weights[b] = bond.weight / families.bond_conductivity(i, bond.neighbor);
                 weights[b++] = bond.weight;
                 sums[i] += bond.weight;
+              }
+          }
+      }
+
+      void update_conductivities(double *sums) override
+      {
+        for (std::size_t i = 0; i + 1 < row_starts.size(); ++i)
+          {
+            sums[i] = 0.;
+            for (std::size_t b = row_starts[i]; b < row_starts[i + 1]; ++b)
+              {
+                weights[b] = unit_weights[b] * families.bond_conductivity(i, columns[b]);
+                sums[i] += weights[b];
               }
           }
       }
@@ -150,7 +169,8 @@ namespace PeriDeal
       std::size_t memory_consumption() const override
       {
         return row_starts.capacity() * sizeof(std::size_t) +
-               columns.size() * sizeof(std::uint32_t) + weights.size() * sizeof(double) +
+               columns.size() * sizeof(std::uint32_t) +
+               (weights.size() + unit_weights.size()) * sizeof(double) +
                extended.capacity() * sizeof(double);
       }
 
@@ -174,7 +194,9 @@ namespace PeriDeal
       }
 
       const Families<dim> &families;
-      const bool           keep_cut; // with weight 0, since their weights will change
+      const bool           keep_cut;     // with weight 0, since their weights will change
+      const bool           varying;      // conductivities change with the temperature
+      std::vector<double>  unit_weights; // weights over the bonds' conductivities, if they do
       std::vector<typename Families<dim>::Bond> bonds;
       std::size_t                               n_values;
       mutable std::vector<double>               extended;

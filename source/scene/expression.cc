@@ -17,8 +17,8 @@ namespace PeriDeal
   struct Expression::Compiled
   {
     mu::Parser parser;
-    double     x = 0., y = 0., z = 0., t = 0.;
-    bool       uses_time = false, uses_position = false;
+    double     x = 0., y = 0., z = 0., t = 0., T = 0.;
+    bool       uses_time = false, uses_position = false, uses_temperature = false;
   };
 
 
@@ -89,7 +89,7 @@ namespace PeriDeal
       if (parser.GetFunDef().count(token) > 0)
         return "the function '" + token + "' needs its arguments in parentheses";
       if (token == "T")
-        return "'T': the temperature is not available in formulas; known variables: x, y, z, t";
+        return "'T': the temperature is available in formulas of the material only; known variables: x, y, z, t";
       if (token == "rand" || token == "rand_seed")
         return "'" + token + "': random numbers are not available, since a run must be repeatable";
       if (token == "and" || token == "or")
@@ -196,7 +196,9 @@ namespace PeriDeal
   {}
 
 
-  Expression::Expression(const std::string &text, const std::string &where)
+  Expression::Expression(const std::string &text,
+                         const std::string &where,
+                         const bool         with_temperature)
     : compiled(std::make_shared<Compiled>())
     , formula(trimmed(text))
     , where(where)
@@ -212,6 +214,8 @@ namespace PeriDeal
     parser.DefineVar("y", &compiled->y);
     parser.DefineVar("z", &compiled->z);
     parser.DefineVar("t", &compiled->t);
+    if (with_temperature)
+      parser.DefineVar("T", &compiled->T);
     int n_results = 0;
     try
       {
@@ -221,8 +225,10 @@ namespace PeriDeal
         n_results = parser.GetNumResults();
         for (const auto &variable : parser.GetUsedVar())
           {
-            compiled->uses_time     = compiled->uses_time || variable.first == "t";
-            compiled->uses_position = compiled->uses_position || variable.first != "t";
+            const std::string &name                 = variable.first;
+            (name == "t" ? compiled->uses_time :
+             name == "T" ? compiled->uses_temperature :
+                           compiled->uses_position) = true;
           }
       }
     catch (const mu::ParserError &error)
@@ -233,7 +239,7 @@ namespace PeriDeal
       entry_error(where,
                   "the formula '" + formula + "' gives " + std::to_string(n_results) +
                     " values, needs one (is a comma outside parentheses?).");
-    if (!compiled->uses_time && !compiled->uses_position)
+    if (!compiled->uses_time && !compiled->uses_position && !compiled->uses_temperature)
       {
         compiled.reset();
         if (!std::isfinite(constant))
@@ -243,7 +249,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  double Expression::value(const dealii::Point<dim> &p, const double t) const
+  double Expression::value(const dealii::Point<dim> &p,
+                           const double              t,
+                           const double              temperature) const
   {
     if (compiled == nullptr)
       return constant;
@@ -251,21 +259,25 @@ namespace PeriDeal
     compiled->y        = dim > 1 ? p[dim > 1 ? 1 : 0] : 0.;
     compiled->z        = dim > 2 ? p[dim > 2 ? 2 : 0] : 0.;
     compiled->t        = t;
+    compiled->T        = temperature;
     const double value = compiled->parser.Eval();
     if (!std::isfinite(value) && (collector == nullptr || collector->message.empty()))
-      not_finite(p, t);
+      not_finite(p, t, temperature);
     return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
   }
 
 
   template <int dim>
-  void Expression::not_finite(const dealii::Point<dim> &p, const double t) const
+  void Expression::not_finite(const dealii::Point<dim> &p,
+                              const double              t,
+                              const double              temperature) const
   {
     std::string point;
     for (unsigned int d = 0; d < dim; ++d)
       point += (d == 0 ? "" : ", ") + number_text(p[d]);
     report_formula_error("Entry " + where + ": the value of '" + formula + "' is not finite at (" +
                          point + "), t = " + number_text(t) +
+                         (compiled->uses_temperature ? ", T = " + number_text(temperature) : "") +
                          ". Change the formula so that it is a number everywhere.");
   }
 
@@ -285,6 +297,12 @@ namespace PeriDeal
   bool Expression::depends_on_position() const
   {
     return compiled != nullptr && compiled->uses_position;
+  }
+
+
+  bool Expression::depends_on_temperature() const
+  {
+    return compiled != nullptr && compiled->uses_temperature;
   }
 
 
@@ -320,7 +338,7 @@ namespace PeriDeal
   }
 
 
-  template double Expression::value<1>(const dealii::Point<1> &, const double) const;
-  template double Expression::value<2>(const dealii::Point<2> &, const double) const;
-  template double Expression::value<3>(const dealii::Point<3> &, const double) const;
+  template double Expression::value<1>(const dealii::Point<1> &, const double, const double) const;
+  template double Expression::value<2>(const dealii::Point<2> &, const double, const double) const;
+  template double Expression::value<3>(const dealii::Point<3> &, const double, const double) const;
 } // namespace PeriDeal

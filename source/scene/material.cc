@@ -12,7 +12,7 @@ namespace PeriDeal
     {
       if (expression.depends_on_time())
         entry_error(where,
-                    "'" + expression.text() + "' depends on t; known variables here: x, y, z.");
+                    "'" + expression.text() + "' depends on t; known variables here: x, y, z, T.");
     }
   } // namespace
 
@@ -25,14 +25,14 @@ namespace PeriDeal
       EntryType::formula,
       "1",
       "power/(length temperature)",
-      "Thermal conductivity, diffusivity (moisture) or electrical conductivity: a number or a formula of x, y, z.");
+      "Thermal conductivity, diffusivity (moisture) or electrical conductivity: a number or a formula of x, y, z and T, the temperature (wetness, potential) itself.");
     declare("Density", EntryType::formula, "1", "mass/length^3", "Ignored when steady.");
     declare(
       "Heat capacity",
       EntryType::formula,
       "1",
       "energy/(mass temperature)",
-      "Per mass; the body stores Density x Heat capacity. Ignored when steady. With electricity their product is the "
+      "Per mass; the body stores Density x Heat capacity, either a number or a formula of x, y, z, T. Ignored when steady. With electricity their product is the "
       "capacitance per volume, and 0 means a steady state.");
     declare(
       "Saturated concentration",
@@ -59,9 +59,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  double Material::storage(const dealii::Point<dim> &p) const
+  double Material::storage(const dealii::Point<dim> &p, const double temperature) const
   {
-    return density.value(p) * heat_capacity.value(p);
+    return density.value(p, temperature) * heat_capacity.value(p, temperature);
+  }
+
+
+  bool Material::storage_depends_on_temperature() const
+  {
+    return density.depends_on_temperature() || heat_capacity.depends_on_temperature();
+  }
+
+
+  bool Material::depends_on_temperature() const
+  {
+    return conductivity.depends_on_temperature() || storage_depends_on_temperature();
   }
 
 
@@ -70,7 +82,7 @@ namespace PeriDeal
     phases.parse();
     stores          = true;
     const auto read = [&](const std::string &entry, MaterialProperty &property) {
-      Expression value(text(entry), where(entry));
+      Expression value(text(entry), where(entry), entry != "Saturated concentration");
       refuse_time(value, where(entry));
       const bool may_vanish = physics == Physics::electricity && entry == "Heat capacity";
       if (may_vanish && value.is_constant() && value.value(dealii::Point<1>()) == 0.)
@@ -87,6 +99,10 @@ namespace PeriDeal
     read("Heat capacity", heat_capacity);
     read("Saturated concentration", saturated_concentration);
     interface_rule = choice<InterfaceRule>("Interface rule");
+    if (conductivity.depends_on_temperature() && interface_rule == InterfaceRule::harmonic)
+      error(
+        "Interface rule",
+        "'harmonic' follows each bond through the phases and cannot have a 'Conductivity' with T; use 'arithmetic' or 'minimum'.");
   }
 
 
@@ -114,7 +130,7 @@ namespace PeriDeal
   }
 
 
-  template double Material::storage<1>(const dealii::Point<1> &) const;
-  template double Material::storage<2>(const dealii::Point<2> &) const;
-  template double Material::storage<3>(const dealii::Point<3> &) const;
+  template double Material::storage<1>(const dealii::Point<1> &, const double) const;
+  template double Material::storage<2>(const dealii::Point<2> &, const double) const;
+  template double Material::storage<3>(const dealii::Point<3> &, const double) const;
 } // namespace PeriDeal

@@ -92,7 +92,7 @@ namespace PeriDeal
       }
     formula = Expression(text, where);
     if (formula.depends_on_time())
-      entry_error(where, "'" + text + "' depends on t; known variables here: x, y, z.");
+      entry_error(where, "'" + text + "' depends on t; known variables here: x, y, z, T.");
   }
 
 
@@ -182,12 +182,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  double MaterialProperty::value(const dealii::Point<dim> &p) const
+  double MaterialProperty::value(const dealii::Point<dim> &p, const double temperature) const
   {
     if (regions == nullptr)
-      return elsewhere.value(p);
+      return elsewhere.value(p, 0., temperature);
     const int k = regions->at(p);
-    return k >= 0 && of_regions[k] ? of_regions[k]->value(p) : elsewhere.value(p);
+    return (k >= 0 && of_regions[k] ? *of_regions[k] : elsewhere).value(p, 0., temperature);
   }
 
 
@@ -197,11 +197,20 @@ namespace PeriDeal
   }
 
 
+  bool MaterialProperty::depends_on_temperature() const
+  {
+    return elsewhere.depends_on_temperature() ||
+           std::any_of(of_regions.begin(), of_regions.end(), [](const auto &formula) {
+             return formula && formula->depends_on_temperature();
+           });
+  }
+
+
   Phases::Phases()
     : SceneSection("Material/Phases")
   {
     const std::string form =
-      " of each phase: `name: formula of x, y, z`, several separated by `;`. A phase that is not named here "
+      " of each phase: `name: formula of x, y, z, T`, several separated by `;`. A phase that is not named here "
       "has the value of section `Material`.";
     declare(
       "Regions",
@@ -251,10 +260,11 @@ namespace PeriDeal
         std::optional<Expression> &value = list[found - regions->names.begin()];
         if (value)
           error(entry, "the phase '" + name_value.first + "' is named twice.");
-        value = Expression(name_value.second, at);
+        value = Expression(name_value.second, at, entry != "Saturated concentration");
         if (value->depends_on_time())
           entry_error(at,
-                      "'" + name_value.second + "' depends on t; known variables here: x, y, z.");
+                      "'" + name_value.second +
+                        "' depends on t; known variables here: x, y, z, T.");
         if (value->is_constant() && !(value->value(dealii::Point<1>()) > 0.))
           entry_error(at, "found " + name_value.second + ", needs a value greater than 0.");
       }
@@ -308,7 +318,7 @@ namespace PeriDeal
 #define PERIDEAL_INSTANTIATE(dim)                                          \
   template bool   Region::contains<dim>(const dealii::Point<dim> &) const; \
   template int    Regions::at<dim>(const dealii::Point<dim> &) const;      \
-  template double MaterialProperty::value<dim>(const dealii::Point<dim> &) const;
+  template double MaterialProperty::value<dim>(const dealii::Point<dim> &, const double) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -75,7 +75,7 @@ namespace PeriDeal
         return nullptr;
       }
 
-      const Operator &op() const override
+      Operator &op() const override
       {
         return *fem;
       }
@@ -248,7 +248,7 @@ namespace PeriDeal
         return node_set.get();
       }
 
-      const Operator &op() const override
+      Operator &op() const override
       {
         return *bonds;
       }

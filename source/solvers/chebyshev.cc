@@ -64,7 +64,7 @@ namespace PeriDeal
     class Chebyshev : public Stepper
     {
     public:
-      Chebyshev(const Operator &op, const StepperOptions &options)
+      Chebyshev(Operator &op, const StepperOptions &options)
         : op(op)
         , dt(options.time_step)
         , tolerance(0.1 * options.tolerance)
@@ -74,6 +74,11 @@ namespace PeriDeal
           UserError(
             "'Stepper = chebyshev' in section 'Time' needs a symmetric operator, and extrapolated fluxes or the "
             "papers' self term (section 'Peridynamics') make it nonsymmetric. Use rkc2 or auto."));
+        AssertThrow(
+          !op.depends_on_solution(),
+          UserError(
+            "'Stepper = chebyshev' in section 'Time' needs a material that does not depend on the temperature (T in "
+            "section 'Material'). Use rkc2, sdirk2 or auto."));
         AssertThrow(
           !op.depends_on_time(),
           UserError(
@@ -172,7 +177,7 @@ namespace PeriDeal
         u.add(tau, sum);
       }
 
-      const Operator     &op;
+      Operator           &op;
       const double        dt, tolerance;
       Vector              last, now, image, sum;
       std::vector<double> inverse; // of the capacity
@@ -180,7 +185,7 @@ namespace PeriDeal
   } // namespace
 
 
-  std::unique_ptr<Stepper> make_chebyshev(const Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_chebyshev(Operator &op, const StepperOptions &options)
   {
     return std::make_unique<Chebyshev>(op, options);
   }

@@ -18,7 +18,7 @@ namespace PeriDeal
     class ImplicitStepper : public Stepper
     {
     public:
-      ImplicitStepper(const Operator &op, const StepperOptions &options, const std::string &method)
+      ImplicitStepper(Operator &op, const StepperOptions &options, const std::string &method)
         : op(op)
         , method(method)
         , fixed(options.time_step > 0.)
@@ -104,7 +104,34 @@ namespace PeriDeal
       /** Solve C (U - w) = s (f(t) - K U): the start of the iteration is in U, w and s > 0 belong to the method. */
       void solve_stage(const Vector &w, const double s, const double t, Vector &U)
       {
+        // Picard iterations if the material depends on the solution: it is taken at the last iterate.
+        constexpr unsigned int most = 30;
+        const double           goal = 1e-4 * tolerance;
+        for (unsigned int k = 0; k < most; ++k)
+          {
+            solve_once(w, s, t, U);
+            if (!op.depends_on_solution() ||
+                capacity_norm(op, change) <= goal * capacity_norm(op, U))
+              return;
+          }
+        std::ostringstream message;
+        message
+          << "'Stepper = " << method
+          << "' in section 'Time': the iterations for the material's dependence on the temperature (T in section 'Material') did not "
+             "converge in "
+          << most << " rounds near t = " << t
+          << ". Choose a smaller 'Time step' or 'Tolerance', or 'Stepper = rkc2'.";
+        AssertThrow(false, UserError(message.str()));
+      }
+
+      void solve_once(const Vector &w, const double s, const double t, Vector &U)
+      {
         op.distribute(U, t);
+        if (op.depends_on_solution())
+          {
+            op.take_material_at(U);
+            solver.operator_changed();
+          }
         op.residual(residual, U, t);
         for (unsigned int i = 0; i < w.locally_owned_size(); ++i)
           offset.local_element(i) = w.local_element(i) - U.local_element(i);
@@ -143,8 +170,8 @@ namespace PeriDeal
         base.local_element(i) = u.local_element(i) + factor * k.local_element(i);
       }
 
-      const Operator &op;
-      Vector          next, error, base;
+      Operator &op;
+      Vector    next, error, base;
 
     private:
       std::string unstable_message(const double t) const
@@ -169,7 +196,7 @@ namespace PeriDeal
     class SDIRK2 : public ImplicitStepper
     {
     public:
-      SDIRK2(const Operator &op, const StepperOptions &options)
+      SDIRK2(Operator &op, const StepperOptions &options)
         : ImplicitStepper(op, options, "sdirk2")
       {
         prepare_base();
@@ -198,7 +225,7 @@ namespace PeriDeal
     class TwoStep : public ImplicitStepper
     {
     public:
-      TwoStep(const Operator &op, const StepperOptions &options, const std::string &method)
+      TwoStep(Operator &op, const StepperOptions &options, const std::string &method)
         : ImplicitStepper(op, options, method)
       {
         prepare_base();
@@ -262,7 +289,7 @@ namespace PeriDeal
     class BDF2 : public TwoStep
     {
     public:
-      BDF2(const Operator &op, const StepperOptions &options)
+      BDF2(Operator &op, const StepperOptions &options)
         : TwoStep(op, options, "bdf2")
       {}
 
@@ -288,7 +315,7 @@ namespace PeriDeal
     class CrankNicolson : public TwoStep
     {
     public:
-      CrankNicolson(const Operator &op, const StepperOptions &options)
+      CrankNicolson(Operator &op, const StepperOptions &options)
         : TwoStep(op, options, "crank nicolson")
         , solver_tolerance(options.solver_tolerance)
         , max_iterations(options.max_iterations)
@@ -303,6 +330,7 @@ namespace PeriDeal
         // C (U - u) = h/2 (F(u, t) + F(U, t + h)): as a stage from U = u, with the old half of the rate in the start value.
         start = u;
         op.distribute(start, t);
+        op.take_material_at(start);
         op.residual(load, start, t);
         if (op.capacity_is_diagonal())
           for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
@@ -338,17 +366,17 @@ namespace PeriDeal
   } // namespace
 
 
-  std::unique_ptr<Stepper> make_sdirk2(const Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_sdirk2(Operator &op, const StepperOptions &options)
   {
     return std::make_unique<SDIRK2>(op, options);
   }
 
-  std::unique_ptr<Stepper> make_bdf2(const Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_bdf2(Operator &op, const StepperOptions &options)
   {
     return std::make_unique<BDF2>(op, options);
   }
 
-  std::unique_ptr<Stepper> make_crank_nicolson(const Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_crank_nicolson(Operator &op, const StepperOptions &options)
   {
     return std::make_unique<CrankNicolson>(op, options);
   }

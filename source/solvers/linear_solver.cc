@@ -8,6 +8,7 @@
 #include <perideal/solvers/floating_part.h>
 #include <perideal/solvers/linear_solver.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -130,7 +131,7 @@ namespace PeriDeal
   }
 
 
-  unsigned int solve_steady(const Operator    &op,
+  unsigned int solve_steady(Operator          &op,
                             Vector            &u,
                             const double       t,
                             const double       tolerance,
@@ -145,12 +146,32 @@ namespace PeriDeal
     op.initialize_vector(rhs);
     op.initialize_vector(change);
     op.distribute(u, t);
+    op.take_material_at(u);
     op.residual(rhs, u, t);
     LinearSolver solver(op, tolerance, max_iterations);
     check_no_floating_part(op, solver.surrogate());
-    const unsigned int n_iterations = solver.solve(0., 1., change, rhs);
+    unsigned int n_iterations = solver.solve(0., 1., change, rhs);
     u += change;
     op.distribute(u, t);
+    // Picard iterations if the material depends on the solution.
+    constexpr unsigned int most  = 200;
+    const double           goal  = std::max(10. * tolerance, 1e-12);
+    unsigned int           round = 0;
+    for (; op.depends_on_solution() && change.l2_norm() > goal * u.l2_norm(); ++round)
+      {
+        AssertThrow(
+          round < most,
+          UserError(
+            "The iterations for the material's dependence on the temperature (T in section 'Material') did not "
+            "converge in 200 rounds. Start nearer to the solution ('Initial value'), or compute the way there in time."));
+        op.take_material_at(u);
+        solver.operator_changed();
+        op.residual(rhs, u, t);
+        change = 0.;
+        n_iterations += solver.solve(0., 1., change, rhs);
+        u += change;
+        op.distribute(u, t);
+      }
     AssertThrow(
       std::isfinite(u.l1_norm()),
       UserError("The steady solution is not finite. Check the material and the boundary values."));

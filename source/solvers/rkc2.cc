@@ -56,7 +56,7 @@ namespace PeriDeal
     class RKC2 : public Stepper
     {
     public:
-      RKC2(const Operator &op, const StepperOptions &options)
+      RKC2(Operator &op, const StepperOptions &options)
         : op(op)
         , fixed(options.time_step > 0.)
         , dt(fixed ? options.time_step : 0.)
@@ -80,6 +80,7 @@ namespace PeriDeal
             const double             h = (t_end - t) / static_cast<double>(n);
             for (unsigned long long k = 0; k < n; ++k)
               {
+                take_material_at(u, t + k * h);
                 compute_rate(op, u, t + k * h, rate);
                 stages(u, t + k * h, h);
                 u.swap(now);
@@ -114,6 +115,16 @@ namespace PeriDeal
       }
 
     private:
+      void take_material_at(Vector &v, const double t)
+      {
+        if (!op.depends_on_solution())
+          return;
+        op.distribute(v, t);
+        op.take_material_at(v);
+        inverse = inverse_capacity(op);
+      }
+
+
       unsigned int n_stages(const double h) const
       {
         return std::max(
@@ -168,12 +179,15 @@ namespace PeriDeal
         double t = t_start;
         if (dt == 0.)
           dt = std::min(t_end - t, 0.5 / op.spectrum().sharp);
+        take_material_at(u, t);
         compute_rate(op, u, t, rate);
         while (t < t_end)
           {
             const bool   lands = t + dt * (1. + 1e-10) >= t_end;
             const double h     = lands ? t_end - t : std::min(dt, 0.5 * (t_end - t) + 0.5 * dt);
             stages(u, t, h);
+            take_material_at(now,
+                             t + h); // so that the error estimate sees what has changed in the step
             compute_rate(op, now, t + h, stage_rate);
             // Estimate of the local error (the method's equation 2.10), in the root mean square.
             for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
@@ -197,6 +211,7 @@ namespace PeriDeal
             else
               {
                 ++spent.rejected;
+                take_material_at(u, t);
                 dt = h * std::min(growth, 0.9);
               }
           }
@@ -215,7 +230,7 @@ namespace PeriDeal
         AssertThrow(false, UserError(message.str()));
       }
 
-      const Operator     &op;
+      Operator           &op;
       const bool          fixed;
       double              dt;
       const double        tolerance;
@@ -225,7 +240,7 @@ namespace PeriDeal
   } // namespace
 
 
-  std::unique_ptr<Stepper> make_rkc2(const Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_rkc2(Operator &op, const StepperOptions &options)
   {
     return std::make_unique<RKC2>(op, options);
   }

@@ -18,7 +18,7 @@ namespace PeriDeal
     class FixedStepper : public Stepper
     {
     public:
-      FixedStepper(const Operator       &op,
+      FixedStepper(Operator             &op,
                    const StepperOptions &options,
                    const std::string    &method,
                    const double          share_of_bound)
@@ -37,6 +37,11 @@ namespace PeriDeal
 
       void advance(Vector &u, const double t, const double t_end) override
       {
+        if (op.depends_on_solution())
+          {
+            advance_lagged(u, t, t_end);
+            return;
+          }
         const unsigned long long n = n_equal_steps(t_end - t, dt);
         for (unsigned long long k = 0; k < n; ++k)
           {
@@ -65,9 +70,28 @@ namespace PeriDeal
       }
 
     protected:
+      /** The material is that of the temperatures at the beginning of each step. */
+      void advance_lagged(Vector &u, const double t_start, const double t_end)
+      {
+        for (double t = t_start; t < t_end;)
+          {
+            op.distribute(u, t);
+            op.take_material_at(u);
+            inverse = inverse_capacity(op);
+            restart(); // the bound of this step
+            const bool   lands = t + dt * (1. + 1e-10) >= t_end;
+            const double size  = lands ? t_end - t : dt;
+            step(u, t, size);
+            t = lands ? t_end : t + dt;
+            ++spent.steps;
+            check_finite(u, method, t);
+          }
+        op.distribute(u, t_end);
+      }
+
       virtual void step(Vector &u, const double t, const double size) = 0;
 
-      const Operator &op;
+      Operator &op;
 
     private:
       const std::string method;
@@ -76,7 +100,7 @@ namespace PeriDeal
       double            dt;
 
     protected:
-      const std::vector<double> inverse; // of the capacity
+      std::vector<double> inverse; // of the capacity
     };
 
 
@@ -84,7 +108,7 @@ namespace PeriDeal
     class Euler : public FixedStepper
     {
     public:
-      Euler(const Operator &op, const StepperOptions &options)
+      Euler(Operator &op, const StepperOptions &options)
         : FixedStepper(op, options, "euler", 0.9)
       {
         op.initialize_vector(next);
@@ -120,7 +144,7 @@ namespace PeriDeal
     class RK4 : public FixedStepper
     {
     public:
-      RK4(const Operator &op, const StepperOptions &options)
+      RK4(Operator &op, const StepperOptions &options)
         : FixedStepper(op, options, "rk4", 0.95)
       {
         for (Vector *v : {&rate, &stage, &next_stage, &sum})
@@ -181,13 +205,13 @@ namespace PeriDeal
   } // namespace
 
 
-  std::unique_ptr<Stepper> make_euler(const Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_euler(Operator &op, const StepperOptions &options)
   {
     return std::make_unique<Euler>(op, options);
   }
 
 
-  std::unique_ptr<Stepper> make_rk4(const Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_rk4(Operator &op, const StepperOptions &options)
   {
     return std::make_unique<RK4>(op, options);
   }

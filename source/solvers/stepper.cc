@@ -15,9 +15,9 @@ namespace PeriDeal
   {
     struct Entry
     {
-      std::string                                                                       name;
-      std::function<std::unique_ptr<Stepper>(const Operator &, const StepperOptions &)> make;
-      bool                                                                              is_explicit;
+      std::string                                                                 name;
+      std::function<std::unique_ptr<Stepper>(Operator &, const StepperOptions &)> make;
+      bool                                                                        is_explicit;
     };
 
     const std::vector<Entry> &entries()
@@ -68,7 +68,8 @@ namespace PeriDeal
   {
     if (!op.capacity_is_diagonal())
       return "sdirk2";
-    return op.symmetric() && !op.depends_on_time() ? "chebyshev" : "rkc2";
+    return op.symmetric() && !op.depends_on_time() && !op.depends_on_solution() ? "chebyshev" :
+                                                                                  "rkc2";
   }
 
 
@@ -84,7 +85,7 @@ namespace PeriDeal
 
 
   std::unique_ptr<Stepper> make_stepper(const std::string    &name,
-                                        const Operator       &op,
+                                        Operator             &op,
                                         const StepperOptions &options)
   {
     const std::string wanted = name == "auto" ? choose_stepper(op) : name;

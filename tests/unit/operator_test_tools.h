@@ -92,9 +92,9 @@ namespace PeriDeal
         find_positions();
       }
 
-      const Operator &op() const
+      Operator &op() const
       {
-        return bonds ? static_cast<const Operator &>(*bonds) : *fem;
+        return bonds ? static_cast<Operator &>(*bonds) : *fem;
       }
 
       Vector vector() const

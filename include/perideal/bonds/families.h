@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/types.h>
 #include <perideal/bonds/fictitious_nodes.h>
 #include <perideal/laws/lattice_family.h>
 #include <perideal/mesh/nodes.h>
@@ -73,6 +74,14 @@ namespace PeriDeal
     /** One conductivity everywhere, so that the lattice form needs no corrections for it. */
     bool   uniform_conductivity() const;
     double conductivity(const unsigned int node) const;
+
+    bool conductivity_depends_on_temperature() const;
+
+    /** The conductivity of a bond by the interface rule. */
+    double bond_conductivity(const unsigned int node, const unsigned int neighbor) const;
+
+    /** Conductivities at the temperatures u, whose ghosts are up to date. Collective. Throws UserError where one is not positive. */
+    void take_conductivities_at(const Vector &u);
 
     /** Surface correction by energy: bonds everywhere may have factors. */
     bool corrects_every_bond() const;
@@ -158,7 +167,6 @@ namespace PeriDeal
     void   test_images(const unsigned int         node,
                        const FictitiousNode<dim> &fictitious,
                        const Test                &test) const;
-    double bond_conductivity(const unsigned int node, const unsigned int neighbor) const;
     double off_lattice_weight(const double r) const;
     void   add_self_term(const unsigned int node, std::vector<Bond> &bonds) const;
     void   sites_in(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &found) const;

@@ -55,6 +55,9 @@ namespace PeriDeal
      */
     virtual void update_rows(const std::vector<unsigned int> &rows, double *sums) = 0;
 
+    /** The conductivities of all nodes have changed (Families::take_conductivities_at()): scale each bond, and write the sums of all rows. */
+    virtual void update_conductivities(double *sums) = 0;
+
     /** Bytes held. */
     virtual std::size_t memory_consumption() const = 0;
 

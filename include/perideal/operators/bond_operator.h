@@ -47,6 +47,8 @@ namespace PeriDeal
     bool          surrogate_is_exact() const override;
     double        next_event(const double t) const override;
     bool          update(const double t) override;
+    bool          depends_on_solution() const override;
+    void          take_material_at(const Vector &u) override;
     Balance       balance(const Vector &u, const double t, const bool steady) const override;
     std::string   place_of(const unsigned int local_index) const override;
     OperatorSize  size() const override;
@@ -68,7 +70,7 @@ namespace PeriDeal
     };
 
     void                      choose_form(const OperatorForm wanted);
-    void                      find_capacity();
+    void                      find_capacity(const Vector *u);
     void                      find_side_loads();
     void                      find_diagonal();
     std::vector<unsigned int> rows_to_correct() const;

@@ -51,6 +51,8 @@ namespace PeriDeal
     bool          surrogate_is_exact() const override;
     double        next_event(const double t) const override;
     bool          update(const double t) override;
+    bool          depends_on_solution() const override;
+    void          take_material_at(const Vector &u) override;
     Balance       balance(const Vector &u, const double t, const bool steady) const override;
     std::string   place_of(const unsigned int local_index) const override;
     OperatorSize  size() const override;
@@ -83,6 +85,10 @@ namespace PeriDeal
     void   add_crack_heat(const Vector &u, Balance &balance) const;
     void   check_material() const;
     void   assemble();
+    void   fill();
+    void   find_temperatures(CellData &data) const;
+    double center_conductivity(const Cell &cell) const;
+    double heat_of(const Vector &u) const;
     void   assemble_cell(const Cell &cell, CellData &data) const;
     void   keep_unseparated_pairs(const Cell &cell, CellData &data) const;
     void   assemble_loads(Vector &loads, const double t) const;
@@ -100,12 +106,13 @@ namespace PeriDeal
     dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
     Vector                                 capacity, stiffness_diagonal, constant_loads;
     mutable Vector                         scratch;
-    std::shared_ptr<CellData>              cell_data; // memory of the cell loops
-    std::vector<Prescribed>                prescribed;
-    std::vector<bool>                      cut; // by active cell index
-    Vector                                 crack_factors;
-    bool                                   loads_vary = false, any_prescribed = false;
-    double                                 gershgorin = 0.;
-    mutable Spectrum                       bounds;
+    Vector temperatures; // that K and C are those of, with ghosts; empty: initial values
+    std::shared_ptr<CellData> cell_data; // memory of the cell loops
+    std::vector<Prescribed>   prescribed;
+    std::vector<bool>         cut; // by active cell index
+    Vector                    crack_factors;
+    bool                      loads_vary = false, any_prescribed = false;
+    double                    gershgorin = 0.;
+    mutable Spectrum          bounds;
   };
 } // namespace PeriDeal

@@ -34,7 +34,7 @@ namespace PeriDeal
            cracks;       // from the right side of each crack to its left; not part of the balance
     double sources = 0.; // volume sources
     double stored  = 0.; // rate of change of the heat in the free unknowns
-    double content = 0.; // sum C_i T_i
+    double content = 0.; // sum C_i T_i; the integral of C over T where it depends on T
 
     /** Sum of everything that enters. */
     double throughput() const;
@@ -157,6 +157,15 @@ namespace PeriDeal
     {
       return false;
     }
+
+    /** K or C depend on the solution itself: temperature-dependent conductivity or capacity. Not collective. */
+    virtual bool depends_on_solution() const
+    {
+      return false;
+    }
+
+    /** Make K and C those of the temperatures u, which must have been through distribute(). Bounds and diagonals change with them. */
+    virtual void take_material_at(const Vector &) {}
 
     /** Heat through each side and in the body; u must have been through distribute(u, t). @p steady leaves out storage. */
     virtual Balance balance(const Vector &u, const double t, const bool steady) const = 0;

@@ -27,30 +27,37 @@ namespace PeriDeal
 
     /**
      * @param text  the formula
+     * @param with_temperature T is a variable, too
      * @param where entry and section for messages, for example "'Source' in section 'Initial and
      * source'" Throws UserError with the position and what is wrong.
      */
-    Expression(const std::string &text, const std::string &where);
+    Expression(const std::string &text,
+               const std::string &where,
+               const bool         with_temperature = false);
 
     /**
      * Value at a point; coordinates beyond dim are zero. Throws UserError if it is not finite, or gives NaN while
      * DeferredFormulaErrors collects such errors.
      */
     template <int dim>
-    double value(const dealii::Point<dim> &p, const double t = 0.) const;
+    double value(const dealii::Point<dim> &p,
+                 const double              t           = 0.,
+                 const double              temperature = 0.) const;
 
-    /** No x, y, z or t in it. */
+    /** No x, y, z, t or T in it. */
     bool is_constant() const;
 
     bool depends_on_time() const;
 
     bool depends_on_position() const;
 
+    bool depends_on_temperature() const;
+
     const std::string &text() const;
 
   private:
     template <int dim>
-    void not_finite(const dealii::Point<dim> &p, const double t) const;
+    void not_finite(const dealii::Point<dim> &p, const double t, const double temperature) const;
 
     struct Compiled;
     std::shared_ptr<Compiled> compiled;

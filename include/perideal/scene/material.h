@@ -13,7 +13,7 @@ namespace PeriDeal
 {
   /**
    * Section `Material`: conductivity and storage (Density x Heat capacity) as expressions of x, y,
-   * z, and in its subsection `Phases` those of parts of the body.
+   * z and the temperature T, and in its subsection `Phases` those of parts of the body.
    */
   class Material : public SceneSection
   {
@@ -29,7 +29,11 @@ namespace PeriDeal
 
     /** rho c at a point. */
     template <int dim>
-    double storage(const dealii::Point<dim> &p) const;
+    double storage(const dealii::Point<dim> &p, const double temperature = 0.) const;
+
+    /** T is in a formula of the storage, or in one of this or the conductivity. */
+    bool storage_depends_on_temperature() const;
+    bool depends_on_temperature() const;
 
     /** The storage may be 0 with electricity only, which is then steady. */
     void parse(const Physics physics = Physics::heat);

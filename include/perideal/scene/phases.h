@@ -75,11 +75,15 @@ namespace PeriDeal
                      const std::shared_ptr<const Regions>         &regions,
                      const std::vector<std::optional<Expression>> &of_regions);
 
+    /** @param temperature the T of its formulas, the unknown field itself (the wetness with moisture) */
     template <int dim>
-    double value(const dealii::Point<dim> &p) const;
+    double value(const dealii::Point<dim> &p, const double temperature = 0.) const;
 
     /** One number in the whole body. */
     bool is_constant() const;
+
+    /** T is in some formula. */
+    bool depends_on_temperature() const;
 
   private:
     Expression                             elsewhere{1.};

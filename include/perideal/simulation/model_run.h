@@ -39,7 +39,7 @@ namespace PeriDeal
     /** Nodes on a lattice, for reading values at points without a mesh search; nullptr for finite elements. */
     virtual const Nodes<dim> *nodes() const = 0;
 
-    virtual const Operator &op() const = 0;
+    virtual Operator &op() const = 0;
 
     /** As Operator::update(). */
     virtual bool update(const double t) = 0;

@@ -52,7 +52,7 @@ namespace PeriDeal
    * The steady state f(t) = K u; u holds the start on entry. Returns the number of iterations. Throws UserError if nothing fixes the
    * level of the solution in the body or in a part that cracks have cut off. Collective.
    */
-  unsigned int solve_steady(const Operator    &op,
+  unsigned int solve_steady(Operator          &op,
                             Vector            &u,
                             const double       t,
                             const double       tolerance,

@@ -83,7 +83,7 @@ namespace PeriDeal
    * (with both bounds in the message). Collective.
    */
   std::unique_ptr<Stepper> make_stepper(const std::string    &name,
-                                        const Operator       &op,
+                                        Operator             &op,
                                         const StepperOptions &options);
 
   /** Largest stable step of an explicit method (`euler` 2/lambda, `rk4` 2.785/lambda); infinite for all others. */
@@ -93,11 +93,11 @@ namespace PeriDeal
   void refuse_unstable_step(const std::string &name, const Operator &op, const double dt);
 
   // One maker per family of methods, each in its own file.
-  std::unique_ptr<Stepper> make_euler(const Operator &op, const StepperOptions &options);
-  std::unique_ptr<Stepper> make_rk4(const Operator &op, const StepperOptions &options);
-  std::unique_ptr<Stepper> make_rkc2(const Operator &op, const StepperOptions &options);
-  std::unique_ptr<Stepper> make_chebyshev(const Operator &op, const StepperOptions &options);
-  std::unique_ptr<Stepper> make_crank_nicolson(const Operator &op, const StepperOptions &options);
-  std::unique_ptr<Stepper> make_bdf2(const Operator &op, const StepperOptions &options);
-  std::unique_ptr<Stepper> make_sdirk2(const Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_euler(Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_rk4(Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_rkc2(Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_chebyshev(Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_crank_nicolson(Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_bdf2(Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_sdirk2(Operator &op, const StepperOptions &options);
 } // namespace PeriDeal
