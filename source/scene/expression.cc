@@ -94,6 +94,7 @@ namespace PeriDeal
         return "'" + token + "': random numbers are not available, since a run must be repeatable";
       if (token == "and" || token == "or")
         return "unknown name '" + token + "'; write " + (token == "and" ? "&&" : "||");
+      const std::string variables = parser.GetVar().count("T") > 0 ? "x, y, z, t, T" : "x, y, z, t";
       std::vector<std::string> known = {"x", "y", "z", "t"};
       for (const auto &constant : parser.GetConst())
         known.push_back(constant.first);
@@ -101,7 +102,7 @@ namespace PeriDeal
         known.push_back(function.first);
       const std::string nearest = token.size() > 1 ? nearest_name(token, known) : "";
       return "unknown name '" + token + "'" +
-             (nearest.empty() ? "; known variables: x, y, z, t" :
+             (nearest.empty() ? "; known variables: " + variables :
                                 "; did you mean '" + nearest + "'?");
     }
 

@@ -47,7 +47,10 @@ namespace PeriDeal
   } // namespace
 
 
-  Region::Region(const std::string &text, const std::string &where)
+  Region::Region(const std::string                          &text,
+                 const std::string                          &where,
+                 const std::shared_ptr<const MeshMaterials> &mesh)
+    : mesh(mesh)
   {
     struct Shape
     {
@@ -61,7 +64,8 @@ namespace PeriDeal
       {"sphere", Kind::ball, 3, 4, "sphere(x, y, z, radius)"},
       {"rectangle", Kind::box, 2, 4, "rectangle(x0, y0, x1, y1)"},
       {"box", Kind::box, 3, 6, "box(x0, y0, z0, x1, y1, z1)"},
-      {"polygon", Kind::polygon, 2, 6, "polygon(x0, y0, x1, y1, x2, y2, ...)"}};
+      {"polygon", Kind::polygon, 2, 6, "polygon(x0, y0, x1, y1, x2, y2, ...)"},
+      {"mesh", Kind::mesh, 0, 1, "mesh(material id)"}};
     for (const Shape &shape : shapes)
       {
         const auto arguments = arguments_of(text, shape.name);
@@ -73,7 +77,14 @@ namespace PeriDeal
         kind          = shape.kind;
         n_coordinates = shape.n_coordinates;
         numbers       = numbers_of(*arguments, where);
-        double size   = kind == Kind::ball ? numbers.back() : 0.;
+        if (kind == Kind::mesh)
+          {
+            if (numbers[0] < 0. || numbers[0] != std::floor(numbers[0]))
+              entry_error(where,
+                          "'" + text + "' needs the form mesh(material id), a whole number.");
+            return;
+          }
+        double size = kind == Kind::ball ? numbers.back() : 0.;
         if (kind == Kind::box)
           {
             size = numbers[n_coordinates] - numbers[0];
@@ -92,7 +103,13 @@ namespace PeriDeal
       }
     formula = Expression(text, where);
     if (formula.depends_on_time())
-      entry_error(where, "'" + text + "' depends on t; known variables here: x, y, z, T.");
+      entry_error(where, "'" + text + "' depends on t; known variables here: x, y, z.");
+  }
+
+
+  int Region::mesh_id() const
+  {
+    return kind == Kind::mesh ? static_cast<int>(numbers[0]) : -1;
   }
 
 
@@ -125,6 +142,11 @@ namespace PeriDeal
     double x[3] = {0., 0., 0.};
     for (unsigned int d = 0; d < dim; ++d)
       x[d] = p[d];
+    if (kind == Kind::mesh)
+      {
+        Assert(mesh && mesh->id_at, dealii::ExcMessage("The mesh is not known yet."));
+        return mesh->id_at(x) == mesh_id();
+      }
     if (kind == Kind::polygon)
       return in_polygon(x[0], x[1]);
     double square = 0.;
@@ -134,6 +156,14 @@ namespace PeriDeal
       else if (x[d] < numbers[d] - slack || x[d] > numbers[n_coordinates + d] + slack)
         return false;
     return kind == Kind::box || std::sqrt(square) <= numbers.back() + slack;
+  }
+
+
+  bool Regions::need_mesh() const
+  {
+    return std::any_of(regions.begin(), regions.end(), [](const Region &region) {
+      return region.mesh_id() >= 0;
+    });
   }
 
 
@@ -219,7 +249,8 @@ namespace PeriDeal
       "",
       "Parts of the body with a material of their own: `name: region`, several separated by `;`. A region is where a formula of x, y, "
       "z is greater than 0, or `circle(x, y, r)`, `rectangle(x0, y0, x1, y1)`, `polygon(x0, y0, x1, y1, ...)`, `sphere(x, y, z, r)`, "
-      "`box(x0, y0, z0, x1, y1, z1)`, their rims included. Regions must not overlap; outside them the entries of section `Material` "
+      "`box(x0, y0, z0, x1, y1, z1)`, their rims included, or with a mesh file `mesh(id)`, the cells with that material id (Gmsh: physical surface, "
+      "in 3D volume). Regions must not overlap; outside them the entries of section `Material` "
       "hold.");
     declare("Conductivity",
             EntryType::list,
@@ -276,6 +307,7 @@ namespace PeriDeal
   {
     auto list   = std::make_shared<Regions>();
     list->where = where("Regions");
+    list->mesh  = std::make_shared<MeshMaterials>();
     for (const std::string &piece : split_list(text("Regions"), ';'))
       {
         const auto name_value = name_and_value(piece, where("Regions"));
@@ -284,7 +316,8 @@ namespace PeriDeal
           error("Regions", "the phase '" + name_value.first + "' is named twice.");
         list->names.push_back(name_value.first);
         list->regions.emplace_back(name_value.second,
-                                   where("Regions") + ", phase '" + name_value.first + "'");
+                                   where("Regions") + ", phase '" + name_value.first + "'",
+                                   list->mesh);
       }
     regions = list;
     std::vector<bool> has_material(regions->names.size(), false);

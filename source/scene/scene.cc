@@ -319,6 +319,10 @@ namespace PeriDeal
         check_shape_for_peridynamics(*this);
         check_horizon(*this);
       }
+    if (domain.shape != Shape::mesh_file && material.phases.all().need_mesh())
+      entry_error(
+        material.phases.where("Regions"),
+        "mesh(id) refers to the material ids of a mesh file, but 'Shape' in section 'Domain' is another.");
     check_combinations(*this);
     check_steady(*this);
     crack_history(); // for its errors

@@ -4,8 +4,10 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/operators/bond_operator.h>
+#include <perideal/scene/lists.h>
 #include <perideal/simulation/simulation.h>
 #include <perideal/solvers/linear_solver.h>
 
@@ -13,6 +15,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "effective_conductivity.h"
 #include "result_record.h"
 
 namespace PeriDeal
@@ -80,7 +83,18 @@ namespace PeriDeal
     {
       Timings::Scope scope(timings, "mesh");
       mesh = build_mesh(scene.domain, scene.cracks, communicator, record->notes);
+      set_material_ids(*mesh, scene.material.phases.all());
     }
+    if (!scene.cracks.tips.empty())
+      {
+        const CrackHistory<dim> history = scene.crack_history();
+        record->notes.push_back(
+          "the cracks grow in " + std::to_string(history.events().size()) +
+          " events, between which no tip advances more than " +
+          number_text(history.longest_advance()) +
+          "; bonds are cut too early or too late by at most the time that it needs for half of that ('Growth step' in section "
+          "'Cracks').");
+      }
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
     unsigned int n_own_cells = 0;
     for (const auto &cell : mesh->active_cell_iterators())
@@ -439,6 +453,11 @@ namespace PeriDeal
     record->balances[model.name()] = {
       {"boundary flux", balance.sides},
       {"heat balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}}};
+    if (const auto kappa = effective_conductivity(scene, balance))
+      {
+        row("effective conductivity", *kappa);
+        record->balances[model.name()]["effective conductivity"] = *kappa;
+      }
     if (!balance.cracks.empty())
       record->balances[model.name()]["crack flux"] = balance.cracks;
   }

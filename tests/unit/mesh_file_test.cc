@@ -133,6 +133,38 @@ namespace PeriDeal
   }
 
 
+  TEST(MeshFile, materials_by_id)
+  {
+    // Two layers in series, 1 : 100, 0 below and 1 on top: heat 2/(0.5/1 + 0.5/100).
+    const Settings layers =
+      file("two_materials.msh") + Settings{{"Material/Phases/Regions", "upper: mesh(9)"},
+                                           {"Material/Phases/Conductivity", "upper: 100"},
+                                           {"Boundary conditions/Dirichlet", "3: 0 ; 4: 1"}};
+    const double exact = 2. / (0.5 + 0.5 / 100.);
+    for (const Model model : {Model::finite_elements, Model::peridynamics})
+      {
+        const Problem<2> problem(layers, model);
+        Vector           u = problem.vector();
+        solve_steady(problem.op(), u, 0., 1e-12, 1000);
+        const double heat = problem.op().balance(u, 0., true).sides.at("4");
+        EXPECT_NEAR(heat, exact, model == Model::finite_elements ? 1e-10 : 0.3 * exact);
+        for (const double y : {0.1, 0.4, 0.6, 0.9})
+          EXPECT_EQ(problem.scene.material.conductivity.value(Point<2>(0.77, y)),
+                    y > 0.5 ? 100. : 1.);
+      }
+    SceneTests::expect_parts(
+      SceneTests::message_of([&] {
+        Problem<2>(layers + Settings{{"Material/Phases/Regions", "upper: mesh(8)"}});
+      }),
+      {"'Regions' in section 'Material/Phases'", "mesh(8)", "7, 9"});
+    SceneTests::expect_parts(SceneTests::message_of([&] {
+                               Problem<2>(Settings{{"Material/Phases/Regions", "upper: mesh(9)"},
+                                                   {"Material/Phases/Conductivity", "upper: 100"}});
+                             }),
+                             {"'Regions' in section 'Material/Phases'", "mesh file"});
+  }
+
+
   TEST(MeshFile, mistakes)
   {
     for (const std::string name : {"triangles.msh", "broken.msh", "hexes.msh", "missing.msh"})

@@ -9,6 +9,7 @@
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/lac/full_matrix.h>
 
+#include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/operators/bond_operator.h>
 #include <perideal/operators/fem_operator.h>
@@ -44,7 +45,7 @@ namespace PeriDeal
       scene.general.set("Dimension", std::to_string(dim));
       for (const auto &[path, text] : settings)
         {
-          const auto  slash   = path.find('/');
+          const auto  slash   = path.rfind('/');
           bool        found   = false;
           const auto &section = path.substr(0, slash);
           for (SceneSection *s : scene.sections())
@@ -71,6 +72,7 @@ namespace PeriDeal
                           model == Model::peridynamics ? "peridynamics" : "finite elements");
         set(scene, settings);
         mesh = build_mesh(scene.domain, scene.cracks, communicator, notes);
+        set_material_ids(*mesh, scene.material.phases.all());
         handler.reinit(*mesh);
         if (model == Model::peridynamics && scene.domain.nodes == NodePlacement::cell_centers)
           handler.distribute_dofs(dealii::FE_DGQ<dim>(0));

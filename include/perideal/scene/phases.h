@@ -6,6 +6,7 @@
 #include <perideal/scene/expression.h>
 #include <perideal/scene/section.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,9 +14,17 @@
 
 namespace PeriDeal
 {
+  /** The material ids of a mesh file's cells, known once the mesh is (set_material_ids() of the room mesh). */
+  struct MeshMaterials
+  {
+    /** Of the cell that holds a point, given by three coordinates; the smallest where several do. */
+    std::function<int(const double *)> id_at;
+  };
+
+
   /**
    * A part of the body with a material of its own: where a formula of x, y, z is greater than 0, or one of the shapes circle, rectangle,
-   * polygon (2D), sphere, box (3D) with its rim, given by numbers.
+   *polygon (2D), sphere, box (3D) with its rim, given by numbers, or the cells of a mesh file with a material id.
    */
   class Region
   {
@@ -23,9 +32,15 @@ namespace PeriDeal
     /**
      * @param text  a formula, `circle(x, y, r)`, `rectangle(x0, y0, x1, y1)`, `polygon(x0, y0, x1, y1, x2, y2, ...)`, `sphere(x, y, z, r)`
      *              or `box(x0, y0, z0, x1, y1, z1)`
+          * @param mesh  what `mesh(id)` asks
      * @param where entry and section for messages. Throws UserError for wrong formulas and shapes of no size.
      */
-    Region(const std::string &text, const std::string &where);
+    Region(const std::string                          &text,
+           const std::string                          &where,
+           const std::shared_ptr<const MeshMaterials> &mesh = nullptr);
+
+    /** Of a region given as `mesh(id)`, else -1. */
+    int mesh_id() const;
 
     template <int dim>
     bool contains(const dealii::Point<dim> &p) const;
@@ -36,25 +51,31 @@ namespace PeriDeal
       formula,
       ball,
       box,
-      polygon
+      polygon,
+      mesh
     };
 
     bool in_polygon(const double x, const double y) const;
 
-    Kind                kind = Kind::formula;
-    Expression          formula;
-    std::vector<double> numbers;
-    unsigned int        n_coordinates = 2;  // of a shape
-    double              slack         = 0.; // round-off that still counts as the rim
+    Kind                                 kind = Kind::formula;
+    Expression                           formula;
+    std::vector<double>                  numbers;
+    unsigned int                         n_coordinates = 2; // of a shape
+    double                               slack = 0.; // round-off that still counts as the rim
+    std::shared_ptr<const MeshMaterials> mesh;
   };
 
 
   /** The named regions of a scene. They must not overlap; where none is, the entries of section `Material` hold. */
   struct Regions
   {
-    std::vector<std::string> names;
-    std::vector<Region>      regions;
-    std::string              where;
+    std::vector<std::string>       names;
+    std::vector<Region>            regions;
+    std::string                    where;
+    std::shared_ptr<MeshMaterials> mesh; // shared by the regions given by material ids
+
+    /** Some region is given by a material id. */
+    bool need_mesh() const;
 
     /** Number of the region at a point from 0 on, or -1. Throws the UserError of an overlap, or defers it (report_formula_error()). */
     template <int dim>

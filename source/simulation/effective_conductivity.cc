@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "effective_conductivity.h"
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  std::optional<double> effective_conductivity(const Scene<dim> &scene, const Balance &balance)
+  {
+    const BoundaryConditions<dim> &bc       = scene.boundary_conditions;
+    const auto                     vanishes = [](const Expression &formula) {
+      return formula.is_constant() && formula.value(Point<dim>()) == 0.;
+    };
+    if (scene.domain.shape != Shape::box || bc.dirichlet.size() != 2 || !bc.convection.empty() ||
+        !vanishes(scene.initial_and_source.source) ||
+        !std::all_of(bc.flux.begin(), bc.flux.end(), [&](const SideCondition &side) {
+          return vanishes(side.value);
+        }))
+      return {};
+    const SideCondition &a = bc.dirichlet[0], &b = bc.dirichlet[1];
+    if (a.id / 2 != b.id / 2 || a.id == b.id || !a.value.is_constant() || !b.value.is_constant())
+      return {};
+    const double difference = a.value.value(Point<dim>()) - b.value.value(Point<dim>());
+    if (difference == 0.)
+      return {};
+    double length_over_area = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double length = scene.domain.upper[d] - scene.domain.lower[d];
+        length_over_area    = d == a.id / 2 ? length_over_area * length : length_over_area / length;
+      }
+    const double heat = 0.5 * (balance.sides.at(a.name) - balance.sides.at(b.name));
+    return heat * length_over_area / difference;
+  }
+
+  template std::optional<double> effective_conductivity(const Scene<1> &, const Balance &);
+  template std::optional<double> effective_conductivity(const Scene<2> &, const Balance &);
+  template std::optional<double> effective_conductivity(const Scene<3> &, const Balance &);
+} // namespace PeriDeal
