@@ -123,7 +123,8 @@ def error_rows(run, words):
     errors = model_rows(run, f"Relative L2 error{when}", final("errors", "relative l2"))
     errors += model_rows(run, words.solution.label(f"Largest error{when}"),
                          final("errors", "maximum"))
-        errors += model_rows(run, "Effective conductivity of the whole", lambda m: m.get("effective conductivity"))
+    errors += model_rows(run, "Effective conductivity of the whole",
+                         lambda m: m.get("effective conductivity"))
     for part in ("throughput", "imbalance"):
         errors += model_rows(run, f"{name(words.quantity)} {part}",
                              lambda m, p=part: findings.balance(m, words).get(p))
