@@ -145,7 +145,7 @@ namespace PeriDeal
     for (const auto &[node, h] : convection_diagonal)
       if (std::binary_search(rows.begin(), rows.end(), node))
         bond_diagonal.local_element(node) += h;
-    if (corrected || bonds.crack_history().may_close())
+    if (corrected || bonds.crack_history().may_close() || !symmetric())
       {
         // Rates can have grown. Where bonds are only cut, the old bounds still hold.
         double bound = 0.;

@@ -128,6 +128,7 @@ namespace PeriDeal
       for (unsigned int b = 0; b < a; ++b)
         {
           const double w = std::max(0., -original(a, b)) * kept_fraction(cell, a, b, nullptr);
+          pairs_stiffer  = pairs_stiffer || original(a, b) > 1e-12 * original(a, a);
           data.stiffness(a, b) -= w;
           data.stiffness(b, a) -= w;
           data.stiffness(a, a) += w;

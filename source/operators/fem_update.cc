@@ -105,7 +105,9 @@ namespace PeriDeal
               place_of(i) + " without any conducting cell. Use 'pairs' or a finer mesh.";
         }
     throw_on_all_if_any(dofs.get_communicator(), message);
-    if (crack_factors.size() > 0 || history.may_close())
+    // Pairs of a cell with positive entries off the diagonal (of unequal sides) conduct more than it did as a whole.
+    const bool stiffer = Utilities::MPI::max(pairs_stiffer ? 1 : 0, dofs.get_communicator()) > 0;
+    if (stiffer || crack_factors.size() > 0 || history.may_close())
       {
         // Rates can have grown. Where cells are only cut, the old bounds still hold.
         gershgorin = std::max(gershgorin, Utilities::MPI::max(bound, dofs.get_communicator()));

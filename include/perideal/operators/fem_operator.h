@@ -114,5 +114,6 @@ namespace PeriDeal
     bool                      loads_vary = false, any_prescribed = false;
     double                    gershgorin = 0.;
     mutable Spectrum          bounds;
+    mutable bool pairs_stiffer = false; // some cut cell's pairs conduct more than the cell
   };
 } // namespace PeriDeal
