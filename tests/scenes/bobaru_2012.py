@@ -13,8 +13,8 @@ import sys
 
 from scene_test import Comparison, finish, fitted_order, print_table, relative_difference, run_scene
 
-PAPER = "prm/heat/bobaru_2012_example_{}_paper.prm"
-OURS = "prm/heat/bobaru_2012_example_{}.prm"
+PAPER = "prm/papers/bobaru_2012/example_{}_paper.prm"
+OURS = "prm/papers/bobaru_2012/example_{}.prm"
 
 TIMES = (0.05, 0.1, 0.2)
 TABLE_1 = {60: (0.15741, 0.11342, 0.07517), 120: (0.07927, 0.05301, 0.03203), 240: (0.03474, 0.02302, 0.01881)}
