@@ -26,7 +26,7 @@ sys.path.insert(0, str(ROOT / "doc" / "reproduce"))
 import bobaru_2010  # noqa: E402
 import bobaru_2012  # noqa: E402
 import diyaroglu_2017  # noqa: E402
-import page  # noqa: E402
+import document  # noqa: E402
 import tan_2020  # noqa: E402
 from results import Missing, Study  # noqa: E402
 
@@ -111,7 +111,7 @@ def main():
             if values is not None:
                 found[key] = values
     if options.check:
-        return 1 if check(papers, found, kept, page.text(papers, kept)) else 0
+        return 1 if check(papers, found, kept, document.text(papers, kept)) else 0
     current = {key: dict(found.get(key) or kept[key]) for key, *_ in keys(papers) if key in found or key in kept}
     if options.quick:  # what was not computed now is marked in the page
         for key in current:
@@ -119,7 +119,7 @@ def main():
     elif found:
         KEPT.write_text("{\n" + ",\n".join(f" {json.dumps(k)}: {json.dumps(v)}" for k, v in sorted(current.items())) + "\n}\n", encoding="utf-8")
         draw(papers, studies)
-    PAGE.write_text(page.text(papers, current), encoding="utf-8")
+    PAGE.write_text(document.text(papers, current), encoding="utf-8")
     absent = [key for key, *_ in keys(papers) if key not in current]
     print(f"{PAGE.relative_to(ROOT)}: {len(found)} lines computed, {len(current) - len(found)} kept, {len(absent)} absent")
     for key in absent:

@@ -7,7 +7,7 @@ import numpy as np
 import closed_forms as exact
 import figures
 from results import fitted_order, largest
-from tables import Line, Paper, Picture, Table
+from lines import Line, Paper, Picture, Table
 
 KERNELS, RATIOS, FINENESS = ("constant", "conical"), (2, 4, 8, 16), (100, 200, 400, 800)
 SOLUTION = {1: exact.cooling_bar, 2: exact.two_temperatures, 3: exact.given_flux}
@@ -142,12 +142,11 @@ def section(published):
               "nothing to cross.", ["T", "m of the crossing"], crossings, gap="absolute", digits=6),
         Table("flux", "Section 4.2.2: Example 3, a given flux", "Equation 22 at the heated end, horizon 3L/800, m = 4, 1067 nodes. The "
               "paper does not say at which time.", ["t = 8", "t = 4", "t = 0.1"], example_3, digits=3,
-              after="Not reproduced. Tried without success: the printed equation 45 and its root; each of the three times of Fig. 15; the "
-              "constant kernel with and without half a volume at the horizon, the self term with k(0) and with k at the neighbour, "
-              "cold end node at the wall; an independent program ([tests/reference](../tests/reference/README.md)) has 4.4e-5 and 4.9e-5 at 8 s, "
-              "too. Both kernels lie in the same order of magnitude as published, but the triangular one is not the better one."),
+              after="Not reproduced. Tried, at 0.1, 4, 8, 12, 16 and 20 s and with three measures (as above, the printed equation 45, its root): the flux as a source in the "
+              "last node, no self term, a mirrored cold end, nodes at vertices, discrete calibration; all others are further off. The published numbers would be passed at 9.4 s (constant) and 10.6 s "
+              "(triangular), not at one time. The [independent program](../tests/reference/README.md) has 4.4e-5 and 4.9e-5 at 8 s, too."),
         Table("profiles", "Figs. 8, 9 and 15: temperatures along the bar", "Pictures. Largest difference from the series in degrees; as published: "
-              "horizon 3L/800, m = 4.", ["t = 0.1", "t = 4", "t = 8"], profiles, kind="picture", digits=3),
+              "horizon 3L/800, m = 4, where it is at the end nodes, which hold the value of the end half a cell inside.", ["t = 0.1", "t = 4", "t = 8"], profiles, kind="picture", digits=3),
         Table("profile_flux", "Figs. 13 and 14: heat flux along the bar at t = 8 s", "Pictures. Largest difference of the one-sided sum over hotter "
               "neighbours from the exact flux, as a share of the largest flux: two horizons and more away from the ends, where the flux is not near "
               "zero, and everywhere.", ["inside", "everywhere"], profile_flux, kind="picture", digits=3)]

@@ -7,7 +7,7 @@ import numpy as np
 import closed_forms as exact
 import figures
 from results import FEM, extrapolated, fitted_order, largest, relative_difference
-from tables import Line, Paper, Picture, Table
+from lines import Line, Paper, Picture, Table
 
 TIMES = (0.05, 0.1, 0.2)
 CELLS = (60, 120, 240)
@@ -81,7 +81,9 @@ def crack_reference(study):
 
 def crack_line(what, name, model=None):
     def compute(study):
-        gap = study[name].line(model=model)[1] - crack_reference(study)
+        points, values = study[name].line(model=model)
+        far = np.abs(points[:, 1]) > 0.02  # where no vertex value is interpolated across the crack
+        gap = (values - crack_reference(study))[far]
         return [float(np.max(np.abs(gap))), float(np.sqrt(np.mean(gap**2)))]
     return Line(what, [name, "example_3_elements_240", "example_3_elements_480"], compute)
 
@@ -208,7 +210,7 @@ def section(published):
               "sides, as a share of the largest flux: the paper's sum over hotter neighbours (equation 7), and half of the sum over all.",
               ["hotter neighbours", "all neighbours"], fluxes, kind="picture", digits=3, tolerance=2e-3),
         Table("crack", "Figs. 17 and 18: Example 3, an insulated crack, t = 0.5 s", "Pictures, from the paper's finite elements and from peridynamics. Compared with our "
-              "finite elements on 240 x 240 and 480 x 480 cells with the crack cut into the mesh, extrapolated, at 120 points of x = 1/120, in degrees.",
+              "finite elements on 240 x 240 and 480 x 480 cells with the crack cut into the mesh, extrapolated, at 118 points of x = 1/120, more than a cell away from the crack, in degrees.",
               ["largest", "root mean square"], crack, kind="picture", digits=3, tolerance=2e-3,
               after="The paper calls the state at 0.5 s steady; it is 2.7 degrees away from that (46.75 against 44.07 at (0, 0.1))."),
         Table("inclined", "Figs. 19 and 20: Example 4, two inclined cracks, t = 4.5 s", "Pictures. The paper gives the inclination, pi/3; the geometry is in a "

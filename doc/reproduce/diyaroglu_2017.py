@@ -7,7 +7,7 @@ import numpy as np
 import closed_forms as exact
 import figures
 from results import FEM, extrapolated, fitted_order, largest
-from tables import Line, Paper, Picture, Table
+from lines import Line, Paper, Picture, Table
 
 TIMES, CELLS, RATIOS = (100, 500, 2000, 5000), (20, 50, 100, 200, 400), (1, 3, 6, 12, 24, 60)
 CONTRASTS = {"1": "k1 = k2 = k", "2": "k1 = k/2", "10": "k1 = k/10"}
