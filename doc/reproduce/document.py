@@ -4,23 +4,25 @@
 
 import math
 
-from results import FEM, ROOT, Study  # noqa: F401
+from results import Study
 
 INTRODUCTION = """# Reproduction of published results
 
 Each table and figure of four papers on peridynamic diffusion beside what PeriDeal computes, in the settings of the paper and in ours. Written by
 [make_reproduction.py](make_reproduction.py); numbers are those of the runs.
 
-    python3 doc/make_reproduction.py               # everything, about {minutes} of computing; finished rows are kept
-    python3 doc/make_reproduction.py --quick       # the rows that take seconds; the others keep their values
-    ./run prm/papers/tan_2020/study.json --only table_1     # the rows behind one line, from the column "rows"
-    ./run prm/papers/tan_2020/example_1_paper.prm  # a scene as it is, with a report
+    python3 doc/make_reproduction.py                            # everything, about {minutes}; finished runs are kept
+    python3 doc/make_reproduction.py --quick                    # the runs that take seconds; the others keep their values
+    python3 doc/make_reproduction.py --line tan_2020/table_1/3  # one line of a table again, by the name in its last column
+    python3 doc/make_reproduction.py --line tan_2020/table_1    # a table
+    ./run prm/papers/tan_2020/example_1_paper.prm               # a scene as it is, with a report
 
 - *published*: as printed. Where a paper has a picture only, the line says so, and the comparison is with the exact series (independent closed forms in
   [closed_forms.py](reproduce/closed_forms.py)) or with finite elements on finer meshes.
 - *gap*: obtained over published minus one in percent, or the difference where the table says degrees.
-- *bonds*, *seconds*: of the first of the rows (the finest of a rate); set-up and time stepping of one model on one core of a shared machine.
-- *rows*: run them again with `./run prm/papers/PAPER/study.json --only ROW ...`.
+- *bonds*, *seconds*: of the run itself, not of its reference (of a rate: the finest run); set-up and time stepping of one model on one core of a
+  shared machine.
+- *run again*: the argument of `--line`. The runs are rows of the study of the paper, `prm/papers/PAPER/study.json`.
 """
 
 
@@ -51,19 +53,15 @@ def gaps(table, obtained, published):
     return ", ".join(texts)
 
 
-def rows_of(needs):
-    return " ".join(f"`{name}`" for name in needs) if len(needs) <= 2 else f"`{needs[0]}` and {len(needs) - 1} more"
-
-
 def of_table(paper, table, values, scenes):
     """The lines of one table."""
     heading = ", ".join(table.columns)
     published = table.kind == "numbers"
     columns = ["", "published", f"obtained: {heading}", "gap"] if published else ["", f"obtained: {heading}"]
-    columns += ["bonds", "seconds", "scene", "rows"]
+    columns += ["bonds", "seconds", "scene", "run again"]
     out = [f"### {table.source}\n", table.text + "\n", "| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
     earlier = False
-    for line in table.lines:
+    for place, line in enumerate(table.lines, 1):
         entry = values.get(f"{paper.key} / {table.key} / {line.what}")
         if entry is None:
             continue
@@ -78,7 +76,7 @@ def of_table(paper, table, values, scenes):
             cells.append(gaps(table, entry["values"], wanted))
         scene = scenes[line.needs[0]]
         cells += [f"{entry['bonds']:,}" if entry["bonds"] else "", f"{entry['seconds']:g}",
-                  f"[{scene.rsplit('/', 1)[-1][:-4]}](../{scene})", rows_of(line.needs)]
+                  f"[{scene.rsplit('/', 1)[-1][:-4]}](../{scene})", f"`{paper.key}/{table.key}/{place}`"]
         out.append("| " + " | ".join(cells) + " |")
     if earlier:
         out.append("\n\\* not computed this time: from the last full computation.")
@@ -103,9 +101,6 @@ def of_paper(paper, values):
 
 def text(papers, values):
     """The whole page."""
-    total = 0.0
-    for entry in values.values():
-        total += entry["seconds"]
     out = [INTRODUCTION.replace("{minutes}", "a quarter of an hour")]
     out += [of_paper(paper, values) for paper in papers]
     return "\n".join(out)

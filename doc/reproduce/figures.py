@@ -5,6 +5,8 @@
 import sys
 from pathlib import Path
 
+import numpy as np
+from matplotlib.ticker import NullFormatter
 from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "applications" / "report"))
@@ -34,7 +36,7 @@ def save(figure, path, dots=110):
 
 
 def reads_as_reference(name):
-    return name in ("exact", "analytical", "classical") or name.startswith("finite elements")
+    return name.strip("_") in ("exact", "analytical") or name.startswith("finite elements")
 
 
 def curves(path, panels, x_label, y_label, log_x=None, log_y=False, columns=3, markers=True, size=(2.9, 2.4)):
@@ -42,10 +44,11 @@ def curves(path, panels, x_label, y_label, log_x=None, log_y=False, columns=3, m
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
     width, height = size
-    total = (columns * (width + 0.62) + 0.25, rows * (height + 0.78) + 0.1)
+    margin, gap = (0.95, 0.85) if log_y else (0.68, 0.62)
+    total = (columns * (width + gap) + margin - gap + 0.2, rows * (height + 0.78) + 0.1)
     figure = style.figure(*total)
     for k, (title, lines, level) in enumerate(panels):
-        left = 0.68 + (k % columns) * (width + 0.62)
+        left = margin + (k % columns) * (width + gap)
         bottom = total[1] - 0.28 - height - (k // columns) * (height + 0.78)
         axes = figure.add_axes([left / total[0], bottom / total[1], width / total[0], height / total[1]])
         style.tidy(axes)
@@ -59,12 +62,17 @@ def curves(path, panels, x_label, y_label, log_x=None, log_y=False, columns=3, m
         if log_x:
             axes.set_xscale("log", base=log_x)
             values = sorted({float(v) for _, x, _ in lines for v in x})
-            if len(values) <= 6:
+            if len(values) <= 6 and all(b > 1.4 * a for a, b in zip(values, values[1:])):
                 axes.set_xticks(values)
                 axes.set_xticklabels([style.plain(v, 3) for v in values], fontsize=7.5)
                 axes.minorticks_off()
         if log_y:
             axes.set_yscale("log")
+            axes.yaxis.set_minor_formatter(NullFormatter())
+            levels = [v for _, _, y in lines for v in y if v > 0]
+            if np.log10(max(levels) / min(levels)) < 1.3:  # hardly a power of ten: name the ends
+                axes.set_yticks([min(levels), max(levels)])
+                axes.set_yticklabels([style.plain(v, 2) for v in (min(levels), max(levels))])
         axes.set_title(title, loc="left", fontsize=9)
         axes.set_xlabel(x_label, labelpad=1)
         if k % columns == 0:
@@ -93,6 +101,7 @@ def field_grid(path, rows, model="peridynamics", panel=1.55):
             axes.texts[-1].set_fontsize(7)
             for line in axes.lines:
                 line.set_linewidth(0.55 * line.get_linewidth())
+                line.set_snap(False)
             axes.set_xticks([])
             axes.set_yticks([])
             if c == 0:

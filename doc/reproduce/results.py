@@ -97,9 +97,11 @@ class Study:
         self.output = Path(output) / paper if output else ROOT / "output" / "papers" / paper
         self.rows = {}
 
-    def compute(self, program, quick):
-        """Compute the rows that are not finished yet, and read all."""
-        command = [program, "study", self.file, "--output", str(self.output)] + (["--quick"] if quick else [])
+    def compute(self, program, quick=False, only=()):
+        """Compute the rows that are not finished yet (those named here in any case), and read all."""
+        command = [program, "study", self.file, "--output", str(self.output)]
+        command += ["--quick"] if quick else []
+        command += ["--redo", "--only", *only] if only else []
         environment = dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
         done = subprocess.run(command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, check=False)
         if done.returncode != 0:
