@@ -60,7 +60,7 @@ def table_1():
             published.add(f"horizon 6.5/{cells}, t = {t}", value, paper, relative=0.02)
             program.add(f"paper settings, {cells} cells, t = {t}", value, other, relative=1e-6)
     for (ratio, cells), others in PROGRAM_OURS.items():
-        run = run_scene(OURS.format(2), settings(cells, ratio, Peridynamics__Boundary_treatment="none"))
+        run = run_scene(OURS.format(2), settings(cells, ratio, Peridynamics__Boundary_treatment="none", Boundary_conditions__Symmetry=""))
         for t, value, other in zip(TIMES, differences(run, TIMES), others):
             program.add(f"defaults, m = {ratio}, {cells} cells, t = {t}", value, other, relative=1e-6)
     published.show()
@@ -71,7 +71,7 @@ def table_1():
                                           ("defaults, m = 3", OURS, 3, "none"),
                                           ("mirror, m = 3", OURS, 3, "fictitious mirror")):
         for cells in TABLE_1:
-            run = run_scene(scene.format(2), settings(cells, ratio, Time__Tolerance="1e-5",
+            run = run_scene(scene.format(2), settings(cells, ratio, Time__Tolerance="1e-5", Boundary_conditions__Symmetry="",
                                                       Peridynamics__Boundary_treatment=treatment))
             pd = run.model("peridynamics")
             rows.append((name, cells, *[f"{x:.5f}" for x in differences(run, TIMES)], pd["bonds"], pd["stepper"],
