@@ -92,7 +92,7 @@ def inclined_line(what, name, model=None):
     def compute(study):
         wanted = study["example_4_elements_960"].line(4.5, FEM)[1]
         gap = study[name].line(4.5, model)[1] - wanted
-        far = np.abs(study[name].line(4.5, model)[0][:, 1]) > 1e-9  # the middle lies on the crack
+        far = np.abs(study[name].line(4.5, model)[0][:, 1]) > 0.035  # where no vertex value is interpolated across the crack
         return [float(np.max(np.abs(gap[far]))), float(np.sqrt(np.mean(gap[far]**2)))]
     return Line(what, [name, "example_4_elements_960"], compute)
 
@@ -186,7 +186,6 @@ def section(published):
                 inclined_line("ours, m = 3, 120 x 120 cells", "example_4_ours"), inclined_line("ours without Surface correction", "example_4_uncorrected"),
                 inclined_line("finite elements, 120 x 120 cells", "example_4_elements_120", FEM),
                 inclined_line("finite elements, 480 x 480 cells", "example_4_elements_480", FEM)]
-    # On 60 cells the line has points between the nodes, so it is read on the interpolant there.
     jumps, lost = [], []
     for k in GROWING:
         jumps += [jump_line(f"{k}, as published", f"example_5_{k}"), jump_line(f"{k}, ours, m = 3", f"example_5_ours_{k}"),
@@ -215,7 +214,7 @@ def section(published):
               after="The paper calls the state at 0.5 s steady; it is 2.7 degrees away from that (46.75 against 44.07 at (0, 0.1))."),
         Table("inclined", "Figs. 19 and 20: Example 4, two inclined cracks, t = 4.5 s", "Pictures. The paper gives the inclination, pi/3; the geometry is in a "
               "figure that we do not have: cracks of length 0.6 around (-0.4, 0) and (0.4, 0) are our choice, and its isotherms cannot be compared. Compared with our finite "
-              "elements (`pairs`, crack-side scaling) on 960 x 960 cells along x = 0.4 but at the crack itself, in degrees.", ["largest", "root mean square"], inclined, kind="picture", digits=3,
+              "elements (`pairs`, crack-side scaling) on 960 x 960 cells along x = 0.4 more than 0.035 away from the crack, in degrees.", ["largest", "root mean square"], inclined, kind="picture", digits=3,
               tolerance=2e-3),
         Table("growing", "Fig. 22: Example 5, growing and crossing cracks", "Pictures. Temperature at (0, 0.05) minus that at (0, -0.05), where the cracks meet at 3.54 s. "
               "The starting points are our reading. The finite elements have crack-side scaling; their difference between the meshes is their error, about halved "
