@@ -89,7 +89,7 @@ def again(papers, wanted, program, output):
     print(f"{table.source}: {', '.join(table.columns)}")
     for line in lines:
         entry = line.evaluate(study)
-        published = document.list_of(line.published, table.digits) if line.published else "a picture"
+        published = document.printed(line.published) if line.published else "a picture"
         print(f"  {line.what}: published {published}; obtained {document.list_of(entry['values'], table.digits)}; {entry['bonds']:,} bonds, "
               f"{entry['seconds']:g} s")
 

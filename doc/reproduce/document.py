@@ -43,6 +43,11 @@ def list_of(values, digits):
     return ", ".join(number(v, digits) or "-" for v in values)
 
 
+def printed(values):
+    """Published numbers with the digits they have."""
+    return ", ".join("-" if v is None else f"{v:.10g}".replace("e-0", "e-") for v in values)
+
+
 def gaps(table, obtained, published):
     """The gaps of a line, of the values that are published."""
     texts = []
@@ -70,7 +75,7 @@ def of_table(paper, table, values, scenes):
         cells = [line.what + mark]
         if published:
             wanted = line.published or [None] * len(entry["values"])
-            cells.append(list_of(wanted, table.digits) if any(w is not None for w in wanted) else "")
+            cells.append(printed(wanted) if any(w is not None for w in wanted) else "")
         cells.append(list_of(entry["values"], table.digits))
         if published:
             cells.append(gaps(table, entry["values"], wanted))

@@ -149,7 +149,7 @@ def section(published):
         for y, analytical, found in zip(table["y"], table[t]["analytical"], table[t]["PD"]):
             table_1.append(Line(f"t = {t}, y = {y}", "table_1", lambda study, t=float(t), y=y: [float(exact.graded_plate(np.array([y]), t)[0]), at_height(study["table_1"], y, t)],
                                 [analytical, found]))
-    printed = [max(abs(a - b) for a, b in zip(table[t]["analytical"], table[t]["PD"])) for t in ("0.01", "0.02")]
+    printed = [round(max(abs(a - b) for a, b in zip(table[t]["analytical"], table[t]["PD"])), 4) for t in ("0.01", "0.02")]
     worst = [worst_line("as published, euler, steps of 1e-5 s", "table_1", printed), worst_line("as published, steps chosen by auto", "table_1_auto", [None] * 2),
              worst_line("ours, 100 x 100 cells", "table_1_ours", [None] * 2), worst_line("ours, 50 x 50 cells", "ours_50", [None] * 2),
              worst_line("ours, 200 x 200 cells", "ours_200", [None] * 2), worst_line("finite elements, 100 x 100 cells", "table_1_elements", [None] * 2, FEM)]
@@ -172,14 +172,14 @@ def section(published):
     crossing = []
     for g in GRADINGS:
         crossing += [crossing_line(f"λ = {g}, as published", f"example_4_{g}"), crossing_line(f"λ = {g}, ours", f"example_4_ours_{g}"),
-                     crossing_line(f"λ = {g}, finite elements, 200 x 200 cells", f"example_4_elements_{g}", FEM)]
+                     crossing_line(f"λ = {g}, finite elements, 200 x 201 cells", f"example_4_elements_{g}", FEM)]
     tables = [
         Table("table_1", "Table 1: temperatures along x = 0.5", "Scheme II. Both columns, in degrees.", ["analytical", "PD"], table_1, gap="absolute", digits=6, tolerance=1e-5),
         Table("worst", "Table 1: largest difference from the analytical solution", "Of the temperatures along x = 0.5 in degrees. Published: the largest difference of the two printed columns.",
               ["t = 0.01", "t = 0.02"], worst, gap="absolute", digits=3),
         Table("schemes", "Figs. 8 and 13: the surface correction, and the two schemes", "Pictures; the text says that the correction makes the difference obviously smaller, and that scheme II beats "
               "scheme I. Relative difference (equation 30) at t = 0.01 s along the line of nodes nearest to x = 0.5.", ["relative difference"], schemes, kind="picture", digits=3,
-              after="The correction is confirmed; a part of its gain is that it makes up for the conductivity of the bulk, which sums over full cells up to r = 3 spacings get wrong. "
+              after="The correction is confirmed; that scheme II beats scheme I is not, the two differ little. A part of its gain is that it makes up for the conductivity of the bulk, which sums over full cells up to r = 3 spacings get wrong. "
               "Our default, with the sum calibrated, needs no correction here."),
         Table("over_m", "Fig. 9: m-convergence at fixed horizon", "A picture; the text gives a bound of 1 % for three of the nine. Relative difference at the node nearest to (0.495, 0.495), t = 0.01 s; scheme I, "
               "corrected along y.", ["m = 2", "m = 4", "m = 8"], over_m, kind="picture", digits=3,
@@ -191,11 +191,14 @@ def section(published):
         Table("fixed", "Fig. 11: fixed spacing", "A picture. Relative difference at the same node.", [f"m = {m}" for m in (2, 3, 4, 5, 6)], fixed, kind="picture", digits=3,
               after="As the paper says, m = 3 is the best at every spacing."),
         Table("crack", "Figs. 15 to 17: Example 2, a static crack, t = 0.03 s", "Pictures. Largest difference in degrees from our finite elements with the crack cut into the mesh, 200 x 200 and 400 x 400 cells "
-              "extrapolated: along x = 0.495 for cell centres (scheme I, ours), at 21 points of x = 0.5 for vertices (scheme II).", ["largest"], crack, kind="picture", digits=3, tolerance=2e-3),
+              "extrapolated: along x = 0.495 for cell centres (scheme I, ours), at 21 points of x = 0.5 for vertices (scheme II).", ["largest"], crack, kind="picture", digits=3, tolerance=2e-3,
+              after="The paper finds PD2 almost identical with finite elements. With factors of a gradient along y, the reading that gives Table 1, that does not come out: beside a crack along x they are too large for bonds "
+              "along x, and PD2 is hardly better than PD1. With factors for both directions it does, best at cell centres, where no node lies on the crack."),
         Table("growing", "Fig. 19: Example 3, a crack that grows along x", "Pictures. Temperature at y = 0.55 minus that at y = 0.45, along x = 0.5 (x = 0.495 for ours). 4 m/s at each tip, not the printed 80 m/s.", [f"t = {t}" for t in (0.01, 0.02, 0.03, 0.04, 0.05)], growing, kind="picture", digits=4, tolerance=5e-3),
         Table("crossing", "Figs. 21 to 24: Example 4, crossing cracks", "Pictures. Temperature at (0.5, 0.55) minus that at (0.5, 0.45), above and below the crossing. The starting points and the end of growth at 2.5 s "
               "are our reading: cracks that start 0.25 m from the sides meet at 1.25 s and are a symmetric X at 2.5 s, two of the four times that the paper shows.",
-              ["t = 0.5", "t = 1.25", "t = 2.5", "t = 5"], crossing, kind="picture", digits=4, tolerance=5e-3),
+              ["t = 0.5", "t = 1.25", "t = 2.5", "t = 5"], crossing, kind="picture", digits=4, tolerance=5e-3,
+              after="At 1.25 s the tips touch, and what passes between them depends on the mesh; before and after the models agree to 1 %."),
         Table("symmetric", "Fig. 24: for λ = 0 the temperature is antisymmetric at t = 5 s", "Sum of the temperatures at (0.5, 0.55) and (0.5, 0.45), in degrees.", ["sum"],
               [Line("λ = 0, ours", "example_4_ours_0", antisymmetry)], kind="picture", digits=2, tolerance=None)]
     convergence = sorted({spacing_name(h, m) for h in HORIZONS for m in (2, 4, 8)} | {f"convergence_{round(1 / float(s))}_m{m}" for s in SPACINGS for m in (2, 3, 4, 5, 6)})

@@ -126,13 +126,13 @@ def growing():
             table.add_limit(f"{conductivity}, peridynamics, t = {t}: imbalance over throughput", abs(lost) / through, 1e-10)
         for t in (3, 4, 5, 7):
             jump[conductivity, t] = run.probe(PD, (0, 0.05), t) - run.probe(PD, (0, -0.05), t)
-    fine = run_paper(scene, {"Models": FEM, "Domain/Cells": "180, 180", "Cracks/Growth step": "0.0083", "Peridynamics/Surface correction": "crack scaling"})
+    fine = run_paper(scene, {"Models": FEM, "Domain/Cells": "180, 181", "Cracks/Growth step": "0.0083", "Peridynamics/Surface correction": "crack scaling"})
     for t, lost, through in balances(fine, FEM):
         table.add_limit(f"1.14, finite elements, t = {t}: imbalance over throughput", abs(lost) / through, 1e-10)
-    # The cracks meet at 3.54 s. Measured: at most 0.4 %; the elements themselves are 0.4 % off those on 360 x 360 cells.
-    for t in (4, 5, 7):
+    # The cracks meet at 3.54 s, and at 4 s the jump still opens. Measured: 0.76 %, 0.12 % and 0.08 %; at 5 s the elements are 0.1 % off those on 360 x 361 cells.
+    for t, within in ((4, 0.012), (5, 0.002), (7, 0.0013)):
         table.add(f"1.14, t = {t}: jump across the crossing, against finite elements", jump["1.14", t],
-                  fine.probe(FEM, (0, 0.05), t) - fine.probe(FEM, (0, -0.05), t), relative=0.006)
+                  fine.probe(FEM, (0, 0.05), t) - fine.probe(FEM, (0, -0.05), t), relative=within)
         check(jump["0.114", t] < jump["1.14", t], f"t = {t}: the smaller conductivity lags behind")
     check(jump["1.14", 4] > 3 * jump["1.14", 3], "the jump opens when the cracks meet")
     table.show()
