@@ -5,7 +5,7 @@
 
     python3 doc/make_figures.py [--program PERIDEAL] [--all] [SCENE.prm ...]
 
-Runs each scene (all below prm/ if none is named), draws its report, and keeps of it
+Runs each scene (all below prm/ but those of prm/failures and those as published, if none is named), draws its report, and keeps of it
 doc/figures/NAME.png: the last temperature, scaled to a thumbnail. For prm/quick_start.prm the
 figure is kept in full width too, as doc/figures/quick_start_wide.png. A picture that is newer
 than its scene is left as it is, unless --all is given. The table names every scene below prm/ with
@@ -31,6 +31,11 @@ BEGIN, END = "<!-- scenes: written by doc/make_figures.py -->\n", "<!-- end of s
 def figure_name(scene):
     """Name of its picture: that of the file, of a paper's example with the paper's before it."""
     return f"{scene.parent.name}_{scene.stem}" if scene.parent.parent.name == "papers" else scene.stem
+
+
+def published_twin(scene):
+    """Whether a scene is one as published, beside the same one in our settings."""
+    return scene.stem.endswith("_paper") and scene.with_name(scene.stem[:-6] + ".prm").exists()
 
 
 def run(scene, program, folder):
@@ -97,8 +102,8 @@ def write_table():
     rows = ["| scene | |\n", "|---|---|\n"]
     for scene in sorted((ROOT / "prm").rglob("*.prm"),
                         key=lambda s: (s.parent != ROOT / "prm", s.as_posix())):
-        if scene.parts[-2] == "failures" or (scene.stem.endswith("_paper") and scene.with_name(scene.stem[:-6] + ".prm").exists()):
-            continue  # the former are in doc/failures.md, the latter stand beside the scene in our settings
+        if scene.parent.name == "failures" or published_twin(scene):
+            continue  # the former are in doc/failures.md, the latter beside the scene in our settings
         title, text = description(scene)
         where = os.path.relpath(scene, ROOT)
         published = scene.with_name(scene.stem + "_paper.prm")
@@ -125,7 +130,8 @@ def main():
     if options.table:
         write_table()
         return 0
-    scenes = [s.resolve() for s in options.scenes] or sorted((ROOT / "prm").rglob("*.prm"))
+    scenes = [s.resolve() for s in options.scenes] or sorted(
+        s for s in (ROOT / "prm").rglob("*.prm") if s.parent.name != "failures" and not published_twin(s))
     failed = False
     for scene in scenes:
         old = FIGURES / f"{figure_name(scene)}.png"
