@@ -5,7 +5,7 @@
 
     python3 doc/make_figures.py [--program PERIDEAL] [--all] [SCENE.prm ...]
 
-Runs each scene (all below prm/ if none is named), draws its report, and keeps of it
+Runs each scene (all below prm/ but those of prm/failures and those as published, if none is named), draws its report, and keeps of it
 doc/figures/NAME.png: the last temperature, scaled to a thumbnail. For prm/quick_start.prm the
 figure is kept in full width too, as doc/figures/quick_start_wide.png. A picture that is newer
 than its scene is left as it is, unless --all is given. The table names every scene below prm/ with
@@ -26,6 +26,16 @@ ROOT = Path(__file__).resolve().parent.parent
 FIGURES = ROOT / "doc" / "figures"
 THUMBNAIL_HEIGHT, WIDE_WIDTH = 200, 1300
 BEGIN, END = "<!-- scenes: written by doc/make_figures.py -->\n", "<!-- end of scenes -->\n"
+
+
+def figure_name(scene):
+    """Name of its picture: that of the file, of a paper's example with the paper's before it."""
+    return f"{scene.parent.name}_{scene.stem}" if scene.parent.parent.name == "papers" else scene.stem
+
+
+def published_twin(scene):
+    """Whether a scene is one as published, beside the same one in our settings."""
+    return scene.stem.endswith("_paper") and scene.with_name(scene.stem[:-6] + ".prm").exists()
 
 
 def run(scene, program, folder):
@@ -92,12 +102,17 @@ def write_table():
     rows = ["| scene | |\n", "|---|---|\n"]
     for scene in sorted((ROOT / "prm").rglob("*.prm"),
                         key=lambda s: (s.parent != ROOT / "prm", s.as_posix())):
+        if scene.parent.name == "failures" or published_twin(scene):
+            continue  # the former are in doc/failures.md, the latter beside the scene in our settings
         title, text = description(scene)
         where = os.path.relpath(scene, ROOT)
-        shown = FIGURES / f"{scene.stem}.png"
+        published = scene.with_name(scene.stem + "_paper.prm")
+        if published.exists():
+            text += f" [As published]({os.path.relpath(published, ROOT)})."
+        shown = FIGURES / f"{figure_name(scene)}.png"
         image = f'<br><img src="doc/figures/{shown.name}" height="100" alt="{title}">' \
             if shown.exists() else ""
-        rows.append(f"| [{scene.stem}]({where}){image} | **{title}.** {text} |\n")
+        rows.append(f"| [{figure_name(scene)}]({where}){image} | **{title}.** {text} |\n")
     page = ROOT / "README.md"
     text = page.read_text(encoding="utf-8")
     begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
@@ -115,10 +130,11 @@ def main():
     if options.table:
         write_table()
         return 0
-    scenes = [s.resolve() for s in options.scenes] or sorted((ROOT / "prm").rglob("*.prm"))
+    scenes = [s.resolve() for s in options.scenes] or sorted(
+        s for s in (ROOT / "prm").rglob("*.prm") if s.parent.name != "failures" and not published_twin(s))
     failed = False
     for scene in scenes:
-        old = FIGURES / f"{scene.stem}.png"
+        old = FIGURES / f"{figure_name(scene)}.png"
         if not options.all and old.exists() and old.stat().st_mtime > scene.stat().st_mtime:
             continue
         with tempfile.TemporaryDirectory() as folder:
@@ -128,7 +144,7 @@ def main():
                 print(f"{scene.name}: {fault}", file=sys.stderr)
                 failed = True
                 continue
-        save(image, scene.stem, height=THUMBNAIL_HEIGHT)
+        save(image, figure_name(scene), height=THUMBNAIL_HEIGHT)
         if scene.stem == "quick_start":
             save(image, "quick_start_wide", width=WIDE_WIDTH)
     write_table()

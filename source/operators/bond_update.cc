@@ -66,7 +66,7 @@ namespace PeriDeal
     const bool                energy    = bonds.corrects_every_bond();
     const CorrectionDirection direction = scene.peridynamics.correction_direction;
     const unsigned int n_directions = energy && direction == CorrectionDirection::both ? dim : 1;
-    const unsigned int first        = n_directions > 1 ? 0 : static_cast<unsigned int>(direction);
+    const unsigned int first        = direction == CorrectionDirection::both ? 0 : static_cast<unsigned int>(direction);
     if (node_factors.empty())
       {
         node_factors.resize(n_directions);

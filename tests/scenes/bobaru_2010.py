@@ -11,7 +11,7 @@ import sys
 
 from scene_test import Comparison, finish, fitted_order, observed_orders, print_table, run_scene
 
-SCENE = "prm/heat/bobaru_2010_example_{}.prm"
+SCENE = "prm/papers/bobaru_2010/example_{}_paper.prm"
 RATIOS = (2, 4, 8, 16)
 # The horizon is 3 L/200, 3 L/400, 3 L/800: Cells = round(ratio L/horizon), always odd, so that one node is the middle.
 FINENESS = (200, 400, 800)

@@ -13,8 +13,8 @@ import sys
 
 from scene_test import Comparison, finish, fitted_order, print_table, relative_difference, run_scene
 
-PAPER = "prm/heat/bobaru_2012_example_{}_paper.prm"
-OURS = "prm/heat/bobaru_2012_example_{}.prm"
+PAPER = "prm/papers/bobaru_2012/example_{}_paper.prm"
+OURS = "prm/papers/bobaru_2012/example_{}.prm"
 
 TIMES = (0.05, 0.1, 0.2)
 TABLE_1 = {60: (0.15741, 0.11342, 0.07517), 120: (0.07927, 0.05301, 0.03203), 240: (0.03474, 0.02302, 0.01881)}
@@ -60,7 +60,7 @@ def table_1():
             published.add(f"horizon 6.5/{cells}, t = {t}", value, paper, relative=0.02)
             program.add(f"paper settings, {cells} cells, t = {t}", value, other, relative=1e-6)
     for (ratio, cells), others in PROGRAM_OURS.items():
-        run = run_scene(OURS.format(2), settings(cells, ratio, Peridynamics__Boundary_treatment="none"))
+        run = run_scene(OURS.format(2), settings(cells, ratio, Peridynamics__Boundary_treatment="none", Boundary_conditions__Symmetry=""))
         for t, value, other in zip(TIMES, differences(run, TIMES), others):
             program.add(f"defaults, m = {ratio}, {cells} cells, t = {t}", value, other, relative=1e-6)
     published.show()
@@ -71,7 +71,7 @@ def table_1():
                                           ("defaults, m = 3", OURS, 3, "none"),
                                           ("mirror, m = 3", OURS, 3, "fictitious mirror")):
         for cells in TABLE_1:
-            run = run_scene(scene.format(2), settings(cells, ratio, Time__Tolerance="1e-5",
+            run = run_scene(scene.format(2), settings(cells, ratio, Time__Tolerance="1e-5", Boundary_conditions__Symmetry="",
                                                       Peridynamics__Boundary_treatment=treatment))
             pd = run.model("peridynamics")
             rows.append((name, cells, *[f"{x:.5f}" for x in differences(run, TIMES)], pd["bonds"], pd["stepper"],
