@@ -350,7 +350,7 @@ OPTIONS = [  # (what, options after the study file, words of the message)
     ("override of what varies", ["-s", "Domain/Cells=9, 9"], ["'Domain/Cells=9, 9'", "varies"]),
     ("--vary with a study file", ["--vary", "Domain/Cells=8, 8"], ["--vary", '"vary"']),
     ("output that is a file", None, ["cannot use", "--output"]),
-    ("output with a #", ["--output", "/tmp/a#b"], ["must not contain #"]),
+    ("output with a #", ["--output", "results/a#b"], ["must not contain #"]),
 ]
 
 
