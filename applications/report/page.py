@@ -4,11 +4,19 @@
 
 import base64
 import io
+import os
 import re
 from html import escape
 from pathlib import Path
 
 STYLE = (Path(__file__).parent / "page.css")
+
+
+def write_page(target, html):
+    """Writes a page as a whole: a reader finds the old one or the new one, never half of it."""
+    partial = Path(f"{target}.partial")
+    partial.write_text(html, encoding="utf-8")
+    os.replace(partial, target)
 
 
 class Page:

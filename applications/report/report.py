@@ -10,7 +10,6 @@ is told in one line, with exit status 1; no page is written then.
 """
 
 import argparse
-import os
 import sys
 from html import escape
 from pathlib import Path
@@ -27,7 +26,7 @@ try:
     import sketch
     import solids
     import tables
-    from page import Page, paragraphs
+    from page import Page, paragraphs, write_page
     from read_run import EXACT, ReportError, Run
     from style import is_formula, minus, name, plain, prose
 except ImportError as fault:
@@ -351,9 +350,7 @@ def main(arguments=None):
     try:
         html = Report(Run(options.directory), options.figures).html()
         target = Path(options.directory) / "report.html"
-        partial = target.with_suffix(".html.partial")
-        partial.write_text(html, encoding="utf-8")
-        os.replace(partial, target)
+        write_page(target, html)
     except (ReportError, OSError) as fault:
         print(f"report: {fault}".replace("\n", " "), file=sys.stderr)
         return 1

@@ -12,14 +12,13 @@ exit status 1.
 
 import argparse
 import json
-import os
 import sys
 from html import escape
 from pathlib import Path
 
 try:
     import tables
-    from page import Page, paragraphs
+    from page import Page, paragraphs, write_page
     from style import name, plain, prose
     from study_figures import ENTRY_MARK, StudyError, draw, label_of, last_lines, number
 except ImportError as fault:
@@ -157,9 +156,7 @@ def main(arguments=None):
     try:
         html = page_of(read_study(options.directory), options.directory)
         target = Path(options.directory) / "index.html"
-        partial = target.with_suffix(".html.partial")
-        partial.write_text(html, encoding="utf-8")
-        os.replace(partial, target)
+        write_page(target, html)
     except (StudyError, OSError) as fault:
         print(f"study: {fault}".replace("\n", " "), file=sys.stderr)
         return 1
