@@ -13,6 +13,7 @@
 #include <perideal/operators/fem_operator.h>
 
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 
 #include "fem_cell_data.h"
@@ -137,15 +138,14 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  void FEMOperator<dim>::assemble_cell(const Cell &cell, CellData &data) const
+    template <int dim>
+  bool FEMOperator<dim>::assemble_whole_cell(const Cell &cell, CellData &data) const
   {
     data.values.reinit(cell);
     find_temperatures(data);
     data.stiffness       = 0.;
     data.mass            = 0.;
-    data.convection      = 0.;
-    const unsigned int n = data.indices.size();
+        const unsigned int n = data.indices.size();
     for (const unsigned int q : data.values.quadrature_point_indices())
       {
         const Point<dim> &p       = data.values.quadrature_point(q);
@@ -161,6 +161,16 @@ namespace PeriDeal
                 storage * data.values.shape_value(i, q) * data.values.shape_value(j, q);
             }
       }
+            return coupling && coupling->change_cell(cell, data.stiffness);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::assemble_cell(const Cell &cell, CellData &data) const
+  {
+    assemble_whole_cell(cell, data);
+    data.convection      = 0.;
+    const unsigned int n = data.indices.size();
     if (cut[cell->active_cell_index()])
       {
         if (scene.cracks.mesh == CrackMesh::removed)
@@ -204,7 +214,9 @@ namespace PeriDeal
           for (const auto i : data.indices)
             marked(i) = 1.;
         }
-    marked.compress(VectorOperation::max);
+        marked.compress(VectorOperation::max);
+    if (coupling)
+      mark_broken_bonds(marked);
     marked.update_ghost_values();
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -226,7 +238,9 @@ namespace PeriDeal
             }
         }
     trace.compress(VectorOperation::add);
-    expected.compress(VectorOperation::add);
+        expected.compress(VectorOperation::add);
+    if (coupling)
+      add_bond_traces(marked, trace);
     initialize_vector(crack_factors);
     for (unsigned int i = 0; i < crack_factors.locally_owned_size(); ++i)
       crack_factors.local_element(i) =
@@ -256,7 +270,9 @@ namespace PeriDeal
     IndexSet        relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
-    DoFTools::make_sparsity_pattern(dofs, pattern);
+        DoFTools::make_sparsity_pattern(dofs, pattern);
+    if (coupling)
+      add_bond_pattern(pattern);
     pattern.compress();
     stiffness.reinit(pattern);
     if (scene.finite_elements.consistent_capacity)
@@ -287,6 +303,12 @@ namespace PeriDeal
             for (unsigned int b = 0; b < data.indices.size(); ++b)
               capacity(data.indices[a]) += data.mass(a, b);
         }
+        if (coupling)
+      {
+        std::vector<unsigned int> nodes(capacity.locally_owned_size());
+        std::iota(nodes.begin(), nodes.end(), 0);
+        add_bonds(nodes, bond_rows(nodes));
+      }
     stiffness.compress(VectorOperation::add);
     if (scene.finite_elements.consistent_capacity)
       mass.compress(VectorOperation::add);
@@ -403,7 +425,10 @@ namespace PeriDeal
     const unsigned int,                                                                          \
     const unsigned int,                                                                          \
     std::vector<std::pair<unsigned int, int>> *) const;                                          \
-  template void FEMOperator<dim>::assemble_cell(                                                 \
+    template bool FEMOperator<dim>::assemble_whole_cell( \
+    const typename DoFHandler<dim>::active_cell_iterator &, \
+    CellData &) const; \
+  template void FEMOperator<dim>::assemble_cell(                                                   \
     const typename DoFHandler<dim>::active_cell_iterator &,                                      \
     CellData &) const;                                                                           \
   template void FEMOperator<dim>::find_crack_factors(CellData &);                                \

@@ -19,9 +19,12 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  FEMOperator<dim>::FEMOperator(const DoFHandler<dim> &dof_handler, const Scene<dim> &scene)
+  FEMOperator<dim>::FEMOperator(const DoFHandler<dim>         &dof_handler,
+                                const Scene<dim>              &scene,
+                                std::unique_ptr<Coupling<dim>> coupling)
     : dofs(dof_handler)
     , scene(scene)
+    , coupling(std::move(coupling))
     , history(scene.crack_history())
     , cracks_of(history.representative(0.))
     , cracks(make_crack_geometries(history.pieces(cracks_of)))
@@ -107,6 +110,11 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::initialize_vector(Vector &vector) const
   {
+    if (coupling)
+      {
+        vector.reinit(coupling->families().nodes().partitioner());
+        return;
+      }
     IndexSet relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     vector.reinit(dofs.locally_owned_dofs(), relevant, dofs.get_communicator());
@@ -192,6 +200,28 @@ namespace PeriDeal
     return stiffness_diagonal;
   }
 
+    template <int dim>
+  void FEMOperator<dim>::fill_with_noise(Vector &vector, const unsigned int trial) const
+  {
+    std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          cell->get_dof_indices(indices);
+          for (unsigned int i = 0; i < indices.size(); ++i)
+            if (vector.in_local_range(indices[i]))
+              {
+                Point<dim> p = MappingQ1<dim>().transform_unit_to_real_cell(
+                  cell,
+                  dofs.get_fe().unit_support_point(i));
+                for (unsigned int d = 0; d < dim; ++d)
+                  p[d] += trial;
+                vector(indices[i]) = position_noise(p);
+              }
+        }
+  }
+
+
   template <int dim>
   Spectrum FEMOperator<dim>::spectrum() const
   {
@@ -199,21 +229,8 @@ namespace PeriDeal
       return {gershgorin, gershgorin};
     if (bounds.safe == 0.)
       {
-        const auto fill = [&](Vector &vector) {
-          std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
-          for (const auto &cell : dofs.active_cell_iterators())
-            if (!cell->is_artificial())
-              {
-                cell->get_dof_indices(indices);
-                for (unsigned int i = 0; i < indices.size(); ++i)
-                  if (vector.in_local_range(indices[i]))
-                    vector(indices[i]) =
-                      position_noise(MappingQ1<dim>().transform_unit_to_real_cell(
-                        cell,
-                        dofs.get_fe().unit_support_point(i)));
-              }
-        };
-        bounds.sharp = sharp_bound(*this, gershgorin, fill);
+                bounds.sharp =
+          sharp_bound(*this, gershgorin, [&](Vector &vector) { fill_with_noise(vector); });
         bounds.safe  = gershgorin;
       }
     return bounds;
@@ -222,7 +239,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::symmetric() const
   {
-    return true;
+        return !coupling || coupling->symmetric();
   }
 
   template <int dim>
@@ -325,6 +342,14 @@ namespace PeriDeal
     size.memory   = stiffness.memory_consumption() + mass.memory_consumption() +
                   capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
                   constant_loads.memory_consumption() + scratch.memory_consumption();
+        if (coupling)
+      {
+        if (recount_bonds)
+          count_bonds();
+        size.bonds = n_bonds;
+        size.memory +=
+          coupling->memory_consumption() + coupling->families().nodes().memory_consumption();
+      }
     size.form = "matrix";
     return size;
   }
@@ -339,6 +364,19 @@ namespace PeriDeal
   const std::vector<bool> &FEMOperator<dim>::cut_cells() const
   {
     return cut;
+  }
+
+    template <int dim>
+  const Coupling<dim> &FEMOperator<dim>::bonds() const
+  {
+    Assert(coupling, ExcMessage("Finite elements alone have no bonds."));
+    return *coupling;
+  }
+
+  template <int dim>
+  const TrilinosWrappers::SparseMatrix &FEMOperator<dim>::matrix() const
+  {
+    return stiffness;
   }
 
   template class FEMOperator<1>;

@@ -28,25 +28,31 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::update(const double t)
   {
-    const double time = history.representative(t);
+        const double time = history.representative(t);
     if (time == cracks_of || !history.changes_ever())
       return false;
-    const auto boxes = history.changes(cracks_of, time);
+    const auto cuts  = history.changes(cracks_of, time);
+    const auto joins = coupling ? coupling->joining_by(time) : std::vector<BoundingBox<dim>>();
     cracks_of        = time;
-    if (boxes.empty())
+    if (cuts.empty())
       return false;
     CellData                       &data   = *cell_data;
     const bool                      scaled = crack_factors.size() > 0;
+    const double                    reach  = coupling ? coupling->families().reach() : 0.;
     std::vector<Cell>               near;
     std::vector<FullMatrix<double>> old;
+    const auto near_some = [](const std::vector<BoundingBox<dim>> &boxes, const Cell &cell, const double distance) {
+      return std::any_of(boxes.begin(), boxes.end(), [&](auto box) {
+        box.extend(distance);
+        return box.point_inside(cell->center());
+      });
+    };
     for (const auto &cell : dofs.active_cell_iterators())
       {
-        // The factors of crack-side scaling change as far as the neighbours of cut cells.
-        const double reach = (scaled ? 3. : 1.) * cell->diameter();
-        if (cell->is_artificial() || std::none_of(boxes.begin(), boxes.end(), [&](auto box) {
-              box.extend(reach);
-              return box.point_inside(cell->center());
-            }))
+        // The factors of crack-side scaling change as far as the neighbours of cut cells and of nodes with broken bonds.
+        const double wide = (scaled ? 3. : 1.) * cell->diameter();
+        if (cell->is_artificial() || !(near_some(cuts, cell, wide + (scaled ? reach : 0.)) ||
+                                       near_some(joins, cell, wide + reach)))
           continue;
         near.push_back(cell);
         old.emplace_back();
@@ -55,6 +61,18 @@ namespace PeriDeal
         assemble_cell(cell, data);
         scale_beside_cracks(data);
         old.back() = data.stiffness;
+      }
+        std::vector<unsigned int> nodes;
+    BondRows                  old_rows;
+    if (coupling)
+      {
+        const double wide = scaled ? reach + 3. * coupling->families().nodes().smallest_spacing() * std::sqrt(1. * dim) : 0.;
+        auto boxes = cuts;
+        boxes.insert(boxes.end(), joins.begin(), joins.end());
+        nodes      = coupling->families().nodes_near(boxes, reach + wide);
+        old_rows   = bond_rows(nodes);
+        coupling->set_cracks_of(time);
+        recount_bonds = true;
       }
     cracks       = make_crack_geometries(history.pieces(time));
     transmission = history.transmission(time);
@@ -76,8 +94,10 @@ namespace PeriDeal
           for (const auto i : data.indices)
             touched(i) = 1.;
         }
+        touched.compress(VectorOperation::max);
+    if (coupling)
+      change_bonds(nodes, old_rows, touched);
     stiffness.compress(VectorOperation::add);
-    touched.compress(VectorOperation::max);
     update_rows(touched);
     return true;
   }
@@ -118,11 +138,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::add_crack_heat(const Vector &u, Balance &balance) const
+    void FEMOperator<dim>::add_crack_heat(const Vector &u, Balance &balance) const
   {
     balance.cracks.assign(scene.cracks.cracks.size(), 0.);
     if (!scene.cracks.conduct())
       return;
+    if (coupling)
+      add_bond_heat(u, balance);
     CellData                                 &data = *cell_data;
     std::vector<std::pair<unsigned int, int>> crossed;
     u.update_ghost_values();

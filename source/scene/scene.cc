@@ -12,7 +12,9 @@ namespace PeriDeal
 
   std::string to_string(const Model model)
   {
-    return model == Model::finite_elements ? "finite elements" : "peridynamics";
+        return model == Model::finite_elements ? "finite elements" :
+           model == Model::peridynamics    ? "peridynamics" :
+                                             "coupled";
   }
 
 
@@ -33,8 +35,9 @@ namespace PeriDeal
             EntryType::choices,
             "finite elements, peridynamics",
             "",
-            "The models that are run, on the same mesh, and compared.",
-            {"finite elements", "peridynamics"});
+            "The models that are run, on the same mesh, and compared: finite elements and peridynamics, each in the whole body, and "
+            "`coupled`, peridynamics in the zone of section `Coupling` with finite elements elsewhere.",
+                        {"finite elements", "peridynamics", "coupled"});
     declare(
       "Output directory",
       EntryType::text,
@@ -271,7 +274,8 @@ namespace PeriDeal
             &initial_and_source,
             &boundary_conditions,
             &cracks,
-            &peridynamics,
+                        &peridynamics,
+            &coupling,
             &finite_elements,
             &time,
             &solver,
@@ -292,7 +296,8 @@ namespace PeriDeal
     boundary_conditions.parse(domain.shape != Shape::mesh_file,
                               domain.shape == Shape::plate_with_hole);
     cracks.parse();
-    peridynamics.parse();
+        peridynamics.parse();
+    coupling.parse();
     finite_elements.parse();
     time.parse();
     time.steady = time.steady ||

@@ -8,6 +8,7 @@
 
 #include <perideal/analysis/heat_flux.h>
 #include <perideal/operators/bond_operator.h>
+#include <perideal/operators/coupling.h>
 #include <perideal/operators/fem_operator.h>
 #include <perideal/simulation/model_run.h>
 
@@ -45,9 +46,11 @@ namespace PeriDeal
     class FEMRun : public ModelRun<dim>
     {
     public:
-      FEMRun(const Triangulation<dim> &mesh, const Scene<dim> &scene)
+      /** @param model finite elements alone, or coupled with peridynamics */
+      FEMRun(const Model model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
         : scene(scene)
-        , element(scene.finite_elements.degree)
+        , model(model)
+        , element(model == Model::coupled ? 1 : scene.finite_elements.degree)
         , handler(mesh)
       {
         {
@@ -56,13 +59,22 @@ namespace PeriDeal
           if (scene.domain.shape != Shape::mesh_file && element.degree == 1)
             number_along_lattice(handler, scene.domain);
         }
-        Timings::Scope scope(this->timings, "operator");
-        fem = std::make_unique<FEMOperator<dim>>(handler, scene);
+                Timings::Scope                 scope(this->timings, "operator");
+        std::unique_ptr<Coupling<dim>> coupling;
+        if (model == Model::coupled)
+          {
+            node_set = std::make_unique<Nodes<dim>>(handler,
+                                                    scene.domain,
+                                                    scene.cracks,
+                                                    NodalVolume::partial);
+            coupling = make_coupling(*node_set, scene, Zone<dim>(scene.coupling, scene.horizon()));
+          }
+        fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling));
       }
 
       std::string name() const override
       {
-        return to_string(Model::finite_elements);
+                return to_string(model);
       }
 
       const DoFHandler<dim> &dofs() const override
@@ -126,8 +138,15 @@ namespace PeriDeal
         for (Vector &component : flux)
           fem->initialize_vector(component);
         element_heat_flux<dim>(handler, scene.material, fem->cut_cells(), u, flux);
-        std::vector<OutputField> fields;
+                std::vector<OutputField> fields;
         fields.push_back(vector_field<dim>(names_of(scene.general.physics).flux, flux));
+        if (model == Model::coupled)
+          {
+            std::array<Vector, 1> zone{u};
+            for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+              zone[0].local_element(i) = fem->bonds().in_zone(i);
+            fields.push_back(vector_field<1>("zone", zone));
+          }
         if (scene.general.physics == Physics::moisture)
           {
             std::array<Vector, 1> concentration{u};
@@ -169,9 +188,17 @@ namespace PeriDeal
 
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
-        std::vector<std::pair<std::string, std::string>> list{
+                std::vector<std::pair<std::string, std::string>> list{
           {"element", "Q" + std::to_string(element.degree)},
           {"capacity", scene.finite_elements.consistent_capacity ? "consistent" : "lumped"}};
+        if (model == Model::coupled)
+          {
+            list.emplace_back("horizon", to_text(scene.horizon()));
+            list.emplace_back("m", to_text(scene.horizon() / node_set->smallest_spacing()));
+            list.emplace_back("zone", scene.coupling.zone_text());
+            list.emplace_back("share of the body in the zone",
+                              to_text(100. * fem->bonds().zone_share()) + " %");
+          }
         if (!scene.cracks.cracks.empty())
           list.emplace_back("cracks",
                             scene.cracks.mesh == CrackMesh::pairs ? "pairs" :
@@ -201,9 +228,11 @@ namespace PeriDeal
             }
       }
 
-      const Scene<dim>                 &scene;
+            const Scene<dim>                 &scene;
+      const Model                       model;
       FE_Q<dim>                         element;
       DoFHandler<dim>                   handler;
+      std::unique_ptr<Nodes<dim>>       node_set; // null for finite elements alone
       std::unique_ptr<FEMOperator<dim>> fem;
     };
 
@@ -403,10 +432,10 @@ namespace PeriDeal
                                                 const Scene<dim>         &scene)
   {
     std::unique_ptr<ModelRun<dim>> run;
-    if (model == Model::finite_elements)
-      run = std::make_unique<FEMRun<dim>>(mesh, scene);
-    else
+        if (model == Model::peridynamics)
       run = std::make_unique<BondRun<dim>>(mesh, scene);
+    else
+      run = std::make_unique<FEMRun<dim>>(model, mesh, scene);
     run->op().initialize_vector(run->solution);
     run->set_initial_value(run->solution);
     run->op().distribute(run->solution, 0.);

@@ -7,6 +7,7 @@
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <perideal/operators/coupling.h>
 #include <perideal/operators/operator.h>
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/scene.h>
@@ -24,14 +25,17 @@ namespace PeriDeal
    * crack's transmission (doc/theory.md). With `Surface correction = crack scaling` the cell matrices next to cracks are multiplied by the mean of their vertices' factors.
    * `removed`: cut cells conduct nothing.
    *
-   * Vectors have the locally relevant dofs as ghosts.
+      * With a coupling the cells keep what it leaves of them, and its bonds are added: the model `coupled`. Then the elements are Q1, and vectors
+   * have the horizon-wide halo of the nodes. Otherwise vectors have the locally relevant dofs as ghosts.
    */
   template <int dim>
   class FEMOperator : public Operator
   {
   public:
     /** Collective. Throws UserError for material values that are not positive and for nodes that `removed` isolates. */
-    FEMOperator(const dealii::DoFHandler<dim> &dof_handler, const Scene<dim> &scene);
+    FEMOperator(const dealii::DoFHandler<dim> &dof_handler,
+                const Scene<dim>              &scene,
+                std::unique_ptr<Coupling<dim>> coupling = nullptr);
 
     void          initialize_vector(Vector &vector) const override;
     void          apply(Vector &y, const Vector &x) const override;
@@ -62,6 +66,20 @@ namespace PeriDeal
     /** Cells of this process that a crack cuts, by active cell index. */
     const std::vector<bool> &cut_cells() const;
 
+    /** Only in the model `coupled`. */
+    const Coupling<dim> &bonds() const;
+
+    const dealii::TrilinosWrappers::SparseMatrix &matrix() const;
+
+    /** How far K is from symmetric: the largest of |(K - K^T) x| / (|K| |x|) in the maximum norm for some fields x of noise. Collective. */
+    double asymmetry() const;
+
+    /**
+     * Lowest eigenvalue of what the coupling leaves of any cell before cracks cut it, in units of the conductivity times h^(dim-2); infinite if it
+     * leaves all cells as they are. Collective.
+     */
+    double lowest_remainder() const;
+
   private:
     struct Prescribed
     {
@@ -73,7 +91,18 @@ namespace PeriDeal
     struct CellData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
+    /** Some rows of bonds: numbers of neighbours (local) and conductances. */
+    using BondRows = std::vector<std::vector<std::pair<unsigned int, double>>>;
+
     void   find_prescribed();
+    void   add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
+    BondRows bond_rows(const std::vector<unsigned int> &nodes) const;
+    void   add_bonds(const std::vector<unsigned int> &nodes, const BondRows &rows);
+    void   change_bonds(const std::vector<unsigned int> &nodes, const BondRows &old, Vector &touched);
+    void   mark_broken_bonds(Vector &marked) const;
+    void   add_bond_traces(const Vector &marked, Vector &trace) const;
+    void   add_bond_heat(const Vector &u, Balance &balance) const;
+    void   count_bonds() const;
     void   find_cut_cells();
     bool   is_cut(const Cell &cell) const;
     double kept_fraction(const Cell                                &cell,
@@ -89,7 +118,9 @@ namespace PeriDeal
     void   find_temperatures(CellData &data) const;
     double center_conductivity(const Cell &cell) const;
     double heat_of(const Vector &u) const;
+        bool   assemble_whole_cell(const Cell &cell, CellData &data) const;
     void   assemble_cell(const Cell &cell, CellData &data) const;
+    void   fill_with_noise(Vector &vector, const unsigned int trial = 0) const;
     void   keep_unseparated_pairs(const Cell &cell, CellData &data) const;
     void   assemble_loads(Vector &loads, const double t) const;
     void   add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
@@ -99,6 +130,7 @@ namespace PeriDeal
 
     const dealii::DoFHandler<dim>         &dofs;
     const Scene<dim>                      &scene;
+        std::unique_ptr<Coupling<dim>>         coupling; // null: finite elements alone
     const CrackHistory<dim>                history;
     double                                 cracks_of; // representative time of the cracks in K
     std::vector<CrackGeometry<dim>>        cracks;
@@ -107,6 +139,8 @@ namespace PeriDeal
     Vector                                 capacity, stiffness_diagonal, constant_loads;
     mutable Vector                         scratch;
     Vector temperatures; // that K and C are those of, with ghosts; empty: initial values
+        mutable unsigned long long n_bonds = 0;
+    mutable bool               recount_bonds = true;
     std::shared_ptr<CellData> cell_data; // memory of the cell loops
     std::vector<Prescribed>   prescribed;
     std::vector<bool>         cut; // by active cell index

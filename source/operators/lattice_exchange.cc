@@ -1,0 +1,467 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/operators/lattice_exchange.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Bonds across a jump of the conductivity by more than this factor are not active. */
+    constexpr double largest_contrast = 1.5;
+
+
+    template <std::size_t dim>
+    std::array<int, dim> operator+(std::array<int, dim> a, const std::array<int, dim> &b)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        a[d] += b[d];
+      return a;
+    }
+
+
+    /** Call visit(site) for all sites of a box, the first coordinate fastest. */
+    template <std::size_t dim, typename Visit>
+    void for_each_site(const std::array<int, dim> &first,
+                       const std::array<int, dim> &last,
+                       const Visit                &visit)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (last[d] < first[d])
+          return;
+      for (auto site = first;;)
+        {
+          visit(site);
+          unsigned int d = 0;
+          for (; d < dim && site[d] == last[d]; ++d)
+            site[d] = first[d];
+          if (d == dim)
+            return;
+          ++site[d];
+        }
+    }
+
+
+    /** The matrix of a brick cell with a conductivity tensor that is diagonal. */
+    template <int dim>
+    FullMatrix<double> brick_matrix(const Tensor<1, dim>          &spacing,
+                                    const std::array<double, dim> &conductivities)
+    {
+      constexpr unsigned int n = GeometryInfo<dim>::vertices_per_cell;
+      FullMatrix<double>     matrix(n, n);
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int b = 0; b < n; ++b)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              double term = conductivities[d];
+              for (unsigned int e = 0; e < dim; ++e)
+                {
+                  const bool same = ((a >> e) & 1) == ((b >> e) & 1);
+                  term *= e == d ? (same ? 1. : -1.) / spacing[e] :
+                                   (same ? 1. / 3. : 1. / 6.) * spacing[e];
+                }
+              matrix(a, b) += term;
+            }
+      return matrix;
+    }
+  } // namespace
+
+
+  template <int dim>
+  LatticeExchange<dim>::LatticeExchange(Nodes<dim>              &nodes,
+                                        const Scene<dim>        &scene,
+                                        const Zone<dim>         &zone,
+                                        const std::vector<bool> &constrained)
+    : bonds(nodes, scene, HaloAround::cells)
+    , zone(zone)
+    , last(scene.cracks.end_time)
+  {
+    plain = bonds.uniform_conductivity() && scene.domain.shape == Shape::box;
+    find_offsets();
+    find_sites(scene, constrained);
+    find_cells(scene);
+    find_full_matrix();
+  }
+
+
+  template <int dim>
+  void LatticeExchange<dim>::find_offsets()
+  {
+    for (const FamilyMember<dim> &member : bonds.lattice_members())
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          reach[d] = std::max(reach[d], member.offset[d]);
+        // One of each pair of opposite offsets.
+        unsigned int last = dim;
+        while (last > 0 && member.offset[last - 1] == 0)
+          --last;
+        if (member.offset[last - 1] > 0)
+          offsets.push_back({member.offset, member.weight, bond_pieces<dim>(member.offset)});
+      }
+    for (unsigned int k = 0; k < offsets.size(); ++k)
+      for (unsigned int p = 0; p < offsets[k].pieces.size(); ++p)
+        {
+          const BondPiece<dim> &piece = offsets[k].pieces[p];
+          for (unsigned int c = 0; c < piece.cells.size(); ++c)
+            {
+              Passage passage{k, p, piece.cells[c], piece.change[c]};
+              for (int &x : passage.start)
+                x = -x;
+              for (double &x : passage.change)
+                x /= std::sqrt(piece.length);
+              passages.push_back(passage);
+            }
+        }
+  }
+
+
+  template <int dim>
+  void LatticeExchange<dim>::find_sites(const Scene<dim>        &scene,
+                                        const std::vector<bool> &constrained)
+  {
+    const Nodes<dim>   &nodes   = bonds.nodes();
+    const Lattice<dim> &lattice = *nodes.lattice();
+    Vector              free(nodes.partitioner());
+    free = 1.;
+    for (unsigned int i = 0; i < constrained.size(); ++i)
+      if (constrained[i])
+        free.local_element(i) = 0.;
+    free.update_ghost_values();
+    Site low{}, high{};
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      {
+                const Site site = site_of(i);
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            low[d]  = i == 0 ? site[d] : std::min(low[d], site[d]);
+            high[d] = i == 0 ? site[d] : std::max(high[d], site[d]);
+          }
+      }
+    std::size_t n_sites = 1;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        corner[d] = low[d];
+        extent[d] = high[d] - low[d] + 1;
+        n_sites *= extent[d];
+      }
+    sites.resize(nodes.n_local() > 0 ? n_sites : 0);
+    const CrackHistory<dim> &history = bonds.crack_history();
+    Zone<dim>                at_end  = zone;
+    at_end.set_cracks(history.pieces(last));
+    zone.set_cracks(history.pieces(history.representative(0.)));
+    double n_in_zone = 0.;
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      {
+                SiteData &site = own(site_of(i));
+        site.node      = i;
+        site.volume    = nodes.volume(i);
+        // Beside larger cells a node has more volume than a cell of the lattice.
+        site.may_join = free.local_element(i) > 0. &&
+                        site.volume < lattice.cell_volume() * (1. + 1e-9) &&
+                        at_end.contains(nodes.position(i));
+        site.in_zone = site.may_join && zone.contains(nodes.position(i));
+        n_in_zone += i < nodes.n_owned() && site.may_join;
+      }
+    AssertThrow(Utilities::MPI::sum(n_in_zone, nodes.communicator()) > 0.,
+                UserError("'Zone' in section 'Coupling': no node of the mesh lies in the zone. Choose a wider zone or a finer "
+                          "mesh, or 'Models = finite elements'."));
+  }
+
+
+  template <int dim>
+  void LatticeExchange<dim>::find_cells(const Scene<dim> &scene)
+  {
+    if (sites.empty())
+      return;
+    const Lattice<dim> &lattice = *bonds.nodes().lattice();
+    const QGauss<dim>   points(2);
+    Site                last = corner;
+    for (unsigned int d = 0; d < dim; ++d)
+      last[d] += extent[d] - 2;
+    for_each_site(corner, last, [&](const Site &site) {
+            SiteData &data = own(site);
+      data.cell      = true;
+      for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell; ++v)
+        {
+          Site other = site;
+          for (unsigned int d = 0; d < dim; ++d)
+            other[d] += (v >> d) & 1;
+          data.cell = data.cell && at(other)->node != numbers::invalid_unsigned_int;
+        }
+      const Point<dim> low = lattice.position(site);
+      data.cell            = data.cell && !scene.domain.in_hole(low + 0.5 * lattice.spacing);
+      if (!data.cell)
+        return;
+      if (bonds.uniform_conductivity())
+        {
+          data.lowest = data.highest = bonds.conductivity(0);
+          return;
+        }
+      data.lowest = std::numeric_limits<double>::max();
+      for (const Point<dim> &q : points.get_points())
+        {
+          Point<dim> p = low;
+          for (unsigned int d = 0; d < dim; ++d)
+            p[d] += q[d] * lattice.spacing[d];
+          const double kappa = scene.material.conductivity.value(p);
+          data.lowest        = std::min(data.lowest, kappa);
+          data.highest       = std::max(data.highest, kappa);
+        }
+    });
+  }
+
+
+  template <int dim>
+  void LatticeExchange<dim>::find_full_matrix()
+  {
+    const Lattice<dim>     &lattice = *bonds.nodes().lattice();
+    const double            volume  = lattice.cell_volume();
+    std::array<double, dim> A{};
+    constexpr unsigned int  n = GeometryInfo<dim>::vertices_per_cell;
+    surplus.reinit(n, n);
+    for (const Offset &offset : offsets)
+      for (unsigned int d = 0; d < dim; ++d)
+        A[d] += offset.weight * volume * std::pow(offset.site[d] * lattice.spacing[d], 2);
+    for (const Passage &passage : passages)
+      {
+        const Offset &offset = offsets[passage.offset];
+        const double  share  = offset.weight * volume * volume /
+                              offset.pieces[passage.piece].cells.size();
+        for (unsigned int a = 0; a < n; ++a)
+          for (unsigned int b = 0; b < n; ++b)
+            surplus(a, b) += share * passage.change[a] * passage.change[b];
+      }
+    surplus.add(-1., brick_matrix<dim>(lattice.spacing, A));
+  }
+
+
+  template <int dim>
+  const typename LatticeExchange<dim>::SiteData *LatticeExchange<dim>::at(const Site &site) const
+  {
+    std::size_t key = 0;
+    for (unsigned int d = dim; d-- > 0;)
+      {
+        const int x = site[d] - corner[d];
+        if (x < 0 || x >= extent[d])
+          return nullptr;
+        key = key * extent[d] + x;
+      }
+    return key < sites.size() ? &sites[key] : nullptr;
+  }
+
+
+  template <int dim>
+  typename LatticeExchange<dim>::SiteData &LatticeExchange<dim>::own(const Site &site)
+  {
+    return const_cast<SiteData &>(*at(site));
+  }
+
+
+  template <int dim>
+  typename LatticeExchange<dim>::Site LatticeExchange<dim>::site_of(const unsigned int node) const
+  {
+    return bonds.nodes().lattice()->index(bonds.nodes().position(node));
+  }
+
+
+  template <int dim>
+  double LatticeExchange<dim>::conductivity_on(const Offset &offset, const Site &start) const
+  {
+    if (plain)
+      return bonds.conductivity(0);
+    double lowest = std::numeric_limits<double>::max(), highest = 0.;
+    for (const BondPiece<dim> &piece : offset.pieces)
+      {
+        bool inside = false;
+        for (const Site &cell : piece.cells)
+          if (const SiteData *data = at(start + cell); data != nullptr && data->cell)
+            {
+              inside  = true;
+              lowest  = std::min(lowest, data->lowest);
+              highest = std::max(highest, data->highest);
+            }
+        if (!inside)
+          return 0.;
+      }
+    return highest > largest_contrast * lowest ? 0. : lowest;
+  }
+
+
+  template <int dim>
+  void LatticeExchange<dim>::bonds_of(const unsigned int node, std::vector<Bond> &list) const
+  {
+    list.clear();
+        const Site      site = site_of(node);
+    const SiteData &data = *at(site);
+    if (!data.in_zone)
+      return;
+    for (const bool forward : {false, true})
+      for (const Offset &offset : offsets)
+        {
+          Site start = site, other = site;
+          for (unsigned int d = 0; d < dim; ++d)
+            (forward ? other : start)[d] += (forward ? 1 : -1) * offset.site[d];
+          const SiteData *neighbor = at(forward ? other : start);
+          if (neighbor == nullptr || !neighbor->in_zone)
+            continue;
+          Bond bond;
+          bond.neighbor = neighbor->node;
+          bond.intact   = conductivity_on(offset, start) * offset.weight * data.volume * neighbor->volume;
+          if (bond.intact == 0.)
+            continue;
+          bond.weight = bond.intact * bonds.kept_fraction(node, bond.neighbor, bond.cut);
+          list.push_back(bond);
+        }
+  }
+
+
+  template <int dim>
+  void LatticeExchange<dim>::possible_neighbors_of(const unsigned int         node,
+                                                   std::vector<unsigned int> &neighbors) const
+  {
+    neighbors.clear();
+        const Site site = site_of(node);
+    if (!at(site)->may_join)
+      return;
+    for (const FamilyMember<dim> &member : bonds.lattice_members())
+      if (const SiteData *other = at(site + member.offset); other != nullptr && other->may_join)
+        neighbors.push_back(other->node);
+  }
+
+
+  template <int dim>
+  bool LatticeExchange<dim>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
+  {
+    const Lattice<dim> &lattice = *bonds.nodes().lattice();
+    if (cell->extent_in_direction(0) > 1.5 * lattice.spacing[0])
+      return false;
+    constexpr unsigned int       n    = GeometryInfo<dim>::vertices_per_cell;
+    const Site                   site = lattice.index(cell->vertex(0));
+    std::array<double, n *n>     taken{};
+    bool                         any = false;
+    for (const Passage &passage : passages)
+      {
+        const Offset   &offset = offsets[passage.offset];
+        const Site      start  = site + passage.start;
+        const SiteData *a      = at(start);
+        if (a == nullptr || !a->in_zone)
+          continue;
+        const SiteData *b = at(start + offset.site);
+        if (b == nullptr || !b->in_zone)
+          continue;
+        const double kappa = conductivity_on(offset, start);
+        if (kappa == 0.)
+          continue;
+        unsigned int n_around = 0;
+        for (const Site &other : offset.pieces[passage.piece].cells)
+          if (const SiteData *data = at(start + other); data != nullptr && data->cell)
+            ++n_around;
+        any                = true;
+        const double share = kappa * offset.weight * a->volume * b->volume / n_around;
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j <= i; ++j)
+            taken[i * n + j] += share * passage.change[i] * passage.change[j];
+      }
+    if (!any)
+      return false;
+    stiffness.add(at(site)->lowest, surplus);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        stiffness(i, j) -= taken[std::max(i, j) * n + std::min(i, j)];
+    return true;
+  }
+
+
+  template <int dim>
+  bool LatticeExchange<dim>::symmetric() const
+  {
+    return true;
+  }
+
+
+  template <int dim>
+  std::vector<BoundingBox<dim>> LatticeExchange<dim>::joining_by(const double time) const
+  {
+    std::vector<BoundingBox<dim>> boxes;
+    if (!zone.follows_cracks() || sites.empty())
+      return boxes;
+    const Lattice<dim> &lattice = *bonds.nodes().lattice();
+    Zone<dim>           then    = zone;
+    then.set_cracks(bonds.crack_history().pieces(time));
+    for (BoundingBox<dim> wide : bonds.crack_history().changes(bonds.cracks_now(), time))
+      {
+        wide.extend(zone.width() + lattice.spacing.norm());
+        Site first = lattice.index(wide.get_boundary_points().first),
+             last  = lattice.index(wide.get_boundary_points().second);
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            first[d] = std::max(first[d], corner[d]);
+            last[d]  = std::min(last[d], corner[d] + extent[d] - 1);
+          }
+        for_each_site(first, last, [&](const Site &site) {
+          const SiteData &data = *at(site);
+          if (data.may_join && !data.in_zone && then.contains(lattice.position(site)))
+            boxes.push_back({{lattice.position(site), lattice.position(site)}});
+        });
+      }
+    return boxes;
+  }
+
+
+  template <int dim>
+  void LatticeExchange<dim>::set_cracks_of(const double time)
+  {
+    for (const BoundingBox<dim> &box : joining_by(time))
+      own(bonds.nodes().lattice()->index(box.get_boundary_points().first)).in_zone = true;
+    bonds.set_cracks_of(time);
+    zone.set_cracks(bonds.crack_history().pieces(time));
+  }
+
+
+  template <int dim>
+  double LatticeExchange<dim>::zone_share() const
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    double            in = 0., all = 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        all += nodes.volume(i);
+        in += in_zone(i) ? nodes.volume(i) : 0.;
+      }
+    return Utilities::MPI::sum(in, nodes.communicator()) /
+           Utilities::MPI::sum(all, nodes.communicator());
+  }
+
+  template <int dim>
+  bool LatticeExchange<dim>::in_zone(const unsigned int node) const
+  {
+        return at(site_of(node))->in_zone;
+  }
+
+  template <int dim>
+  const Families<dim> &LatticeExchange<dim>::families() const
+  {
+    return bonds;
+  }
+
+  template <int dim>
+  std::size_t LatticeExchange<dim>::memory_consumption() const
+  {
+    return bonds.memory_consumption() + sites.capacity() * sizeof(SiteData) +
+           passages.capacity() * sizeof(Passage);
+  }
+
+
+  template class LatticeExchange<1>;
+  template class LatticeExchange<2>;
+  template class LatticeExchange<3>;
+} // namespace PeriDeal
