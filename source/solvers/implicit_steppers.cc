@@ -130,6 +130,7 @@ namespace PeriDeal
         if (op.depends_on_solution())
           {
             op.take_material_at(U);
+            op.distribute(U, t);
             solver.operator_changed();
           }
         op.residual(residual, U, t);
@@ -331,6 +332,7 @@ namespace PeriDeal
         start = u;
         op.distribute(start, t);
         op.take_material_at(start);
+        op.distribute(start, t);
         op.residual(load, start, t);
         if (op.capacity_is_diagonal())
           for (unsigned int i = 0; i < u.locally_owned_size(); ++i)

@@ -147,6 +147,7 @@ namespace PeriDeal
     op.initialize_vector(change);
     op.distribute(u, t);
     op.take_material_at(u);
+    op.distribute(u, t);
     op.residual(rhs, u, t);
     LinearSolver solver(op, tolerance, max_iterations);
     check_no_floating_part(op, solver.surrogate());
@@ -165,6 +166,7 @@ namespace PeriDeal
             "The iterations for the material's dependence on the temperature (T in section 'Material') did not "
             "converge in 200 rounds. Start nearer to the solution ('Initial value'), or compute the way there in time."));
         op.take_material_at(u);
+        op.distribute(u, t);
         solver.operator_changed();
         op.residual(rhs, u, t);
         change = 0.;
