@@ -308,6 +308,10 @@ namespace PeriDeal
     expect({{"Time/Steady", "true"}, {"Boundary conditions/Dirichlet", "left: 0"}},
            {"'Growth'", "'Steady'"});
     expect({{"Cracks/Transmission", "2*t"}}, {"'Transmission'", "2*t", "from 0 to 1"});
+    // Between the first samples, and more often than there may be events.
+    expect({{"Cracks/Transmission", "2*exp(-((t - 0.50390625)/0.001)^2)"}},
+           {"'Transmission'", "at t = 0.50390625", "from 0 to 1"});
+    expect({{"Cracks/Transmission", "0.5 + 0.5*sin(1e9*t)"}}, {"'Transmission'", "events"});
     expect({{"Cracks/Transmission", "x"}}, {"'Transmission'", "time t only"});
     expect({{"Cracks/Transmission", "-1"}}, {"'Transmission'", "from 0 to 1"});
     // A node between cracks has no bond upwards or downwards.

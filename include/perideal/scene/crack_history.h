@@ -62,9 +62,10 @@ namespace PeriDeal
     double longest_advance() const;
 
   private:
-    void add_growth_events(const double step, const double end_time, const double time_step);
-    void add_transmission_events(const double end_time);
-    void refine_transmission(const double a, const double b, const double end_time);
+    void   add_growth_events(const double step, const double end_time, const double time_step);
+    void   add_transmission_events(const double end_time);
+    void   refine_transmission(const double a, const double b, const double end_time);
+    double checked_transmission(const double t) const;
 
     const Cracks<dim>  *cracks;
     std::vector<double> times; // of events, ascending
