@@ -37,6 +37,9 @@ namespace PeriDeal
     add_growth_events(step, end_time, time_step);
     if (cracks.transmission.depends_on_time())
       add_transmission_events(end_time);
+    if (time_step > 0.)
+      for (double &t : times)
+        t = time_step * std::round(t / time_step);
     std::sort(times.begin(), times.end());
     std::vector<double> apart;
     for (const double t : times)

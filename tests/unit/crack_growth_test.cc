@@ -123,6 +123,13 @@ namespace PeriDeal
     const CrackHistory<2> fixed(scene.cracks, 0.025, 2., 0.05);
     for (const double t : fixed.events())
       EXPECT_NEAR(std::remainder(t - 0.5, 0.1), 0., 1e-12);
+    // Starts between steps and changes of the transmission move to whole steps, too.
+    OperatorTests::set(scene,
+                       {{"Cracks/Growth", "2: 0.513, 0.2,0, 1.5"}, {"Cracks/Transmission", "t/2"}});
+    const CrackHistory<2> moved(scene.cracks, 0.025, 2., 0.05);
+    EXPECT_EQ(moved.events().size(), 39u);
+    for (const double t : moved.events())
+      EXPECT_NEAR(std::remainder(t, 0.05), 0., 1e-12);
   }
 
 
