@@ -306,6 +306,20 @@ namespace PeriDeal
            {"'Paths'", "begins at (0, 0)", "(0.31, 0.52)"});
     expect({{"Cracks/Paths", "2: 0, 0.31,0.52 | 0, 0.5,0.5"}}, {"'Paths'", "ascend"});
     expect({{"Cracks/Paths", "2: 0, 0.31,0.52"}}, {"'Paths'", "no position to go to"});
+    expect({{"Cracks/Paths", "2: 0, 0.31,0.52 | 0.3, 0.6,0.52 | 0.6, 0.4,0.52"}},
+           {"'Paths'", "end point 2 turns back at (0.6, 0.52)"});
+    expect({{"Cracks/Growth", "4: 0, -0.02,-0.7, 0.5"}},
+           {"'Growth'", "end point 4 turns back at (0.72, 0.83)"});
+    for (const std::string path : {"2: 0, 0.5,0.3,0.4 | 0.5, 0.7,0.3,0.4 | 1, 0.4,0.3,0.4",
+                                   "2: 0, 0.5,0.3,0.4 | 1, 0.4,0.4,0.4"})
+      SceneTests::expect_parts(message_of([&] {
+                                 Scene<3> scene;
+                                 OperatorTests::set(
+                                   scene,
+                                   {{"Cracks/Polygons", "0.3,0.3,0.4 ; 0.5,0.3,0.4 ; 0.5,0.6,0.4"},
+                                    {"Cracks/Paths", path}});
+                               }),
+                               {"'Paths'", "corner 2 moves into its polygon"});
     expect({{"Cracks/Growth", ""}, {"Cracks/Paths", ""}}, {"'Segments'", "no length", "Growth"});
     expect({{"Cracks/Mesh", "faces"}}, {"'Mesh' in section 'Cracks'", "pairs"});
     expect({{"Time/Stepper", "euler"}, {"Time/Time step", "0.3"}},
