@@ -143,6 +143,10 @@ namespace PeriDeal
     if (constraints->any_slave())
       constraints = std::make_unique<NodeConstraints<dim>>(bonds, scene);
     form->update_rows(rows, bond_diagonal.begin());
+    std::string message;
+    for (std::size_t k = 0; k < rows.size() && message.empty(); ++k)
+      message = isolation(rows[k]);
+    throw_on_all_if_any(bonds.nodes().communicator(), message);
     for (const auto &[node, h] : convection_diagonal)
       if (std::binary_search(rows.begin(), rows.end(), node))
         bond_diagonal.local_element(node) += h;

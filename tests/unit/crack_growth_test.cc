@@ -335,6 +335,21 @@ namespace PeriDeal
     expect({{"Cracks/Transmission", "0.5 + 0.5*sin(1e9*t)"}}, {"'Transmission'", "events"});
     expect({{"Cracks/Transmission", "x"}}, {"'Transmission'", "time t only"});
     expect({{"Cracks/Transmission", "-1"}}, {"'Transmission'", "from 0 to 1"});
+    // The last of four cracks around a node.
+    for (const Model model : {Model::peridynamics, Model::finite_elements})
+      SceneTests::expect_parts(
+        message_of([&] {
+          const Problem<2> problem(
+            square +
+              Settings{
+                {"Cracks/Segments",
+                 "0.58,-1 ; 0.58,2 ; 0.62,-1 ; 0.62,2 ; -1,0.48 ; 2,0.48 ; 0.2,0.52 ; 0.3,0.52"},
+                {"Cracks/Growth", "8: 0, 0.6,0"},
+                {"Time/End time", "1"}},
+            model);
+          grow(problem.op());
+        }),
+        {"node at (0.6 0.5)", "'Cracks'"});
     // A node between cracks has no bond upwards or downwards.
     SceneTests::expect_parts(
       message_of([] {
