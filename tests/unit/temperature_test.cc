@@ -95,6 +95,26 @@ namespace PeriDeal
   }
 
 
+  TEST(Temperature, flows_are_those_of_the_last_temperatures)
+  {
+    for (const Model model : {Model::peridynamics, Model::finite_elements})
+      for (const auto &[stepper, step] :
+           std::vector<std::pair<std::string, double>>{{"euler", 1.2e-4},
+                                                       {"rkc2", 0.05 / 8},
+                                                       {"rkc2", -1.}})
+        {
+          const Problem<2> problem(wall, model);
+          const Vector     u    = advanced(problem, stepper, step);
+          const double     heat = problem.op().balance(u, 0.05, false).sides.at("right");
+          problem.op().take_material_at(u);
+          EXPECT_NEAR(problem.op().balance(u, 0.05, false).sides.at("right"),
+                      heat,
+                      1e-13 * std::abs(heat))
+            << to_string(model) << ", " << stepper;
+        }
+  }
+
+
   TEST(Temperature, content_is_the_integral_of_the_capacity)
   {
     for (const Model model : {Model::peridynamics, Model::finite_elements})
