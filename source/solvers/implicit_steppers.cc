@@ -106,7 +106,7 @@ namespace PeriDeal
       {
         // Picard iterations if the material depends on the solution: it is taken at the last iterate.
         constexpr unsigned int most = 30;
-        const double           goal = 1e-4 * tolerance;
+        const double           goal = std::max(1e-4 * tolerance, 1e-14); // above round-off
         for (unsigned int k = 0; k < most; ++k)
           {
             solve_once(w, s, t, U);
