@@ -117,7 +117,7 @@ namespace PeriDeal
     std::vector<unsigned int> nodes_near(const std::vector<dealii::BoundingBox<dim>> &boxes,
                                          const double distance) const;
 
-    /** Cracks or their transmission change with time: cut bonds have to be kept in mind. */
+    /** When the cracks or their transmission change. */
     const CrackHistory<dim> &crack_history() const;
 
     /** The cracks that a bond crosses: +1 if the node lies on the left side, -1 if its neighbour does. @p crossed is overwritten. */
