@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace PeriDeal
@@ -111,6 +112,12 @@ namespace PeriDeal
       }
     catch (const SolverControl::NoConvergence &failure)
       {
+        if (outdated)
+          {
+            n_last_iterations  = std::numeric_limits<unsigned int>::max(); // worn
+            n_first_iterations = 1;
+            return control.last_step() + solve(a, b, x, rhs);
+          }
         std::ostringstream message;
         message
           << "The linear solver stopped after " << failure.last_step
