@@ -122,16 +122,7 @@ namespace PeriDeal
     const double n_own = form->row_sums(bond_diagonal.begin());
     std::string  message;
     for (unsigned int i = 0; i < nodes.n_owned() && message.empty(); ++i)
-      if (!(bond_diagonal.local_element(i) > 0.) &&
-          constraints->kind(i) == NodeConstraints<dim>::free)
-        {
-          std::ostringstream where;
-          where << "(" << nodes.position(i) << ")";
-          message =
-            "The node at " + where.str() +
-            " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section "
-            "'Cracks', which may cut all bonds of a node (a crack in 'Horizon ratio' close to 1).";
-        }
+      message = isolation(i);
     throw_on_all_if_any(nodes.communicator(), message);
     for (const auto &[node, h] : convection_diagonal)
       bond_diagonal.local_element(node) += h;
@@ -141,6 +132,18 @@ namespace PeriDeal
     gershgorin = Utilities::MPI::max(bound, nodes.communicator());
     count_bonds(n_own);
     constraints->mask(bond_diagonal, 1.);
+  }
+
+
+  template <int dim>
+  std::string BondOperator<dim>::isolation(const unsigned int node) const
+  {
+    if (bond_diagonal.local_element(node) > 0. ||
+        constraints->kind(node) != NodeConstraints<dim>::free)
+      return "";
+    return "The node at " + place_of(node) +
+           " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section "
+           "'Cracks', which may cut all bonds of a node (a crack in 'Horizon ratio' close to 1).";
   }
 
 

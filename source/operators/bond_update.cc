@@ -66,7 +66,8 @@ namespace PeriDeal
     const bool                energy    = bonds.corrects_every_bond();
     const CorrectionDirection direction = scene.peridynamics.correction_direction;
     const unsigned int n_directions = energy && direction == CorrectionDirection::both ? dim : 1;
-    const unsigned int first        = direction == CorrectionDirection::both ? 0 : static_cast<unsigned int>(direction);
+    const unsigned int first =
+      direction == CorrectionDirection::both ? 0 : static_cast<unsigned int>(direction);
     if (node_factors.empty())
       {
         node_factors.resize(n_directions);
@@ -142,6 +143,10 @@ namespace PeriDeal
     if (constraints->any_slave())
       constraints = std::make_unique<NodeConstraints<dim>>(bonds, scene);
     form->update_rows(rows, bond_diagonal.begin());
+    std::string message;
+    for (std::size_t k = 0; k < rows.size() && message.empty(); ++k)
+      message = isolation(rows[k]);
+    throw_on_all_if_any(bonds.nodes().communicator(), message);
     for (const auto &[node, h] : convection_diagonal)
       if (std::binary_search(rows.begin(), rows.end(), node))
         bond_diagonal.local_element(node) += h;
@@ -168,6 +173,23 @@ namespace PeriDeal
 
 
   template <int dim>
+  void BondOperator<dim>::update_crack_sides()
+  {
+    // What a contact conductance lets through depends on the bond's conductivity, and so does crack-side scaling.
+    const bool scaled = !node_factors.empty() && !bonds.corrects_every_bond();
+    if (scene.cracks.cracks.empty() || !(scaled || scene.cracks.contact_conductance > 0.))
+      return;
+    if (scaled)
+      correct_surface(rows_to_correct());
+    std::vector<unsigned int> rows;
+    for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
+      if (bonds.near_crack(i))
+        rows.push_back(i);
+    form->update_rows(rows, bond_diagonal.begin());
+  }
+
+
+  template <int dim>
   void BondOperator<dim>::take_material_at(const Vector &u)
   {
     if (!depends_on_solution())
@@ -180,6 +202,9 @@ namespace PeriDeal
         bonds.take_conductivities_at(u);
         u.set_ghost_state(false);
         form->update_conductivities(bond_diagonal.begin());
+        update_crack_sides();
+        if (constraints->any_slave())
+          constraints = std::make_unique<NodeConstraints<dim>>(bonds, scene);
         for (const auto &[node, h] : convection_diagonal)
           bond_diagonal.local_element(node) += h;
       }
@@ -195,6 +220,7 @@ namespace PeriDeal
   template std::vector<unsigned int> BondOperator<dim>::rows_to_correct() const;         \
   template void   BondOperator<dim>::correct_surface(const std::vector<unsigned int> &); \
   template bool   BondOperator<dim>::depends_on_solution() const;                        \
+  template void   BondOperator<dim>::update_crack_sides();                               \
   template void   BondOperator<dim>::take_material_at(const Vector &);                   \
   template double BondOperator<dim>::next_event(const double) const;                     \
   template bool   BondOperator<dim>::update(const double);

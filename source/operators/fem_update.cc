@@ -119,7 +119,8 @@ namespace PeriDeal
               stiffness_diagonal.local_element(i) = value;
           });
           bound = std::max(bound, sum / capacity.local_element(i));
-          if (!(stiffness_diagonal.local_element(i) > 0.) && message.empty())
+          // Cells are taken away by subtraction, which leaves round-off behind.
+          if (!(sum > 1e-13 * gershgorin * capacity.local_element(i)) && message.empty())
             message =
               "'Mesh' in section 'Cracks': the growing cracks leave the finite element node at " +
               place_of(i) + " without any conducting cell. Use 'pairs' or a finer mesh.";

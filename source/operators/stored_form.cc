@@ -64,8 +64,8 @@ namespace PeriDeal
     public:
       explicit StoredForm(const Families<dim> &families)
         : families(families)
-        , keep_cut(families.crack_history().changes_ever())
         , varying(families.conductivity_depends_on_temperature())
+        , keep_cut(varying || families.crack_history().changes_ever())
         , n_values(families.nodes().n_local())
         , extended(families.fictitious().empty() ? 0 : n_values + families.fictitious().size())
       {
@@ -194,8 +194,8 @@ namespace PeriDeal
       }
 
       const Families<dim> &families;
-      const bool           keep_cut;     // with weight 0, since their weights will change
       const bool           varying;      // conductivities change with the temperature
+      const bool           keep_cut;     // with weight 0, since rows will be found anew
       std::vector<double>  unit_weights; // weights over the bonds' conductivities, if they do
       std::vector<typename Families<dim>::Bond> bonds;
       std::size_t                               n_values;

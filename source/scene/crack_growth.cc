@@ -188,9 +188,50 @@ namespace PeriDeal
   template <int dim>
   void Cracks<dim>::check_tips() const
   {
-    // A polygon whose corners move outwards holds all it has ever been.
-    if (dim != 3)
+    std::vector<double> stops; // of all tips
+    for (const CrackTip<dim> &tip : tips)
+      for (const auto &[time, point] : tip.path)
+        stops.push_back(time);
+    if (stops.empty())
       return;
+    std::sort(stops.begin(), stops.end());
+    stops.push_back(stops.back() + 1.);
+    if (dim == 3)
+      check_polygons(stops);
+    else
+      check_turns(stops.back());
+  }
+
+
+  template <int dim>
+  void Cracks<dim>::check_turns(const double last) const
+  {
+    // On a way back the left side would be the other one.
+    const std::vector<CrackPiece<dim>> line = crack_pieces(cracks, tips, last);
+    for (std::size_t k = 0; k + 1 < line.size(); ++k)
+      {
+        if (line[k].crack != line[k + 1].crack)
+          continue;
+        const Point<dim>    &turn   = line[k].corners[1];
+        const Tensor<1, dim> before = turn - line[k].corners[0],
+                             next   = line[k + 1].corners[1] - turn;
+        if ((before / before.norm() + next / next.norm()).norm() > 1e-9)
+          continue;
+        for (const CrackTip<dim> &tip : tips)
+          if (tip.crack == line[k].crack &&
+              std::any_of(tip.path.begin(), tip.path.end(), [&](const auto &stop) {
+                return stop.second == turn;
+              }))
+            tip_error(tip,
+                      "turns back at " + place(turn) +
+                        " along its own crack; cracks grow, they do not heal.");
+      }
+  }
+
+
+  template <int dim>
+  void Cracks<dim>::check_polygons(const std::vector<double> &stops) const
+  {
     for (const CrackTip<dim> &tip : tips)
       {
         const CrackGeometry<dim> start(cracks[tip.crack]);
@@ -202,13 +243,13 @@ namespace PeriDeal
           leaves = leaves || off_plane(tip.path[k].second - tip.path[k - 1].second);
         if (leaves)
           tip_error(tip, "leaves the plane of its polygon.");
-        const double t = tip.path.front().first;
-        // Where it is a little later, the polygon must still hold the corner's first place.
-        const double            later   = tip.path.size() > 1 ? tip.path[1].first : t + 1.;
-        std::vector<Point<dim>> corners = cracks[tip.crack];
-        corners[tip.corner]             = tip.at(later);
-        if (!CrackGeometry<dim>(corners).contains(cracks[tip.crack][tip.corner]))
-          tip_error(tip, "moves into its polygon; cracks grow, they do not heal.");
+        // A polygon whose corners move outwards holds all it has ever been.
+        for (std::size_t k = 0; k + 1 < stops.size(); ++k)
+          {
+            const auto later = crack_pieces(cracks, tips, stops[k + 1]);
+            if (!CrackGeometry<dim>(later[tip.crack].corners).contains(tip.at(stops[k])))
+              tip_error(tip, "moves into its polygon; cracks grow, they do not heal.");
+          }
       }
   }
 
@@ -310,6 +351,8 @@ namespace PeriDeal
   template void          Cracks<dim>::parse_paths();                                               \
   template void          Cracks<dim>::tip_error(const CrackTip<dim> &, const std::string &) const; \
   template void          Cracks<dim>::check_tips() const;                                          \
+  template void          Cracks<dim>::check_turns(const double) const;                             \
+  template void          Cracks<dim>::check_polygons(const std::vector<double> &) const;           \
   template bool          Cracks<dim>::change() const;                                              \
   template bool          Cracks<dim>::conduct() const;                                             \
   template void          Cracks<dim>::set_box(const Point<dim> &, const Point<dim> &);             \

@@ -37,6 +37,9 @@ namespace PeriDeal
     add_growth_events(step, end_time, time_step);
     if (cracks.transmission.depends_on_time())
       add_transmission_events(end_time);
+    if (time_step > 0.)
+      for (double &t : times)
+        t = time_step * std::round(t / time_step);
     std::sort(times.begin(), times.end());
     std::vector<double> apart;
     for (const double t : times)
@@ -99,11 +102,28 @@ namespace PeriDeal
 
 
   template <int dim>
+  double CrackHistory<dim>::checked_transmission(const double t) const
+  {
+    const double found = transmission(t);
+    if (found < 0. || found > 1.)
+      entry_error(cracks->where("Transmission"),
+                  "'" + cracks->transmission.text() + "' is " + number_text(found) +
+                    " at t = " + number_text(t) + ", needs a number from 0 to 1.");
+    return found;
+  }
+
+
+  template <int dim>
   void CrackHistory<dim>::refine_transmission(const double a, const double b, const double end_time)
   {
-    const double middle = 0.5 * (a + b);
-    const double change = std::max(std::abs(transmission(a) - transmission(middle)),
-                                   std::abs(transmission(b) - transmission(middle)));
+    const double middle = 0.5 * (a + b), there = checked_transmission(middle);
+    const double change =
+      std::max(std::abs(transmission(a) - there), std::abs(transmission(b) - there));
+    if (times.size() > most_events)
+      entry_error(cracks->where("Transmission"),
+                  "'" + cracks->transmission.text() +
+                    "' changes so often that it needs more than " + std::to_string(most_events) +
+                    " events; give a smoother formula.");
     if (change > 0.)
       times.push_back(b); // what is constant needs no event but its end
     if (change <= 0.5 * transmission_step || b - a < 1e-7 * end_time)
@@ -120,11 +140,7 @@ namespace PeriDeal
     for (unsigned int k = 0; k < n_samples; ++k)
       {
         const double a = end_time * k / n_samples, b = end_time * (k + 1) / n_samples;
-        const double found = transmission(b);
-        if (found < 0. || found > 1.)
-          entry_error(cracks->where("Transmission"),
-                      "'" + cracks->transmission.text() + "' is " + number_text(found) +
-                        " at t = " + number_text(b) + ", needs a number from 0 to 1.");
+        checked_transmission(b);
         const std::size_t n_before = times.size();
         refine_transmission(a, b, end_time);
         if (times.size() > n_before)

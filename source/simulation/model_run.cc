@@ -439,6 +439,8 @@ namespace PeriDeal
     run->op().initialize_vector(run->solution);
     run->set_initial_value(run->solution);
     run->op().distribute(run->solution, 0.);
+    run->op().take_material_at(run->solution); // with the prescribed values
+    run->op().distribute(run->solution, 0.);
     return run;
   }
 

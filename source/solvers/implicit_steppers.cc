@@ -106,7 +106,7 @@ namespace PeriDeal
       {
         // Picard iterations if the material depends on the solution: it is taken at the last iterate.
         constexpr unsigned int most = 30;
-        const double           goal = 1e-4 * tolerance;
+        const double           goal = std::max(1e-4 * tolerance, 1e-14); // above round-off
         for (unsigned int k = 0; k < most; ++k)
           {
             solve_once(w, s, t, U);
@@ -130,6 +130,7 @@ namespace PeriDeal
         if (op.depends_on_solution())
           {
             op.take_material_at(U);
+            op.distribute(U, t);
             solver.operator_changed();
           }
         op.residual(residual, U, t);
@@ -331,6 +332,7 @@ namespace PeriDeal
         start = u;
         op.distribute(start, t);
         op.take_material_at(start);
+        op.distribute(start, t);
         op.residual(load, start, t);
         if (op.capacity_is_diagonal())
           for (unsigned int i = 0; i < u.locally_owned_size(); ++i)

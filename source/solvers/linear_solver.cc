@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace PeriDeal
@@ -111,6 +112,12 @@ namespace PeriDeal
       }
     catch (const SolverControl::NoConvergence &failure)
       {
+        if (outdated)
+          {
+            n_last_iterations  = std::numeric_limits<unsigned int>::max(); // worn
+            n_first_iterations = 1;
+            return control.last_step() + solve(a, b, x, rhs);
+          }
         std::ostringstream message;
         message
           << "The linear solver stopped after " << failure.last_step
@@ -147,6 +154,7 @@ namespace PeriDeal
     op.initialize_vector(change);
     op.distribute(u, t);
     op.take_material_at(u);
+    op.distribute(u, t);
     op.residual(rhs, u, t);
     LinearSolver solver(op, tolerance, max_iterations);
     check_no_floating_part(op, solver.surrogate());
@@ -165,6 +173,7 @@ namespace PeriDeal
             "The iterations for the material's dependence on the temperature (T in section 'Material') did not "
             "converge in 200 rounds. Start nearer to the solution ('Initial value'), or compute the way there in time."));
         op.take_material_at(u);
+        op.distribute(u, t);
         solver.operator_changed();
         op.residual(rhs, u, t);
         change = 0.;

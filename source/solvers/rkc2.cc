@@ -91,6 +91,8 @@ namespace PeriDeal
         else
           advance_adaptively(u, t, t_end);
         check_finite(u, name(), t_end);
+        if (fixed)
+          take_material_at(u, t_end); // for what is written there
       }
 
       double current_step() const override

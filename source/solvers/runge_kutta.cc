@@ -87,6 +87,7 @@ namespace PeriDeal
             check_finite(u, method, t);
           }
         op.distribute(u, t_end);
+        op.take_material_at(u); // for what is written there
       }
 
       virtual void step(Vector &u, const double t, const double size) = 0;

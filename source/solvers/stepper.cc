@@ -43,11 +43,14 @@ namespace PeriDeal
     if (dt <= sharp)
       return;
     std::ostringstream message;
-    message
-      << "'Time step' in section 'Time' is " << dt << ", above the stability bound of '" << name
-      << "' for this scene: steps up to " << sharp
-      << " are stable (largest eigenvalue, Lanczos), up to " << safe
-      << " for sure (Gershgorin). Choose a smaller step, 'Time step = auto', or 'Stepper = auto'.";
+    message << "'Time step' in section 'Time' is " << dt << ", above the stability bound of '"
+            << name << "' for this scene: steps up to ";
+    if (op.depends_on_solution())
+      message << safe << " are stable for sure at these temperatures (Gershgorin)";
+    else
+      message << sharp << " are stable (largest eigenvalue, Lanczos), up to " << safe
+              << " for sure (Gershgorin)";
+    message << ". Choose a smaller step, 'Time step = auto', or 'Stepper = auto'.";
     AssertThrow(false, UserError(message.str()));
   }
 

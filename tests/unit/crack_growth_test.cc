@@ -123,6 +123,13 @@ namespace PeriDeal
     const CrackHistory<2> fixed(scene.cracks, 0.025, 2., 0.05);
     for (const double t : fixed.events())
       EXPECT_NEAR(std::remainder(t - 0.5, 0.1), 0., 1e-12);
+    // Starts between steps and changes of the transmission move to whole steps, too.
+    OperatorTests::set(scene,
+                       {{"Cracks/Growth", "2: 0.513, 0.2,0, 1.5"}, {"Cracks/Transmission", "t/2"}});
+    const CrackHistory<2> moved(scene.cracks, 0.025, 2., 0.05);
+    EXPECT_EQ(moved.events().size(), 39u);
+    for (const double t : moved.events())
+      EXPECT_NEAR(std::remainder(t, 0.05), 0., 1e-12);
   }
 
 
@@ -299,6 +306,20 @@ namespace PeriDeal
            {"'Paths'", "begins at (0, 0)", "(0.31, 0.52)"});
     expect({{"Cracks/Paths", "2: 0, 0.31,0.52 | 0, 0.5,0.5"}}, {"'Paths'", "ascend"});
     expect({{"Cracks/Paths", "2: 0, 0.31,0.52"}}, {"'Paths'", "no position to go to"});
+    expect({{"Cracks/Paths", "2: 0, 0.31,0.52 | 0.3, 0.6,0.52 | 0.6, 0.4,0.52"}},
+           {"'Paths'", "end point 2 turns back at (0.6, 0.52)"});
+    expect({{"Cracks/Growth", "4: 0, -0.02,-0.7, 0.5"}},
+           {"'Growth'", "end point 4 turns back at (0.72, 0.83)"});
+    for (const std::string path : {"2: 0, 0.5,0.3,0.4 | 0.5, 0.7,0.3,0.4 | 1, 0.4,0.3,0.4",
+                                   "2: 0, 0.5,0.3,0.4 | 1, 0.4,0.4,0.4"})
+      SceneTests::expect_parts(message_of([&] {
+                                 Scene<3> scene;
+                                 OperatorTests::set(
+                                   scene,
+                                   {{"Cracks/Polygons", "0.3,0.3,0.4 ; 0.5,0.3,0.4 ; 0.5,0.6,0.4"},
+                                    {"Cracks/Paths", path}});
+                               }),
+                               {"'Paths'", "corner 2 moves into its polygon"});
     expect({{"Cracks/Growth", ""}, {"Cracks/Paths", ""}}, {"'Segments'", "no length", "Growth"});
     expect({{"Cracks/Mesh", "faces"}}, {"'Mesh' in section 'Cracks'", "pairs"});
     expect({{"Time/Stepper", "euler"}, {"Time/Time step", "0.3"}},
@@ -308,8 +329,27 @@ namespace PeriDeal
     expect({{"Time/Steady", "true"}, {"Boundary conditions/Dirichlet", "left: 0"}},
            {"'Growth'", "'Steady'"});
     expect({{"Cracks/Transmission", "2*t"}}, {"'Transmission'", "2*t", "from 0 to 1"});
+    // Between the first samples, and more often than there may be events.
+    expect({{"Cracks/Transmission", "2*exp(-((t - 0.50390625)/0.001)^2)"}},
+           {"'Transmission'", "at t = 0.50390625", "from 0 to 1"});
+    expect({{"Cracks/Transmission", "0.5 + 0.5*sin(1e9*t)"}}, {"'Transmission'", "events"});
     expect({{"Cracks/Transmission", "x"}}, {"'Transmission'", "time t only"});
     expect({{"Cracks/Transmission", "-1"}}, {"'Transmission'", "from 0 to 1"});
+    // The last of four cracks around a node.
+    for (const Model model : {Model::peridynamics, Model::finite_elements})
+      SceneTests::expect_parts(
+        message_of([&] {
+          const Problem<2> problem(
+            square +
+              Settings{
+                {"Cracks/Segments",
+                 "0.58,-1 ; 0.58,2 ; 0.62,-1 ; 0.62,2 ; -1,0.48 ; 2,0.48 ; 0.2,0.52 ; 0.3,0.52"},
+                {"Cracks/Growth", "8: 0, 0.6,0"},
+                {"Time/End time", "1"}},
+            model);
+          grow(problem.op());
+        }),
+        {"node at (0.6 0.5)", "'Cracks'"});
     // A node between cracks has no bond upwards or downwards.
     SceneTests::expect_parts(
       message_of([] {

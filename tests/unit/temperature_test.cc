@@ -95,6 +95,26 @@ namespace PeriDeal
   }
 
 
+  TEST(Temperature, flows_are_those_of_the_last_temperatures)
+  {
+    for (const Model model : {Model::peridynamics, Model::finite_elements})
+      for (const auto &[stepper, step] :
+           std::vector<std::pair<std::string, double>>{{"euler", 1.2e-4},
+                                                       {"rkc2", 0.05 / 8},
+                                                       {"rkc2", -1.}})
+        {
+          const Problem<2> problem(wall, model);
+          const Vector     u    = advanced(problem, stepper, step);
+          const double     heat = problem.op().balance(u, 0.05, false).sides.at("right");
+          problem.op().take_material_at(u);
+          EXPECT_NEAR(problem.op().balance(u, 0.05, false).sides.at("right"),
+                      heat,
+                      1e-13 * std::abs(heat))
+            << to_string(model) << ", " << stepper;
+        }
+  }
+
+
   TEST(Temperature, content_is_the_integral_of_the_capacity)
   {
     for (const Model model : {Model::peridynamics, Model::finite_elements})
@@ -103,6 +123,38 @@ namespace PeriDeal
         Vector           u = problem.values([](const Point<2> &) { return 2.; });
         EXPECT_NEAR(problem.op().balance(u, 0., false).content, 0.4 * (2. + 1.), 1e-12);
       }
+  }
+
+
+  TEST(Temperature, cracks_and_slaves_follow)
+  {
+    // An operator that takes the material at some temperatures is that of a scene which starts with them.
+    const auto     temperature = [](const Point<2> &p) { return 0.5 * p[0] + p[0] * p[1]; };
+    const Settings crack{{"Cracks/Segments", "0.31,0.13 ; 0.72,0.29"},
+                         {"Boundary conditions/Dirichlet", "left: 0"}},
+      contact{{"Cracks/Contact conductance", "3"}},
+      scaled{{"Peridynamics/Surface correction", "crack scaling"}},
+      slaves{{"Boundary conditions/Flux", "right: 2"},
+             {"Peridynamics/Flux treatment", "extrapolation"}};
+    for (const Model model : {Model::peridynamics, Model::finite_elements})
+      for (const Settings &more : {contact, scaled, contact + scaled, contact + slaves})
+        {
+          const Problem<2> cold(wall + crack + more, model),
+            warm(wall + crack + more +
+                   Settings{{"Initial and source/Initial value", "0.5*x + x*y"}},
+                 model);
+          Vector u = cold.values(temperature);
+          cold.op().take_material_at(u);
+          Vector y = cold.vector(), v = warm.values(temperature), z = warm.vector();
+          cold.op().distribute(u, 0.);
+          warm.op().distribute(v, 0.);
+          EXPECT_LE(largest_difference(u, v), 1e-13);
+          cold.op().residual(y, u, 0.);
+          warm.op().residual(z, v, 0.);
+          EXPECT_LE(largest_difference(y, z), 1e-13 * warm.op().diagonal().linfty_norm());
+          EXPECT_LE(largest_difference(cold.op().diagonal(), warm.op().diagonal()),
+                    1e-13 * warm.op().diagonal().linfty_norm());
+        }
   }
 
 

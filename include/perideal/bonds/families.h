@@ -120,7 +120,7 @@ namespace PeriDeal
     std::vector<unsigned int> nodes_near(const std::vector<dealii::BoundingBox<dim>> &boxes,
                                          const double distance) const;
 
-    /** Cracks or their transmission change with time: cut bonds have to be kept in mind. */
+    /** When the cracks or their transmission change. */
     const CrackHistory<dim> &crack_history() const;
 
         /** The representative time of the cracks as they are now. */

@@ -75,6 +75,8 @@ namespace PeriDeal
     void                      find_diagonal();
     std::vector<unsigned int> rows_to_correct() const;
     void                      correct_surface(const std::vector<unsigned int> &rows);
+    void                      update_crack_sides();
+    std::string               isolation(const unsigned int node) const;
     double                    row_bound(const unsigned int node) const;
     void                      count_bonds(const double n_own) const;
     void                      add_crack_heat(const Vector &u, Balance &balance) const;

@@ -122,7 +122,7 @@ namespace PeriDeal
     /** Diagonal of K, one on unknowns that are not free. Not collective. */
     virtual const Vector &diagonal() const = 0;
 
-    /** Bounds of the spectrum of C^{-1} K (with diagonal C). Computed once. */
+    /** Bounds of the spectrum of C^{-1} K (with diagonal C). Kept until K may have grown. */
     virtual Spectrum spectrum() const = 0;
 
     /** K is symmetric on the free unknowns: CG and Chebyshev expansions are allowed. Not collective. */
@@ -164,7 +164,10 @@ namespace PeriDeal
       return false;
     }
 
-    /** Make K and C those of the temperatures u, which must have been through distribute(). Bounds and diagonals change with them. */
+    /**
+     * Make K and C those of the temperatures u, which must have been through distribute(). Bounds and diagonals change with them, and so do
+     * values of slaves: distribute() again before residual().
+     */
     virtual void take_material_at(const Vector &) {}
 
     /** Heat through each side and in the body; u must have been through distribute(u, t). @p steady leaves out storage. */

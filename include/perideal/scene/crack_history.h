@@ -15,8 +15,8 @@ namespace PeriDeal
    * When the cracks of a scene change: a list of events, between which cracks and their transmission are taken as constant.
    *
    * Between two events no tip advances more than the growth step s, and the cracks are those of the middle of that span: a bond is cut at most
-   * s/(2 v) too early or too late, v the tip's speed, which makes an error of second order in s where the solution is smooth in time. A step of
-   * fixed size is never divided: events then lie at whole numbers of steps. A transmission that changes with time is taken
+   * s/(2 v) too early or too late, v the tip's speed, which makes an error of second order in s where the solution is smooth in time. With steps
+   * of fixed size events lie at whole numbers of steps, so that they divide none. A transmission that changes with time is taken
    * at the middle too, with events so close that it changes by at most 0.02 between them, jumps excepted.
    *
    * The same on all processes; nothing here is collective.
@@ -62,9 +62,10 @@ namespace PeriDeal
     double longest_advance() const;
 
   private:
-    void add_growth_events(const double step, const double end_time, const double time_step);
-    void add_transmission_events(const double end_time);
-    void refine_transmission(const double a, const double b, const double end_time);
+    void   add_growth_events(const double step, const double end_time, const double time_step);
+    void   add_transmission_events(const double end_time);
+    void   refine_transmission(const double a, const double b, const double end_time);
+    double checked_transmission(const double t) const;
 
     const Cracks<dim>  *cracks;
     std::vector<double> times; // of events, ascending

@@ -54,7 +54,7 @@ namespace PeriDeal
 
     /**
      * Throws UserError: wrong points, no length or area, not planar, cracks of another dimension,
-     * contradicting entries, tips twice or not there, polygons that do not grow in their plane.
+     * contradicting entries, tips twice or not there or going back, polygons that do not grow in their plane.
      */
     void parse();
 
@@ -103,6 +103,12 @@ namespace PeriDeal
     CrackTip<dim> tip_of(const std::string &number, const std::string &entry) const;
 
     void check_tips() const;
+
+    /** 2D: no tip goes back on its own way; @p last is a time after all stops. */
+    void check_turns(const double last) const;
+
+    /** 3D: polygons stay in their planes and grow from each of the tips' stops to the next. */
+    void check_polygons(const std::vector<double> &stops) const;
 
     bool on_side(const dealii::Point<dim> &p, const unsigned int side) const;
 

@@ -73,7 +73,7 @@ namespace PeriDeal
   const std::vector<std::string> &stepper_names();
 
   /**
-   * `auto`: the Chebyshev expansion of the exponential where it applies (symmetric K, diagonal C, loads and boundary values constant in time), adaptive RKC2
+   * `auto`: the Chebyshev expansion of the exponential where it applies (symmetric K, diagonal C, material, loads and boundary values constant in time), adaptive RKC2
    * where C is diagonal, else SDIRK2.
    */
   std::string choose_stepper(const Operator &op);
