@@ -45,11 +45,13 @@ Families<dim>::Families(Nodes<dim> &nodes, const Scene<dim> &scene, const HaloAr
       on_lattice || scene.boundary_conditions.symmetry.empty(),
       UserError(
         "'Symmetry' in section 'Boundary conditions' needs the lattice of a box without doubled nodes."));
-    outside = make_fictitious_nodes(nodes,
-                                    scene.boundary_conditions,
-                                    parameters.treatment,
-                                    parameters.nodal_volume,
-                                    reach_in_sites);
+        // Beside finite elements a symmetry side is an insulated one, and that exactly.
+    if (halo == HaloAround::nodes)
+      outside = make_fictitious_nodes(nodes,
+                                      scene.boundary_conditions,
+                                      parameters.treatment,
+                                      parameters.nodal_volume,
+                                      reach_in_sites);
     AssertThrow(
       on_lattice || outside.empty(),
       UserError(

@@ -170,7 +170,7 @@ namespace PeriDeal
   }
 
 
-  template void add_halo(Nodes<1> &, const double);
-  template void add_halo(Nodes<2> &, const double);
-  template void add_halo(Nodes<3> &, const double);
+  template void add_halo(Nodes<1> &, const double, const HaloAround);
+  template void add_halo(Nodes<2> &, const double, const HaloAround);
+  template void add_halo(Nodes<3> &, const double, const HaloAround);
 } // namespace PeriDeal

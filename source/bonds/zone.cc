@@ -113,6 +113,12 @@ namespace PeriDeal
     return distance(p, 1.) == 0.;
   }
 
+    template <int dim>
+  bool Zone<dim>::is_everywhere() const
+  {
+    return kind == ZoneKind::everywhere;
+  }
+
   template <int dim>
   bool Zone<dim>::follows_cracks() const
   {

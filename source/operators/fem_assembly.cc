@@ -139,7 +139,9 @@ namespace PeriDeal
 
 
     template <int dim>
-  bool FEMOperator<dim>::assemble_whole_cell(const Cell &cell, CellData &data) const
+    bool FEMOperator<dim>::assemble_whole_cell(const Cell &cell,
+                                             CellData   &data,
+                                             const bool  with_bonds) const
   {
     data.values.reinit(cell);
     find_temperatures(data);
@@ -161,14 +163,14 @@ namespace PeriDeal
                 storage * data.values.shape_value(i, q) * data.values.shape_value(j, q);
             }
       }
-            return coupling && coupling->change_cell(cell, data.stiffness);
+                return coupling && with_bonds && coupling->change_cell(cell, data.stiffness);
   }
 
 
   template <int dim>
-  void FEMOperator<dim>::assemble_cell(const Cell &cell, CellData &data) const
+  void FEMOperator<dim>::assemble_cell(const Cell &cell, CellData &data, const bool with_bonds) const
   {
-    assemble_whole_cell(cell, data);
+    assemble_whole_cell(cell, data, with_bonds);
     data.convection      = 0.;
     const unsigned int n = data.indices.size();
     if (cut[cell->active_cell_index()])
@@ -270,7 +272,8 @@ namespace PeriDeal
     IndexSet        relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
-        DoFTools::make_sparsity_pattern(dofs, pattern);
+            if (!bonds_apart)
+      DoFTools::make_sparsity_pattern(dofs, pattern);
     if (coupling)
       add_bond_pattern(pattern);
     pattern.compress();
@@ -293,23 +296,27 @@ namespace PeriDeal
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
+                    const bool empty = bonds_apart && coupling->leaves_nothing(cell);
           assemble_cell(cell, data);
           scale_beside_cracks(data);
           data.stiffness.add(1., data.convection);
-          stiffness.add(data.indices, data.stiffness);
+          if (!empty)
+            stiffness.add(data.indices, data.stiffness);
           if (scene.finite_elements.consistent_capacity)
             mass.add(data.indices, data.mass);
           for (unsigned int a = 0; a < data.indices.size(); ++a)
             for (unsigned int b = 0; b < data.indices.size(); ++b)
               capacity(data.indices[a]) += data.mass(a, b);
         }
-        if (coupling)
+            if (coupling && !bonds_apart)
       {
         std::vector<unsigned int> nodes(capacity.locally_owned_size());
         std::iota(nodes.begin(), nodes.end(), 0);
         add_bonds(nodes, bond_rows(nodes));
       }
     stiffness.compress(VectorOperation::add);
+    if (bonds_apart)
+      extract_remainder();
     if (scene.finite_elements.consistent_capacity)
       mass.compress(VectorOperation::add);
     capacity.compress(VectorOperation::add);
@@ -425,12 +432,12 @@ namespace PeriDeal
     const unsigned int,                                                                          \
     const unsigned int,                                                                          \
     std::vector<std::pair<unsigned int, int>> *) const;                                          \
-    template bool FEMOperator<dim>::assemble_whole_cell( \
+      template bool FEMOperator<dim>::assemble_whole_cell( \
     const typename DoFHandler<dim>::active_cell_iterator &, \
-    CellData &) const; \
+    CellData &, const bool) const; \
   template void FEMOperator<dim>::assemble_cell(                                                   \
     const typename DoFHandler<dim>::active_cell_iterator &,                                      \
-    CellData &) const;                                                                           \
+    CellData &, const bool) const;                                                                           \
   template void FEMOperator<dim>::find_crack_factors(CellData &);                                \
   template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                         \
   template void FEMOperator<dim>::check_material() const;                                        \

@@ -27,6 +27,18 @@ namespace PeriDeal
     const auto                          &layout = *coupling->families().nodes().partitioner();
     std::vector<unsigned int>            neighbors;
     std::vector<types::global_dof_index> columns;
+    if (bonds_apart)
+      {
+        columns.resize(dofs.get_fe().n_dofs_per_cell());
+        for (const auto &cell : dofs.active_cell_iterators())
+          if (cell->is_locally_owned() && !coupling->leaves_nothing(cell))
+            {
+              cell->get_dof_indices(columns);
+              for (const auto row : columns)
+                pattern.add_entries(row, columns.begin(), columns.end());
+            }
+        return;
+      }
     for (unsigned int i = 0; i < layout.locally_owned_size(); ++i)
       {
         coupling->possible_neighbors_of(i, neighbors);
@@ -227,10 +239,11 @@ namespace PeriDeal
     for (unsigned int trial = 0; trial < 3; ++trial)
       {
         fill_with_noise(x, trial);
-        stiffness.vmult(ahead, x);
+                stiffness.vmult(ahead, x);
         stiffness.Tvmult(back, x);
+        const double size = std::max(ahead.linfty_norm(), back.linfty_norm());
         back -= ahead;
-        largest = std::max(largest, back.linfty_norm() / (stiffness.linfty_norm() * x.linfty_norm()));
+        largest = std::max(largest, size > 0. ? back.linfty_norm() / size : 0.);
       }
     return largest;
   }

@@ -33,11 +33,9 @@ namespace PeriDeal
     check_material();
     find_cut_cells();
     find_prescribed();
+        bonds_apart = this->coupling && this->coupling->has_form();
     assemble();
-    initialize_vector(stiffness_diagonal);
-    for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
-      stiffness_diagonal.local_element(i) =
-        stiffness.diag_element(stiffness_diagonal.get_partitioner()->local_to_global(i));
+    find_diagonal();
     find_gershgorin();
     loads_vary = scene.initial_and_source.source.depends_on_time() ||
                  scene.boundary_conditions.depends_on_time();
@@ -89,7 +87,9 @@ namespace PeriDeal
   {
     std::string         message;
     double              bound = 0.;
-    std::vector<double> row_sums(stiffness_diagonal.locally_owned_size(), 0.);
+        std::vector<double> row_sums(stiffness_diagonal.locally_owned_size(), 0.);
+    for (unsigned int i = 0; i < bond_sums.size(); ++i)
+      row_sums[i] = 2. * bond_sums[i];
     for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
       row_sums[row] += std::abs(value);
     });
@@ -124,8 +124,24 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::mask(Vector &y, const double value) const
   {
-    for (const Prescribed &entry : prescribed)
-      y.local_element(entry.dof) = value;
+    mask(y, value, 0, y.locally_owned_size());
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::mask(Vector            &y,
+                              const double       value,
+                              const unsigned int begin,
+                              const unsigned int end) const
+  {
+    for (auto entry =
+           std::lower_bound(prescribed.begin(),
+                            prescribed.end(),
+                            begin,
+                            [](const Prescribed &a, const unsigned int b) { return a.dof < b; });
+         entry != prescribed.end() && entry->dof < end;
+         ++entry)
+      y.local_element(entry->dof) = value;
   }
 
 
@@ -133,16 +149,27 @@ namespace PeriDeal
   void FEMOperator<dim>::apply(Vector &y, const Vector &x) const
   {
     ++applications;
-    stiffness.vmult(y, x);
+    multiply(y, x);
     mask(y);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::apply_then(Vector &y, const Vector &x, const RowsAction &finish) const
+  {
+    ++applications;
+    multiply_then(y, x, [&](const unsigned int begin, const unsigned int end) {
+      mask(y, 0., begin, end);
+      finish(begin, end);
+    });
   }
 
 
   template <int dim>
   void FEMOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
   {
-    ++applications;
-    stiffness.vmult(r, u);
+        ++applications;
+    multiply(r, u);
     if (loads_vary)
       assemble_loads(scratch, t);
     const Vector &loads = loads_vary ? scratch : constant_loads;
@@ -258,7 +285,10 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    matrix.copy_from(stiffness);
+        if (form)
+      assemble_surrogate(matrix);
+    else
+      matrix.copy_from(stiffness);
     Vector held;
     initialize_vector(held);
     mask(held, 1.);
@@ -273,9 +303,9 @@ namespace PeriDeal
   }
 
   template <int dim>
-  bool FEMOperator<dim>::surrogate_is_exact() const
+    bool FEMOperator<dim>::surrogate_is_exact() const
   {
-    return true;
+    return !form;
   }
 
 
@@ -286,7 +316,7 @@ namespace PeriDeal
     initialize_vector(heat);
     initialize_vector(loads);
     assemble_loads(loads, t);
-    stiffness.vmult(heat, u);
+    multiply(heat, u);
     heat -=
       loads; // what leaves each unknown through the body; in a prescribed one it must come from outside
     Balance     balance;
@@ -338,7 +368,7 @@ namespace PeriDeal
   {
     OperatorSize size;
     size.unknowns = dofs.n_dofs();
-    size.nonzeros = stiffness.n_nonzero_elements();
+        size.nonzeros = form ? Utilities::MPI::sum(remainder.values.size() + form->n_stored(), dofs.get_communicator()) : stiffness.n_nonzero_elements();
     size.memory   = stiffness.memory_consumption() + mass.memory_consumption() +
                   capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
                   constant_loads.memory_consumption() + scratch.memory_consumption();
@@ -350,7 +380,7 @@ namespace PeriDeal
         size.memory +=
           coupling->memory_consumption() + coupling->families().nodes().memory_consumption();
       }
-    size.form = "matrix";
+        size.form = form ? form->name() : "matrix";
     return size;
   }
 
@@ -373,11 +403,6 @@ namespace PeriDeal
     return *coupling;
   }
 
-  template <int dim>
-  const TrilinosWrappers::SparseMatrix &FEMOperator<dim>::matrix() const
-  {
-    return stiffness;
-  }
 
   template class FEMOperator<1>;
   template class FEMOperator<2>;

@@ -70,7 +70,8 @@ namespace PeriDeal
         auto boxes = cuts;
         boxes.insert(boxes.end(), joins.begin(), joins.end());
         nodes      = coupling->families().nodes_near(boxes, reach + wide);
-        old_rows   = bond_rows(nodes);
+        if (!bonds_apart)
+          old_rows = bond_rows(nodes);
         coupling->set_cracks_of(time);
         recount_bonds = true;
       }
@@ -90,14 +91,17 @@ namespace PeriDeal
           data.stiffness.add(-1., old[k]);
           if (data.stiffness.linfty_norm() == 0.)
             continue;
-          stiffness.add(data.indices, data.stiffness);
+                    if (!(bonds_apart && coupling->leaves_nothing(near[k])))
+            stiffness.add(data.indices, data.stiffness);
           for (const auto i : data.indices)
             touched(i) = 1.;
         }
         touched.compress(VectorOperation::max);
-    if (coupling)
+        if (coupling && !bonds_apart)
       change_bonds(nodes, old_rows, touched);
     stiffness.compress(VectorOperation::add);
+    if (bonds_apart)
+      change_form(nodes, touched);
     update_rows(touched);
     return true;
   }
@@ -112,11 +116,13 @@ namespace PeriDeal
     for (unsigned int i = 0; i < touched.locally_owned_size(); ++i)
       if (touched.local_element(i) > 0.)
         {
-          double sum = 0.;
+                    double       sum       = bonds_apart ? 2. * bond_sums[i] : 0.;
+          const double from_form = bonds_apart ? bond_sums[i] : 0.;
+          stiffness_diagonal.local_element(i) = from_form;
           for_each_entry_of_row(stiffness, i, [&](const auto column, const double value) {
             sum += std::abs(value);
             if (column == partitioner.local_to_global(i))
-              stiffness_diagonal.local_element(i) = value;
+              stiffness_diagonal.local_element(i) = from_form + value;
           });
           bound = std::max(bound, sum / capacity.local_element(i));
           // Cells are taken away by subtraction, which leaves round-off behind.

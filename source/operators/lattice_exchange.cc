@@ -240,7 +240,8 @@ namespace PeriDeal
           for (unsigned int b = 0; b < n; ++b)
             surplus(a, b) += share * passage.change[a] * passage.change[b];
       }
-    surplus.add(-1., brick_matrix<dim>(lattice.spacing, A));
+        surplus.add(-1., brick_matrix<dim>(lattice.spacing, A));
+    calibrated = std::all_of(A.begin(), A.end(), [](const double a) { return std::abs(a - 1.) < 1e-12; });
   }
 
 
@@ -378,6 +379,43 @@ namespace PeriDeal
       for (unsigned int j = 0; j < n; ++j)
         stiffness(i, j) -= taken[std::max(i, j) * n + std::min(i, j)];
     return true;
+  }
+
+
+  template <int dim>
+  bool LatticeExchange<dim>::leaves_nothing(const Cell &cell) const
+  {
+    if (!plain || !zone.is_everywhere() || !calibrated)
+      return false;
+    // All bonds that pass a cell far from the body's sides are there, with whole volumes.
+    const Lattice<dim> &lattice = *bonds.nodes().lattice();
+    const Site          site    = lattice.index(cell->vertex(0));
+    for (unsigned int d = 0; d < dim; ++d)
+      if (site[d] < reach[d] || site[d] + 1 + reach[d] >= lattice.n_sites[d])
+        return false;
+    return true;
+  }
+
+
+  template <int dim>
+  bool LatticeExchange<dim>::has_form() const
+  {
+    std::string reason;
+    return plain && zone.is_everywhere() && lattice_form_suits(bonds, reason);
+  }
+
+
+  template <int dim>
+  std::unique_ptr<BondForm> LatticeExchange<dim>::make_form()
+  {
+    return make_lattice_form(bonds);
+  }
+
+
+  template <int dim>
+  void LatticeExchange<dim>::set_form_factors(std::vector<double> factors)
+  {
+    bonds.set_node_factors(std::move(factors), 1, true);
   }
 
 

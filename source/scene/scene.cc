@@ -319,7 +319,9 @@ namespace PeriDeal
       entry_error(finite_elements.where("Degree"),
                   "found " + std::to_string(finite_elements.degree) +
                     "; cracks with 'Mesh' in section 'Cracks' = pairs need degree 1.");
-    if (runs(*this, Model::peridynamics))
+        resolve_boundary_treatment();
+    check_coupling();
+    if (runs(*this, Model::peridynamics) || runs(*this, Model::coupled))
       {
         check_shape_for_peridynamics(*this);
         check_horizon(*this);

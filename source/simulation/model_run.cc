@@ -46,11 +46,11 @@ namespace PeriDeal
     class FEMRun : public ModelRun<dim>
     {
     public:
-      /** @param model finite elements alone, or coupled with peridynamics */
+            /** @param model finite elements, coupled, or peridynamics by exchange, which is `coupled` with the zone everywhere */
       FEMRun(const Model model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
         : scene(scene)
         , model(model)
-        , element(model == Model::coupled ? 1 : scene.finite_elements.degree)
+                , element(model == Model::finite_elements ? scene.finite_elements.degree : 1)
         , handler(mesh)
       {
         {
@@ -61,13 +61,17 @@ namespace PeriDeal
         }
                 Timings::Scope                 scope(this->timings, "operator");
         std::unique_ptr<Coupling<dim>> coupling;
-        if (model == Model::coupled)
+                if (model != Model::finite_elements)
           {
-            node_set = std::make_unique<Nodes<dim>>(handler,
+            node_set =  std::make_unique<Nodes<dim>>(handler,
                                                     scene.domain,
                                                     scene.cracks,
                                                     NodalVolume::partial);
-            coupling = make_coupling(*node_set, scene, Zone<dim>(scene.coupling, scene.horizon()));
+                        coupling = make_coupling(*node_set,
+                                     scene,
+                                     model == Model::coupled ?
+                                       Zone<dim>(scene.coupling, scene.horizon()) :
+                                       Zone<dim>());
           }
         fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling));
       }
@@ -82,9 +86,9 @@ namespace PeriDeal
         return handler;
       }
 
-      const Nodes<dim> *nodes() const override
+            const Nodes<dim> *nodes() const override
       {
-        return nullptr;
+        return model == Model::peridynamics ? node_set.get() : nullptr;
       }
 
       Operator &op() const override
@@ -99,8 +103,9 @@ namespace PeriDeal
 
       void set_initial_value(Vector &u) const override
       {
-        // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for higher degrees, which it would spoil.
-        const bool                           project = element.degree == 1;
+                // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for higher degrees, which it would spoil, and for
+        // peridynamics, whose values are those of points.
+        const bool                           project = element.degree == 1 && model != Model::peridynamics;
         FEValues<dim>                        values(element,
                              project ? Quadrature<dim>(QGauss<dim>(2)) :
                                                               Quadrature<dim>(element.get_unit_support_points()),
@@ -140,13 +145,8 @@ namespace PeriDeal
         element_heat_flux<dim>(handler, scene.material, fem->cut_cells(), u, flux);
                 std::vector<OutputField> fields;
         fields.push_back(vector_field<dim>(names_of(scene.general.physics).flux, flux));
-        if (model == Model::coupled)
-          {
-            std::array<Vector, 1> zone{u};
-            for (unsigned int i = 0; i < node_set->n_owned(); ++i)
-              zone[0].local_element(i) = fem->bonds().in_zone(i);
-            fields.push_back(vector_field<1>("zone", zone));
-          }
+                if (model != Model::finite_elements)
+          add_bond_fields(u, fields);
         if (scene.general.physics == Physics::moisture)
           {
             std::array<Vector, 1> concentration{u};
@@ -183,7 +183,30 @@ namespace PeriDeal
       Difference error(const Vector                                    &u,
                        const std::function<double(const Point<dim> &)> &exact) const override
       {
-        return element_difference(handler, u, exact);
+                if (scene.cracks.cracks.empty() || scene.cracks.mesh == CrackMesh::faces ||
+            element.degree > 1)
+          return element_difference(handler, u, exact);
+        // Inside a cut cell the interpolant runs across the crack: only the values at the nodes are the model's.
+        Vector expected(u), weights(u);
+        for_each_node([&](const unsigned int i, const Point<dim> &p) {
+          expected.local_element(i) = exact(p);
+        });
+        weights = 0.;
+        FEValues<dim>                        values(element, QGauss<dim>(2), update_values | update_JxW_values);
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              values.reinit(cell);
+              cell->get_dof_indices(indices);
+              for (const unsigned int q : values.quadrature_point_indices())
+                for (unsigned int i = 0; i < indices.size(); ++i)
+                  weights(indices[i]) += values.shape_value(i, q) * values.JxW(q);
+            }
+        weights.compress(VectorOperation::add);
+        return nodal_difference(u, expected, [&](const unsigned int i) {
+          return weights.local_element(i);
+        });
       }
 
       std::vector<std::pair<std::string, std::string>> settings() const override
@@ -191,11 +214,13 @@ namespace PeriDeal
                 std::vector<std::pair<std::string, std::string>> list{
           {"element", "Q" + std::to_string(element.degree)},
           {"capacity", scene.finite_elements.consistent_capacity ? "consistent" : "lumped"}};
-        if (model == Model::coupled)
+                if (model != Model::finite_elements)
           {
             list.emplace_back("horizon", to_text(scene.horizon()));
             list.emplace_back("m", to_text(scene.horizon() / node_set->smallest_spacing()));
-            list.emplace_back("zone", scene.coupling.zone_text());
+                        list.emplace_back("coupling", "exchange");
+            list.emplace_back("zone",
+                              model == Model::coupled ? scene.coupling.zone_text() : "everywhere");
             list.emplace_back("share of the body in the zone",
                               to_text(100. * fem->bonds().zone_share()) + " %");
           }
@@ -208,6 +233,32 @@ namespace PeriDeal
       }
 
     private:
+            /** Which nodes are in the zone, and the part of their bonds that cracks have cut. */
+      void add_bond_fields(const Vector &u, std::vector<OutputField> &fields) const
+      {
+        std::array<Vector, 1>                     zone{u}, cut{u};
+        std::vector<typename Coupling<dim>::Bond> bonds;
+        for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+          {
+            zone[0].local_element(i) = fem->bonds().in_zone(i);
+            cut[0].local_element(i)  = 0.;
+            if (!fem->bonds().families().near_crack(i))
+              continue;
+            fem->bonds().bonds_of(i, bonds);
+            double all = 0., gone = 0.;
+            for (const auto &bond : bonds)
+              {
+                all += bond.intact;
+                gone += bond.cut ? bond.intact : 0.;
+              }
+            cut[0].local_element(i) = all > 0. ? gone / all : 0.;
+          }
+        if (model == Model::coupled)
+          fields.push_back(vector_field<1>("zone", zone));
+        fields.push_back(vector_field<1>("cut_fraction", cut));
+      }
+
+
       /** Call visit(local index, position) for each owned dof. */
       void for_each_node(
         const std::function<void(const unsigned int, const Point<dim> &)> &visit) const
@@ -362,7 +413,7 @@ namespace PeriDeal
       {
         static const char *const kernels[]    = {"constant", "conical", "gaussian"};
         static const char *const fractions[]  = {"none", "linear", "exact"};
-        static const char *const treatments[] = {"none",
+                        static const char *const treatments[] = {"auto", "exchange", "none",
                                                  "layer",
                                                  "fictitious mirror",
                                                  "fictitious constant"};
@@ -432,7 +483,7 @@ namespace PeriDeal
                                                 const Scene<dim>         &scene)
   {
     std::unique_ptr<ModelRun<dim>> run;
-        if (model == Model::peridynamics)
+            if (model == Model::peridynamics && scene.peridynamics.treatment != BoundaryTreatment::exchange)
       run = std::make_unique<BondRun<dim>>(mesh, scene);
     else
       run = std::make_unique<FEMRun<dim>>(model, mesh, scene);

@@ -386,8 +386,9 @@ namespace PeriDeal
   void Simulation<dim>::compare_models(const double t)
   {
     const ModelRun<dim> *fem = nullptr, *pd = nullptr;
-    for (const auto &model : models)
-      (model->nodes() == nullptr ? fem : pd) = model.get();
+        for (const auto &model : models)
+      if (model->name() != to_string(Model::coupled))
+        (model->name() == to_string(Model::finite_elements) ? fem : pd) = model.get();
     if (fem == nullptr || pd == nullptr)
       return;
     pd->op().initialize_vector(difference);
@@ -415,7 +416,7 @@ namespace PeriDeal
         fields[0].components[0].update_ghost_values();
         for (OutputField &field : models[m]->derived_fields(models[m]->solution, t))
           fields.push_back(std::move(field));
-        if (models[m]->nodes() != nullptr && difference.size() > 0)
+                if (models[m]->name() == to_string(Model::peridynamics) && difference.size() > 0)
           {
             fields.push_back({"peridynamics_minus_finite_elements", {difference}});
             fields.back().components[0].update_ghost_values();

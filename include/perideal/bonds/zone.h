@@ -35,6 +35,8 @@ namespace PeriDeal
     /** How far outside the zone a point lies, as long as that is less than @p farthest; a formula knows inside (0) and outside (farthest) only. */
     double distance(const dealii::Point<dim> &p, const double farthest) const;
 
+        bool is_everywhere() const;
+
     /** The zone changes with the cracks. */
     bool follows_cracks() const;
 

@@ -8,6 +8,7 @@
 
 #include <perideal/bonds/families.h>
 #include <perideal/bonds/zone.h>
+#include <perideal/operators/bond_form.h>
 
 #include <memory>
 #include <vector>
@@ -42,6 +43,27 @@ namespace PeriDeal
      * Turn the matrix K_c of an intact cell into what is left of it, R_c; broken bonds count as whole ones. Returns whether anything has changed.
      */
     virtual bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const = 0;
+
+        /** Whether change_cell() leaves nothing at all of a cell, now and whatever cracks do. */
+    virtual bool leaves_nothing(const Cell &) const
+    {
+      return false;
+    }
+
+    /** The bonds are better kept as a form of their own than in a matrix. The same on all processes. */
+    virtual bool has_form() const
+    {
+      return false;
+    }
+
+    /** All of the bonds as one operator. The coupling must outlive it. */
+    virtual std::unique_ptr<BondForm> make_form()
+    {
+      return nullptr;
+    }
+
+    /** Factors of owned nodes and ghosts, by whose mean the form multiplies bonds. */
+    virtual void set_form_factors(std::vector<double>) {}
 
     /** K is symmetric and R_c positive semidefinite. */
     virtual bool symmetric() const = 0;

@@ -40,6 +40,7 @@ namespace PeriDeal
     void          initialize_vector(Vector &vector) const override;
     void          apply(Vector &y, const Vector &x) const override;
     void          residual(Vector &r, const Vector &u, const double t) const override;
+    void apply_then(Vector &y, const Vector &x, const RowsAction &finish) const override;
     void          distribute(Vector &u, const double t) const override;
     void          distribute_homogeneous(Vector &x) const override;
     void          clear_constrained(Vector &y) const override;
@@ -69,9 +70,10 @@ namespace PeriDeal
     /** Only in the model `coupled`. */
     const Coupling<dim> &bonds() const;
 
-    const dealii::TrilinosWrappers::SparseMatrix &matrix() const;
+    /** y = K x, constraints left out. Collective. */
+    void multiply(Vector &y, const Vector &x) const;
 
-    /** How far K is from symmetric: the largest of |(K - K^T) x| / (|K| |x|) in the maximum norm for some fields x of noise. Collective. */
+        /** How far the matrix of cells and bonds is from symmetric: the largest of |(K - K^T) x| / |K x| in the maximum norm for some fields x of noise. Collective. */
     double asymmetry() const;
 
     /**
@@ -94,11 +96,25 @@ namespace PeriDeal
     /** Some rows of bonds: numbers of neighbours (local) and conductances. */
     using BondRows = std::vector<std::vector<std::pair<unsigned int, double>>>;
 
+    /** The rows of the cells' matrix that are not empty, by local numbers, where the bonds are a form of their own. */
+    struct RemainderRows
+    {
+      std::vector<unsigned int> rows, starts, columns;
+      std::vector<double>       values;
+    };
+
     void   find_prescribed();
+    void   find_diagonal();
+    void   extract_remainder();
+    void   add_remainder(Vector &y, const Vector &x, const unsigned int begin, const unsigned int end) const;
+    void   multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const;
+    void   set_form_factors();
+    void   assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
     void   add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
     BondRows bond_rows(const std::vector<unsigned int> &nodes) const;
     void   add_bonds(const std::vector<unsigned int> &nodes, const BondRows &rows);
     void   change_bonds(const std::vector<unsigned int> &nodes, const BondRows &old, Vector &touched);
+        void   change_form(const std::vector<unsigned int> &nodes, Vector &touched);
     void   mark_broken_bonds(Vector &marked) const;
     void   add_bond_traces(const Vector &marked, Vector &trace) const;
     void   add_bond_heat(const Vector &u, Balance &balance) const;
@@ -118,15 +134,19 @@ namespace PeriDeal
     void   find_temperatures(CellData &data) const;
     double center_conductivity(const Cell &cell) const;
     double heat_of(const Vector &u) const;
-        bool   assemble_whole_cell(const Cell &cell, CellData &data) const;
-    void   assemble_cell(const Cell &cell, CellData &data) const;
+    bool   assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
+    void   assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
     void   fill_with_noise(Vector &vector, const unsigned int trial = 0) const;
     void   keep_unseparated_pairs(const Cell &cell, CellData &data) const;
     void   assemble_loads(Vector &loads, const double t) const;
     void   add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
     void   find_crack_factors(CellData &data);
     void   find_gershgorin();
-    void   mask(Vector &y, const double value = 0.) const;
+        void   mask(Vector &y, const double value = 0.) const;
+    void   mask(Vector            &y,
+                const double       value,
+                const unsigned int begin,
+                const unsigned int end) const;
 
     const dealii::DoFHandler<dim>         &dofs;
     const Scene<dim>                      &scene;
@@ -139,10 +159,14 @@ namespace PeriDeal
     Vector                                 capacity, stiffness_diagonal, constant_loads;
     mutable Vector                         scratch;
     Vector temperatures; // that K and C are those of, with ghosts; empty: initial values
-        mutable unsigned long long n_bonds = 0;
+    bool                       bonds_apart = false; // in the form; else in the matrix
+    std::unique_ptr<BondForm>  form;
+    RemainderRows              remainder;
+    std::vector<double>        bond_sums; // of each owned node, from the form
+    mutable unsigned long long n_bonds = 0;
     mutable bool               recount_bonds = true;
     std::shared_ptr<CellData> cell_data; // memory of the cell loops
-    std::vector<Prescribed>   prescribed;
+        std::vector<Prescribed>   prescribed; // in the order of unknowns
     std::vector<bool>         cut; // by active cell index
     Vector                    crack_factors;
     bool                      loads_vary = false, any_prescribed = false;

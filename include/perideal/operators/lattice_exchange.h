@@ -45,8 +45,12 @@ namespace PeriDeal
     void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
     void possible_neighbors_of(const unsigned int         node,
                                std::vector<unsigned int> &neighbors) const override;
-    bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
-    bool symmetric() const override;
+        bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
+    bool leaves_nothing(const Cell &cell) const override;
+        bool has_form() const override;
+    std::unique_ptr<BondForm> make_form() override;
+    void                      set_form_factors(std::vector<double> factors) override;
+    bool                      symmetric() const override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
     void                                  set_cracks_of(const double time) override;
     double                                zone_share() const override;
@@ -95,8 +99,9 @@ namespace PeriDeal
 
     Families<dim>                 bonds;
     Zone<dim>                     zone;
-        double                        last; // time of the run
-    bool                           plain = true; // no void, one conductivity, one cell size
+            double                        last; // time of the run
+    bool                          plain      = true; // no void, one conductivity, one cell size
+    bool                          calibrated = true; // A is the unit matrix
     Site                          corner{}, extent{};
     std::vector<SiteData>         sites;
     std::vector<Offset>           offsets;

@@ -43,8 +43,10 @@ namespace PeriDeal
     full
   };
 
-  enum class BoundaryTreatment
+    enum class BoundaryTreatment
   {
+    automatic,
+    exchange,
     none,
     layer,
     fictitious_mirror,

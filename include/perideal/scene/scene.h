@@ -91,8 +91,14 @@ namespace PeriDeal
     /** All sections in the order of a scene file. */
     std::vector<SceneSection *> sections();
 
-    /** Parse all sections and check them one by one and against each other. Throws UserError. */
+        /** Parse all sections and check them one by one and against each other. Throws UserError. */
     void parse_and_validate();
+
+  private:
+    /** What `Boundary treatment = auto` means here. Throws UserError where `exchange` is asked for and not possible. */
+    void resolve_boundary_treatment();
+
+    void check_coupling() const;
   };
 
 
