@@ -238,7 +238,9 @@ namespace PeriDeal
     double largest = 0.;
     for (unsigned int trial = 0; trial < 3; ++trial)
       {
-        fill_with_noise(x, trial);
+                x = noise();
+        for (double &value : x)
+          value = std::sin((trial + 1) * 10. * value);
                 stiffness.vmult(ahead, x);
         stiffness.Tvmult(back, x);
         const double size = std::max(ahead.linfty_norm(), back.linfty_norm());

@@ -227,25 +227,24 @@ namespace PeriDeal
     return stiffness_diagonal;
   }
 
-    template <int dim>
-  void FEMOperator<dim>::fill_with_noise(Vector &vector, const unsigned int trial) const
+  template <int dim>
+  const Vector &FEMOperator<dim>::noise() const
   {
+    if (noise_values.size() > 0)
+      return noise_values;
+    initialize_vector(noise_values);
+    const MappingQ1<dim>                 mapping;
     std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial())
         {
           cell->get_dof_indices(indices);
           for (unsigned int i = 0; i < indices.size(); ++i)
-            if (vector.in_local_range(indices[i]))
-              {
-                Point<dim> p = MappingQ1<dim>().transform_unit_to_real_cell(
-                  cell,
-                  dofs.get_fe().unit_support_point(i));
-                for (unsigned int d = 0; d < dim; ++d)
-                  p[d] += trial;
-                vector(indices[i]) = position_noise(p);
-              }
+            if (noise_values.in_local_range(indices[i]))
+              noise_values(indices[i]) = position_noise(
+                mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i)));
         }
+    return noise_values;
   }
 
 
@@ -256,8 +255,8 @@ namespace PeriDeal
       return {gershgorin, gershgorin};
     if (bounds.safe == 0.)
       {
-                bounds.sharp =
-          sharp_bound(*this, gershgorin, [&](Vector &vector) { fill_with_noise(vector); });
+                        bounds.sharp =
+          sharp_bound(*this, gershgorin, [&](Vector &vector) { vector = noise(); });
         bounds.safe  = gershgorin;
       }
     return bounds;

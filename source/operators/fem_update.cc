@@ -8,6 +8,7 @@
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/fem_operator.h>
+#include <perideal/operators/spectrum.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,29 +40,15 @@ namespace PeriDeal
     CellData                       &data   = *cell_data;
     const bool                      scaled = crack_factors.size() > 0;
     const double                    reach  = coupling ? coupling->families().reach() : 0.;
-    std::vector<Cell>               near;
-    std::vector<FullMatrix<double>> old;
-    const auto near_some = [](const std::vector<BoundingBox<dim>> &boxes, const Cell &cell, const double distance) {
-      return std::any_of(boxes.begin(), boxes.end(), [&](auto box) {
-        box.extend(distance);
-        return box.point_inside(cell->center());
-      });
-    };
-    for (const auto &cell : dofs.active_cell_iterators())
-      {
-        // The factors of crack-side scaling change as far as the neighbours of cut cells and of nodes with broken bonds.
-        const double wide = (scaled ? 3. : 1.) * cell->diameter();
-        if (cell->is_artificial() || !(near_some(cuts, cell, wide + (scaled ? reach : 0.)) ||
-                                       near_some(joins, cell, wide + reach)))
-          continue;
-        near.push_back(cell);
-        old.emplace_back();
-        if (!cell->is_locally_owned())
-          continue;
-        assemble_cell(cell, data);
-        scale_beside_cracks(data);
-        old.back() = data.stiffness;
-      }
+    const std::vector<Cell>         near = cells_near(cuts, joins);
+    std::vector<FullMatrix<double>> old(near.size());
+    for (std::size_t k = 0; k < near.size(); ++k)
+      if (near[k]->is_locally_owned())
+        {
+          assemble_cell(near[k], data);
+          scale_beside_cracks(data);
+          old[k] = data.stiffness;
+        }
         std::vector<unsigned int> nodes;
     BondRows                  old_rows;
     if (coupling)
@@ -102,13 +89,13 @@ namespace PeriDeal
     stiffness.compress(VectorOperation::add);
     if (bonds_apart)
       change_form(nodes, touched);
-    update_rows(touched);
+        update_rows(touched, Utilities::MPI::max(joins.size(), dofs.get_communicator()) > 0);
     return true;
   }
 
 
   template <int dim>
-  void FEMOperator<dim>::update_rows(const Vector &touched)
+    void FEMOperator<dim>::update_rows(const Vector &touched, const bool zone_moves)
   {
     const auto &partitioner = *stiffness_diagonal.get_partitioner();
     std::string message;
@@ -133,14 +120,53 @@ namespace PeriDeal
         }
     throw_on_all_if_any(dofs.get_communicator(), message);
     // Pairs of a cell with positive entries off the diagonal (of unequal sides) conduct more than it did as a whole.
-    const bool stiffer = Utilities::MPI::max(pairs_stiffer ? 1 : 0, dofs.get_communicator()) > 0;
-    if (stiffer || crack_factors.size() > 0 || history.may_close())
+        const bool stiffer = Utilities::MPI::max(pairs_stiffer ? 1 : 0, dofs.get_communicator()) > 0;
+    if (stiffer || zone_moves || crack_factors.size() > 0 || history.may_close())
       {
         // Rates can have grown. Where cells are only cut, the old bounds still hold.
         gershgorin = std::max(gershgorin, Utilities::MPI::max(bound, dofs.get_communicator()));
-        bounds     = Spectrum();
+        raise_bounds(touched);
       }
     mask(stiffness_diagonal, 1.);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::raise_bounds(const Vector &touched)
+  {
+    if (bounds.safe == 0.) // nobody has asked yet
+      return;
+    // The fastest field may have changed where the rows have, and only there: iterations that start there see it soon.
+    const double local = sharp_bound(
+      *this,
+      gershgorin,
+      [&](Vector &vector) {
+        vector = noise();
+        vector.scale(touched);
+      },
+      bounds.sharp);
+    bounds.sharp = std::max(bounds.sharp, local);
+    bounds.safe  = gershgorin;
+  }
+
+
+  template <int dim>
+  std::vector<typename FEMOperator<dim>::Cell>
+  FEMOperator<dim>::cells_near(const std::vector<BoundingBox<dim>> &cuts,
+                               const std::vector<BoundingBox<dim>> &joins)
+  {
+    if (!search)
+      search = std::make_unique<CellSearch<dim>>(dofs);
+    // Bonds change the cells that they pass. The factors of crack-side scaling change as far as the neighbours of cut cells and of nodes with broken bonds.
+    const bool   scaled = crack_factors.size() > 0;
+    const double reach  = coupling ? coupling->families().reach() : 0.;
+    const double wide   = scaled ? 2. * search->largest_diameter() : 0.;
+    std::vector<Cell> near;
+    search->find(cuts, wide + (scaled ? reach : 0.), near);
+    search->find(joins, wide + reach, near);
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    return near;
   }
 
 
@@ -177,7 +203,8 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                   \
-  template double FEMOperator<dim>::next_event(const double) const; \
+    template double FEMOperator<dim>::next_event(const double) const; \
+  template void   FEMOperator<dim>::raise_bounds(const Vector &);   \
   template bool   FEMOperator<dim>::update(const double);           \
   template void   FEMOperator<dim>::add_crack_heat(const Vector &, Balance &) const;
   PERIDEAL_INSTANTIATE(1)

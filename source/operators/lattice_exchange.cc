@@ -345,6 +345,11 @@ namespace PeriDeal
     const Lattice<dim> &lattice = *bonds.nodes().lattice();
     if (cell->extent_in_direction(0) > 1.5 * lattice.spacing[0])
       return false;
+        if (leaves_nothing(cell))
+      {
+        stiffness = 0.;
+        return true;
+      }
     constexpr unsigned int       n    = GeometryInfo<dim>::vertices_per_cell;
     const Site                   site = lattice.index(cell->vertex(0));
     std::array<double, n *n>     taken{};

@@ -7,6 +7,7 @@
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <perideal/mesh/cell_search.h>
 #include <perideal/operators/coupling.h>
 #include <perideal/operators/operator.h>
 #include <perideal/scene/crack_geometry.h>
@@ -126,7 +127,7 @@ namespace PeriDeal
                          const unsigned int                         b,
                          std::vector<std::pair<unsigned int, int>> *crossed) const;
     void   scale_beside_cracks(CellData &data) const;
-    void   update_rows(const Vector &touched);
+    void   update_rows(const Vector &touched, const bool zone_moves);
     void   add_crack_heat(const Vector &u, Balance &balance) const;
     void   check_material() const;
     void   assemble();
@@ -136,7 +137,10 @@ namespace PeriDeal
     double heat_of(const Vector &u) const;
     bool   assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
     void   assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
-    void   fill_with_noise(Vector &vector, const unsigned int trial = 0) const;
+        const Vector &noise() const;
+    void          raise_bounds(const Vector &touched);
+    std::vector<Cell> cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
+                                 const std::vector<dealii::BoundingBox<dim>> &joins);
     void   keep_unseparated_pairs(const Cell &cell, CellData &data) const;
     void   assemble_loads(Vector &loads, const double t) const;
     void   add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
@@ -171,7 +175,9 @@ namespace PeriDeal
     Vector                    crack_factors;
     bool                      loads_vary = false, any_prescribed = false;
     double                    gershgorin = 0.;
-    mutable Spectrum          bounds;
+        mutable Spectrum          bounds;
+    mutable Vector            noise_values; // of noise()
+    std::unique_ptr<CellSearch<dim>> search;       // made for the first event
     mutable bool pairs_stiffer = false; // some cut cell's pairs conduct more than the cell
   };
 } // namespace PeriDeal
