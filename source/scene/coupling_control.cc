@@ -17,8 +17,8 @@ namespace PeriDeal
             "the elements conduct along it (symmetric, exact for linear fields); rows of either model side by side (not symmetric); or "
             "both energies, weighted over the overlap.",
             {"exchange", "splice", "blending"});
-    declare("Zone",
-            EntryType::formula,
+        declare("Zone",
+            EntryType::text,
             "cracks: 1",
             "",
             "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; `adaptive`, near cracks on a mesh that is "

@@ -240,7 +240,7 @@ namespace PeriDeal
     expect_fault(fault(s, "Self term = x"), s, "Self term", {"none, paper"});
     expect_fault(fault(s, "Nodal volume = x"), s, "Nodal volume", {"partial, full"});
     expect_fault(fault(s, "Layer rows = 0"), s, "Layer rows", {"1 or more"});
-    expect_fault(fault(s, "Boundary treatment = exchange"),
+    expect_fault(fault(s, "Boundary treatment = exchanged"),
                  s,
                  "Boundary treatment",
                  {"fictitious mirror"});
