@@ -41,6 +41,31 @@ namespace PeriDeal
   } // namespace
 
 
+    namespace
+  {
+    /** Directions in space, evenly spread: two, on a circle, or on a spiral around the sphere. */
+    template <int dim>
+    std::vector<Tensor<1, dim>> some_directions()
+    {
+      const double                pi = std::acos(-1.);
+      const unsigned int          n  = dim == 1 ? 2 : dim == 2 ? 24 : 64;
+      std::vector<Tensor<1, dim>> directions(n);
+      for (unsigned int k = 0; k < n; ++k)
+        {
+          const double height = dim == 3 ? 1. - (2. * k + 1.) / n : 0.,
+                       radius = std::sqrt(1. - height * height),
+                       angle  = dim == 3 ? pi * (3. - std::sqrt(5.)) * k : 2. * pi * k / n;
+          directions[k][0]    = radius * std::cos(angle);
+          if constexpr (dim > 1)
+            directions[k][1] = radius * std::sin(angle);
+          if constexpr (dim > 2)
+            directions[k][2] = height;
+        }
+      return directions;
+    }
+  } // namespace
+
+
   template <int dim>
   double distance_to_piece(const std::vector<Point<dim>> &corners, const Point<dim> &p)
   {
@@ -69,6 +94,7 @@ namespace PeriDeal
     : kind(control.zone)
     , reach(control.width * horizon)
     , formula(control.formula)
+    , directions(some_directions<dim>())
   {}
 
 
@@ -82,14 +108,41 @@ namespace PeriDeal
   }
 
 
+    template <int dim>
+  double Zone<dim>::distance_to_formula(const Point<dim> &p, const double farthest) const
+  {
+    if (formula.value(p) > 0.)
+      return 0.;
+    constexpr unsigned int n_steps = 8, n_halvings = 12;
+    double                 nearest = farthest;
+    for (const Tensor<1, dim> &direction : directions)
+      {
+        const double step = farthest / n_steps;
+        for (double r = step; r - step < nearest; r += step)
+          if (formula.value(p + r * direction) > 0.)
+            {
+              double outside = r - step, inside = r;
+              for (unsigned int k = 0; k < n_halvings; ++k)
+                {
+                  const double middle = 0.5 * (outside + inside);
+                  (formula.value(p + middle * direction) > 0. ? inside : outside) = middle;
+                }
+              nearest = std::min(nearest, inside);
+              break;
+            }
+      }
+    return nearest;
+  }
+
+
   template <int dim>
   double Zone<dim>::distance(const Point<dim> &p, const double farthest) const
   {
     if (kind == ZoneKind::everywhere)
       return 0.;
-    if (kind == ZoneKind::formula)
-      return formula.value(p) > 0. ? 0. : farthest;
-    double       nearest = farthest;
+        if (kind == ZoneKind::formula)
+      return distance_to_formula(p, farthest);
+    double        nearest = farthest;
     const double slack   = 1e-9 * reach; // nodes just that far away are in, whatever the rounding
     for (unsigned int k = 0; k < cracks.size(); ++k)
       {
@@ -110,7 +163,7 @@ namespace PeriDeal
   template <int dim>
   bool Zone<dim>::contains(const Point<dim> &p) const
   {
-    return distance(p, 1.) == 0.;
+        return kind == ZoneKind::formula ? formula.value(p) > 0. : distance(p, 1.) == 0.;
   }
 
     template <int dim>

@@ -180,6 +180,8 @@ namespace PeriDeal
         else
           keep_unseparated_pairs(cell, data);
       }
+        if (coupling && with_bonds)
+      coupling->finish_cell(cell, data.stiffness);
     for (const unsigned int f : cell->face_indices())
       if (cell->face(f)->at_boundary())
         if (const auto *condition =
@@ -278,7 +280,7 @@ namespace PeriDeal
       add_bond_pattern(pattern);
     pattern.compress();
     stiffness.reinit(pattern);
-    if (scene.finite_elements.consistent_capacity)
+    if (!capacity_is_diagonal())
       mass.reinit(pattern);
     initialize_vector(capacity);
     cell_data = std::make_shared<CellData>(dofs.get_fe());
@@ -302,7 +304,7 @@ namespace PeriDeal
           data.stiffness.add(1., data.convection);
           if (!empty)
             stiffness.add(data.indices, data.stiffness);
-          if (scene.finite_elements.consistent_capacity)
+          if (!capacity_is_diagonal())
             mass.add(data.indices, data.mass);
           for (unsigned int a = 0; a < data.indices.size(); ++a)
             for (unsigned int b = 0; b < data.indices.size(); ++b)
@@ -317,7 +319,7 @@ namespace PeriDeal
     stiffness.compress(VectorOperation::add);
     if (bonds_apart)
       extract_remainder();
-    if (scene.finite_elements.consistent_capacity)
+    if (!capacity_is_diagonal())
       mass.compress(VectorOperation::add);
     capacity.compress(VectorOperation::add);
   }

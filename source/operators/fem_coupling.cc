@@ -4,6 +4,7 @@
 // Bonds beside finite elements.
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/matrix_rows.h>
@@ -186,6 +187,25 @@ namespace PeriDeal
 
 
   template <int dim>
+  void FEMOperator<dim>::visit_conductances(
+    const std::function<void(const unsigned int, const unsigned int, const double)> &visit) const
+  {
+    const auto &layout = *coupling->families().nodes().partitioner();
+    for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
+      const unsigned int j = layout.global_to_local(column);
+      if (i != j && value != 0.)
+        visit(i, j, -value);
+    });
+    if (!bonds_apart)
+      return;
+    std::vector<unsigned int> node(1);
+    for (node[0] = 0; node[0] < layout.locally_owned_size(); ++node[0])
+      for (const auto &[neighbor, conductance] : bond_rows(node)[0])
+        visit(node[0], neighbor, conductance);
+  }
+
+
+  template <int dim>
   void FEMOperator<dim>::count_bonds() const
   {
     std::vector<typename Coupling<dim>::Bond> bonds;
@@ -230,24 +250,50 @@ namespace PeriDeal
 
 
   template <int dim>
-  double FEMOperator<dim>::asymmetry() const
+  void FEMOperator<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &matrix,
+                                         const bool                      with_bonds) const
   {
-        Vector x, ahead, back;
-    for (Vector *v : {&x, &ahead, &back})
-      initialize_vector(*v);
-    double largest = 0.;
-    for (unsigned int trial = 0; trial < 3; ++trial)
-      {
-                x = noise();
-        for (double &value : x)
-          value = std::sin((trial + 1) * 10. * value);
-                stiffness.vmult(ahead, x);
-        stiffness.Tvmult(back, x);
-        const double size = std::max(ahead.linfty_norm(), back.linfty_norm());
-        back -= ahead;
-        largest = std::max(largest, size > 0. ? back.linfty_norm() / size : 0.);
-      }
-    return largest;
+    const IndexSet &owned = dofs.locally_owned_dofs();
+    IndexSet        relevant;
+    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
+    DoFTools::make_sparsity_pattern(dofs, pattern);
+    const auto                               &layout = *coupling->families().nodes().partitioner();
+    std::vector<typename Coupling<dim>::Bond> bonds;
+    std::vector<types::global_dof_index>      columns;
+    std::vector<double>                       values;
+    const auto for_each_row = [&](const auto &visit) {
+      for (unsigned int i = 0; i < layout.locally_owned_size() && with_bonds; ++i)
+        {
+          coupling->bonds_of(i, bonds);
+          const auto own = layout.local_to_global(i);
+          columns.assign(1, own);
+          values.assign(1, 0.);
+          for (const auto &bond : bonds)
+            {
+              columns.push_back(layout.local_to_global(bond.neighbor));
+              values.push_back(-bond.intact);
+              values[0] += bond.intact;
+            }
+          visit(own);
+        }
+    };
+    for_each_row([&](const auto row) { pattern.add_entries(row, columns.begin(), columns.end()); });
+    pattern.compress();
+    matrix.reinit(pattern);
+    for_each_row(
+      [&](const auto row) { matrix.add(row, columns.size(), columns.data(), values.data()); });
+    CellData &data = *cell_data;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          assemble_whole_cell(cell, data, with_bonds);
+          if (with_bonds)
+            coupling->finish_cell(cell, data.stiffness);
+          cell->get_dof_indices(data.indices);
+          matrix.add(data.indices, data.stiffness);
+        }
+    matrix.compress(VectorOperation::add);
   }
 
 
@@ -262,9 +308,11 @@ namespace PeriDeal
   template void   FEMOperator<dim>::mark_broken_bonds(Vector &) const;                             \
   template void   FEMOperator<dim>::add_bond_traces(const Vector &, Vector &) const;               \
   template void   FEMOperator<dim>::add_bond_heat(const Vector &, Balance &) const;                \
+  template void   FEMOperator<dim>::visit_conductances(                                           \
+    const std::function<void(const unsigned int, const unsigned int, const double)> &) const;      \
   template void   FEMOperator<dim>::count_bonds() const;                                           \
   template double FEMOperator<dim>::lowest_remainder() const;                                      \
-  template double FEMOperator<dim>::asymmetry() const;
+  template void   FEMOperator<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &, const bool) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -96,9 +96,11 @@ namespace PeriDeal
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
       {
         if (!(stiffness_diagonal.local_element(i) > 0.))
-          message =
-            "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
-            "conducting cell. Use 'pairs' or a finer mesh.";
+                    message =
+            coupling ? "The node at " + place_of(i) +
+                         " is isolated: the cracks of section 'Cracks' cut all of its bonds and pairs." :
+                       "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
+                       "conducting cell. Use 'pairs' or a finer mesh.";
         bound = std::max(bound, row_sums[i] / capacity.local_element(i));
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
@@ -206,7 +208,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::capacity_is_diagonal() const
   {
-    return !scene.finite_elements.consistent_capacity;
+        return coupling || !scene.finite_elements.consistent_capacity; // bonds need it diagonal
   }
 
   template <int dim>

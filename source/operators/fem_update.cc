@@ -114,9 +114,12 @@ namespace PeriDeal
           bound = std::max(bound, sum / capacity.local_element(i));
           // Cells are taken away by subtraction, which leaves round-off behind.
           if (!(sum > 1e-13 * gershgorin * capacity.local_element(i)) && message.empty())
-            message =
-              "'Mesh' in section 'Cracks': the growing cracks leave the finite element node at " +
-              place_of(i) + " without any conducting cell. Use 'pairs' or a finer mesh.";
+                        message =
+              coupling ?
+                "The node at " + place_of(i) +
+                  " becomes isolated: the growing cracks cut all of its bonds and pairs." :
+                "'Mesh' in section 'Cracks': the growing cracks leave the finite element node at " +
+                  place_of(i) + " without any conducting cell. Use 'pairs' or a finer mesh.";
         }
     throw_on_all_if_any(dofs.get_communicator(), message);
     // Pairs of a cell with positive entries off the diagonal (of unequal sides) conduct more than it did as a whole.

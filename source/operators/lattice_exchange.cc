@@ -86,6 +86,10 @@ namespace PeriDeal
     , last(scene.cracks.end_time)
   {
     plain = bonds.uniform_conductivity() && scene.domain.shape == Shape::box;
+    form  = scene.peridynamics.form;
+    AssertThrow(plain || form != OperatorForm::lattice || !zone.is_everywhere(),
+                UserError("'Operator form = lattice' in section 'Peridynamics' is not possible here: the conductivity varies or "
+                          "the body has voids. Use 'auto'."));
     find_offsets();
     find_sites(scene, constrained);
     find_cells(scene);
@@ -171,9 +175,7 @@ namespace PeriDeal
         site.in_zone = site.may_join && zone.contains(nodes.position(i));
         n_in_zone += i < nodes.n_owned() && site.may_join;
       }
-    AssertThrow(Utilities::MPI::sum(n_in_zone, nodes.communicator()) > 0.,
-                UserError("'Zone' in section 'Coupling': no node of the mesh lies in the zone. Choose a wider zone or a finer "
-                          "mesh, or 'Models = finite elements'."));
+        throw_if_zone_empty(n_in_zone, nodes.communicator());
   }
 
 
@@ -405,15 +407,14 @@ namespace PeriDeal
   template <int dim>
   bool LatticeExchange<dim>::has_form() const
   {
-    std::string reason;
-    return plain && zone.is_everywhere() && lattice_form_suits(bonds, reason);
+    return plain && zone.is_everywhere();
   }
 
 
   template <int dim>
   std::unique_ptr<BondForm> LatticeExchange<dim>::make_form()
   {
-    return make_lattice_form(bonds);
+    return form == OperatorForm::stored ? make_stored_form(bonds) : make_lattice_form(bonds);
   }
 
 

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/analysis/coupling_certificate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
@@ -156,7 +157,15 @@ namespace PeriDeal
       if (name == "operator form")
         progress.line("  form: " + value);
       else if (name == "calibration" && value.find("because") != std::string::npos)
-        progress.line("  calibration: " + value);
+                progress.line("  calibration: " + value);
+    if (const CouplingCertificate *c = model.examined())
+      {
+        std::ostringstream text;
+        text.precision(2);
+        text << "  coupling: " << 100. * c->zone_share << " % of the body; patch errors " << c->linear
+             << " (linear), " << c->quadratic << " (quadratic), " << c->cubic << " (cubic)";
+        progress.line(text.str());
+      }
   }
 
 

@@ -3,6 +3,7 @@
 
 #include <deal.II/lac/full_matrix.h>
 
+#include <perideal/analysis/coupling_certificate.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include "operator_test_tools.h"
@@ -68,7 +69,7 @@ namespace
                                      Model::coupled);
           EXPECT_GT(problem.fem->size().bonds, 0u);
           EXPECT_LT(patch_error(problem), 1e-13) << name << ", m = " << m;
-          EXPECT_LT(problem.fem->asymmetry(), 1e-15) << name << ", m = " << m;
+          EXPECT_LT(examine_coupling(*problem.fem, true).asymmetry, 1e-14) << name << ", m = " << m;
           EXPECT_GT(problem.fem->lowest_remainder(), -1e-13) << name << ", m = " << m;
           Vector one = problem.values([](const dealii::Point<dim> &) { return 1.; }), image = one;
                     problem.fem->multiply(image, one);
@@ -229,6 +230,63 @@ TEST(Exchange, layers_and_graded_materials)
         EXPECT_LT(error, last / 3.2);
       last = error;
     }
+}
+
+
+TEST(Couplings, splice_is_exact_for_quadratics)
+{
+  const Problem<2> problem(cells("20, 20", "1, 1") +
+                             patch<2>("x^2 + x*y - 2*y^2", "2", "0.22 - max(abs(x - 0.5), abs(y - 0.5))") +
+                             Settings{{"Coupling/Scheme", "splice"}},
+                           Model::coupled);
+  EXPECT_LT(patch_error(problem), 1e-12);
+  const CouplingCertificate found = examine_coupling(*problem.fem, false);
+  EXPECT_LT(found.quadratic, 1e-12);
+    EXPECT_LT(found.cubic, 1e-12); // since families are symmetric
+  EXPECT_GT(found.asymmetry, 1e-3);
+}
+
+
+TEST(Couplings, blending_is_symmetric_but_not_exact)
+{
+  double last = 0.;
+  for (const char *overlap : {"0", "1", "2"})
+    {
+      const Problem<2>          problem(cells("40, 40", "1, 1") +
+                                 Settings{{"Coupling/Zone", "0.2 - max(abs(x - 0.5), abs(y - 0.5))"},
+                                                    {"Coupling/Scheme", "blending"},
+                                                    {"Coupling/Overlap", overlap}},
+                               Model::coupled);
+      const CouplingCertificate found = examine_coupling(*problem.fem, true);
+      std::cout << "blending, overlap " << overlap << ": " << found.linear << std::endl;
+      EXPECT_LT(found.asymmetry, 1e-14);
+      EXPECT_GT(found.linear, 1e-5);
+      EXPECT_LT(found.linear, 2e-2);
+            EXPECT_FALSE(found.fault().empty());
+      EXPECT_NE(found.linear, last) << "the overlap has no effect";
+      last = found.linear;
+    }
+}
+
+
+TEST(Couplings, certificate_of_exchange)
+{
+  const Problem<2>          problem(cells("24, 24", "1, 1") +
+                             Settings{{"Cracks/Segments", "0.3,0.4 ; 0.7,0.55"},
+                                                {"Boundary conditions/Dirichlet", "left: 1"}},
+                           Model::coupled);
+  const CouplingCertificate found = examine_coupling(*problem.fem, true);
+  EXPECT_EQ(found.fault(), "");
+  EXPECT_LT(found.linear, 1e-13);
+  EXPECT_GT(found.quadratic, 1e-8);
+  EXPECT_GT(found.cubic, 1e-8);
+  EXPECT_LT(found.asymmetry, 1e-14);
+  EXPECT_GT(found.lowest_remainder, -1e-13);
+  EXPECT_NEAR(found.lowest_eigenvalue, 2. * std::pow(std::acos(-1.), 2), 0.1); // of the square held all around
+  EXPECT_GT(found.zone_share, 0.1);
+  EXPECT_LT(found.zone_share, 0.4);
+  const Problem<2> full(cells("24, 24", "1, 1") + Settings{{"Peridynamics/Boundary treatment", "none"}});
+  EXPECT_EQ(found.n_bonds_of_full, full.op().size().bonds);
 }
 
 

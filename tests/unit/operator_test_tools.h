@@ -99,7 +99,7 @@ namespace PeriDeal
                                                      NodalVolume::partial);
                 coupling = make_coupling(*nodes,
                                          scene,
-                                         Zone<dim>(scene.coupling, scene.horizon()));
+                                         Zone<dim>(scene.coupling, scene.horizon()), scene.coupling.scheme);
               }
             fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling));
           }

@@ -32,7 +32,10 @@ namespace PeriDeal
 
     bool contains(const dealii::Point<dim> &p) const;
 
-    /** How far outside the zone a point lies, as long as that is less than @p farthest; a formula knows inside (0) and outside (farthest) only. */
+        /**
+     * How far outside the zone a point lies, at most @p farthest. The distance to the zone of a formula is that in the nearest of a number of
+     * directions (24 in 2D, 64 in 3D).
+     */
     double distance(const dealii::Point<dim> &p, const double farthest) const;
 
         bool is_everywhere() const;
@@ -43,10 +46,13 @@ namespace PeriDeal
     /** Distance from a crack that is still in the zone. */
     double width() const;
 
-  private:
-    ZoneKind                     kind = ZoneKind::everywhere;
+    private:
+    double distance_to_formula(const dealii::Point<dim> &p, const double farthest) const;
+
+    ZoneKind                     kind =  ZoneKind::everywhere;
     double                       reach = 0.;
     Expression                   formula;
+    std::vector<dealii::Tensor<1, dim>> directions; // to look for the zone of a formula
     std::vector<CrackPiece<dim>> cracks;
     std::vector<dealii::BoundingBox<dim>> boxes; // around each piece
   };

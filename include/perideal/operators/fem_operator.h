@@ -13,6 +13,7 @@
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/scene.h>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -71,11 +72,21 @@ namespace PeriDeal
     /** Only in the model `coupled`. */
     const Coupling<dim> &bonds() const;
 
+        /** K of the body without its cracks, with the bonds of the zone as it is now (or without any), constraints left out. Collective. */
+    void assemble_intact(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool with_bonds) const;
+
+        /**
+     * Call visit(owned unknown, other unknown, conductance) for all pairs between which bonds or cells conduct, by local numbers: the entries off the diagonal of K,
+     * with the sign changed. A pair may come in several parts, and at both of its ends. Only with a coupling.
+     */
+    void visit_conductances(
+      const std::function<void(const unsigned int, const unsigned int, const double)> &visit) const;
+
     /** y = K x, constraints left out. Collective. */
     void multiply(Vector &y, const Vector &x) const;
 
-        /** How far the matrix of cells and bonds is from symmetric: the largest of |(K - K^T) x| / |K x| in the maximum norm for some fields x of noise. Collective. */
-    double asymmetry() const;
+    /** Numbers in [-1, 1] that look random but depend on the unknowns' positions alone. Collective. */
+    const Vector &noise() const;
 
     /**
      * Lowest eigenvalue of what the coupling leaves of any cell before cracks cut it, in units of the conductivity times h^(dim-2); infinite if it
@@ -137,8 +148,7 @@ namespace PeriDeal
     double heat_of(const Vector &u) const;
     bool   assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
     void   assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
-        const Vector &noise() const;
-    void          raise_bounds(const Vector &touched);
+            void          raise_bounds(const Vector &touched);
     std::vector<Cell> cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
                                  const std::vector<dealii::BoundingBox<dim>> &joins);
     void   keep_unseparated_pairs(const Cell &cell, CellData &data) const;

@@ -99,7 +99,8 @@ namespace PeriDeal
 
     Families<dim>                 bonds;
     Zone<dim>                     zone;
-            double                        last; // time of the run
+    double                        last; // time of the run
+    OperatorForm                  form  = OperatorForm::automatic;
     bool                          plain      = true; // no void, one conductivity, one cell size
     bool                          calibrated = true; // A is the unit matrix
     Site                          corner{}, extent{};
