@@ -158,7 +158,7 @@ namespace PeriDeal
       const Nodes<dim>                         &nodes = families.nodes();
       std::vector<typename Families<dim>::Bond> bonds;
       unsigned long long                        n_ends = 0;
-            unsigned long long n_sites = nodes.lattice() && families.has_unique_sites() ? 1 : 0;
+      unsigned long long n_sites = nodes.lattice() && families.has_unique_sites() ? 1 : 0;
       for (unsigned int d = 0; d < dim && n_sites > 0; ++d)
         n_sites *= nodes.lattice()->n_sites[d];
       if (nodes.n_global() == n_sites) // no void
@@ -236,7 +236,7 @@ namespace PeriDeal
     result.cubic     = system.patch_error([&](const Point<dim> &p) {
       return std::pow(along(p, first), 2) * along(p, second) + std::pow(along(p, second), 3);
     });
-    result.asymmetry          = system.asymmetry();
+    result.asymmetry = system.asymmetry();
     result.lowest_eigenvalue  = system.lowest_eigenvalue();
     result.lowest_remainder   = op.lowest_remainder();
     result.zone_share         = op.bonds().zone_share();

@@ -18,7 +18,7 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-Families<dim>::Families(Nodes<dim> &nodes, const Scene<dim> &scene, const HaloAround halo)
+  Families<dim>::Families(Nodes<dim> &nodes, const Scene<dim> &scene, const HaloAround halo)
     : own_nodes(&nodes)
     , material(scene.material)
     , parameters(scene.peridynamics)
@@ -45,7 +45,7 @@ Families<dim>::Families(Nodes<dim> &nodes, const Scene<dim> &scene, const HaloAr
       on_lattice || scene.boundary_conditions.symmetry.empty(),
       UserError(
         "'Symmetry' in section 'Boundary conditions' needs the lattice of a box without doubled nodes."));
-        // Beside finite elements a symmetry side is an insulated one, and that exactly.
+    // Beside finite elements a symmetry side is an insulated one, and that exactly.
     if (halo == HaloAround::nodes)
       outside = make_fictitious_nodes(nodes,
                                       scene.boundary_conditions,

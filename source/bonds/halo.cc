@@ -46,7 +46,7 @@ namespace PeriDeal
     };
 
 
-        template <int dim>
+    template <int dim>
     std::vector<Point<dim>> own_positions(const Nodes<dim> &nodes)
     {
       std::vector<Point<dim>> positions(nodes.n_owned());
@@ -83,7 +83,7 @@ namespace PeriDeal
           Box<dim> box;
           for (std::size_t i = n * b / n_boxes_per_process; i < n * (b + 1) / n_boxes_per_process;
                ++i)
-                        box.include(points[i]);
+            box.include(points[i]);
           if (!box.empty)
             for (unsigned int d = 0; d < dim; ++d)
               numbers.insert(numbers.end(), {box.low[d], box.high[d]});
@@ -135,19 +135,19 @@ namespace PeriDeal
 
 
   template <int dim>
-    void add_halo(Nodes<dim> &nodes, const double reach, const HaloAround around)
+  void add_halo(Nodes<dim> &nodes, const double reach, const HaloAround around)
   {
     const MPI_Comm               communicator = nodes.communicator();
     const unsigned int           me           = Utilities::MPI::this_mpi_process(communicator);
     std::vector<NodeRecord<dim>> ghosts;
     if (Utilities::MPI::n_mpi_processes(communicator) > 1)
       {
-        double     margin = 0.;
-        const auto boxes  = Utilities::MPI::all_gather(communicator,
+        double     margin  = 0.;
+        const auto boxes   = Utilities::MPI::all_gather(communicator,
                                                       boxes_around(around == HaloAround::nodes ?
-                                                                      own_positions(nodes) :
-                                                                      cell_corners(nodes, margin)));
-        margin            = Utilities::MPI::max(margin, communicator);
+                                                                     own_positions(nodes) :
+                                                                     cell_corners(nodes, margin)));
+        margin             = Utilities::MPI::max(margin, communicator);
         const double limit = std::pow((reach + margin) * (1. + 1e-6), 2);
         std::map<unsigned int, std::vector<double>> to_send;
         for (unsigned int rank = 0; rank < boxes.size(); ++rank)

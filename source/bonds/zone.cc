@@ -41,7 +41,7 @@ namespace PeriDeal
   } // namespace
 
 
-    namespace
+  namespace
   {
     /** Directions in space, evenly spread: two, on a circle, or on a spiral around the sphere. */
     template <int dim>
@@ -108,7 +108,7 @@ namespace PeriDeal
   }
 
 
-    template <int dim>
+  template <int dim>
   double Zone<dim>::distance_to_formula(const Point<dim> &p, const double farthest) const
   {
     if (formula.value(p) > 0.)
@@ -140,9 +140,9 @@ namespace PeriDeal
   {
     if (kind == ZoneKind::everywhere)
       return 0.;
-        if (kind == ZoneKind::formula)
+    if (kind == ZoneKind::formula)
       return distance_to_formula(p, farthest);
-    double        nearest = farthest;
+    double       nearest = farthest;
     const double slack   = 1e-9 * reach; // nodes just that far away are in, whatever the rounding
     for (unsigned int k = 0; k < cracks.size(); ++k)
       {
@@ -152,9 +152,8 @@ namespace PeriDeal
           far = far || p[d] < boxes[k].lower_bound(d) - limit ||
                 p[d] > boxes[k].upper_bound(d) + limit;
         if (!far)
-          nearest =
-            std::min(nearest,
-                     std::max(0., distance_to_piece(cracks[k].corners, p) - reach - slack));
+          nearest = std::min(nearest,
+                             std::max(0., distance_to_piece(cracks[k].corners, p) - reach - slack));
       }
     return nearest;
   }
@@ -163,10 +162,10 @@ namespace PeriDeal
   template <int dim>
   bool Zone<dim>::contains(const Point<dim> &p) const
   {
-        return kind == ZoneKind::formula ? formula.value(p) > 0. : distance(p, 1.) == 0.;
+    return kind == ZoneKind::formula ? formula.value(p) > 0. : distance(p, 1.) == 0.;
   }
 
-    template <int dim>
+  template <int dim>
   bool Zone<dim>::is_everywhere() const
   {
     return kind == ZoneKind::everywhere;
@@ -185,7 +184,7 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                   \
+#define PERIDEAL_INSTANTIATE(dim)                                                         \
   template double distance_to_piece(const std::vector<Point<dim>> &, const Point<dim> &); \
   template class Zone<dim>;
   PERIDEAL_INSTANTIATE(1)

@@ -75,7 +75,6 @@ namespace PeriDeal
 
 
 
-
     /** Halvings that all cell counts allow, at most those that leave at least one coarse cell. */
     template <int dim>
     unsigned int common_halvings(const std::array<unsigned int, dim> &cells)

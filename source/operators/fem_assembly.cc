@@ -138,8 +138,8 @@ namespace PeriDeal
   }
 
 
-    template <int dim>
-    bool FEMOperator<dim>::assemble_whole_cell(const Cell &cell,
+  template <int dim>
+  bool FEMOperator<dim>::assemble_whole_cell(const Cell &cell,
                                              CellData   &data,
                                              const bool  with_bonds) const
   {
@@ -147,7 +147,7 @@ namespace PeriDeal
     find_temperatures(data);
     data.stiffness       = 0.;
     data.mass            = 0.;
-        const unsigned int n = data.indices.size();
+    const unsigned int n = data.indices.size();
     for (const unsigned int q : data.values.quadrature_point_indices())
       {
         const Point<dim> &p       = data.values.quadrature_point(q);
@@ -163,12 +163,14 @@ namespace PeriDeal
                 storage * data.values.shape_value(i, q) * data.values.shape_value(j, q);
             }
       }
-                return coupling && with_bonds && coupling->change_cell(cell, data.stiffness);
+    return coupling && with_bonds && coupling->change_cell(cell, data.stiffness);
   }
 
 
   template <int dim>
-  void FEMOperator<dim>::assemble_cell(const Cell &cell, CellData &data, const bool with_bonds) const
+  void FEMOperator<dim>::assemble_cell(const Cell &cell,
+                                       CellData   &data,
+                                       const bool  with_bonds) const
   {
     assemble_whole_cell(cell, data, with_bonds);
     data.convection      = 0.;
@@ -180,7 +182,7 @@ namespace PeriDeal
         else
           keep_unseparated_pairs(cell, data);
       }
-        if (coupling && with_bonds)
+    if (coupling && with_bonds)
       coupling->finish_cell(cell, data.stiffness);
     for (const unsigned int f : cell->face_indices())
       if (cell->face(f)->at_boundary())
@@ -218,7 +220,7 @@ namespace PeriDeal
           for (const auto i : data.indices)
             marked(i) = 1.;
         }
-        marked.compress(VectorOperation::max);
+    marked.compress(VectorOperation::max);
     if (coupling)
       mark_broken_bonds(marked);
     marked.update_ghost_values();
@@ -242,7 +244,7 @@ namespace PeriDeal
             }
         }
     trace.compress(VectorOperation::add);
-        expected.compress(VectorOperation::add);
+    expected.compress(VectorOperation::add);
     if (coupling)
       add_bond_traces(marked, trace);
     initialize_vector(crack_factors);
@@ -274,7 +276,7 @@ namespace PeriDeal
     IndexSet        relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
-            if (!bonds_apart)
+    if (!bonds_apart)
       DoFTools::make_sparsity_pattern(dofs, pattern);
     if (coupling)
       add_bond_pattern(pattern);
@@ -298,7 +300,7 @@ namespace PeriDeal
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-                    const bool empty = bonds_apart && coupling->leaves_nothing(cell);
+          const bool empty = bonds_apart && coupling->leaves_nothing(cell);
           assemble_cell(cell, data);
           scale_beside_cracks(data);
           data.stiffness.add(1., data.convection);
@@ -310,7 +312,7 @@ namespace PeriDeal
             for (unsigned int b = 0; b < data.indices.size(); ++b)
               capacity(data.indices[a]) += data.mass(a, b);
         }
-            if (coupling && !bonds_apart)
+    if (coupling && !bonds_apart)
       {
         std::vector<unsigned int> nodes(capacity.locally_owned_size());
         std::iota(nodes.begin(), nodes.end(), 0);
@@ -434,12 +436,14 @@ namespace PeriDeal
     const unsigned int,                                                                          \
     const unsigned int,                                                                          \
     std::vector<std::pair<unsigned int, int>> *) const;                                          \
-      template bool FEMOperator<dim>::assemble_whole_cell( \
-    const typename DoFHandler<dim>::active_cell_iterator &, \
-    CellData &, const bool) const; \
-  template void FEMOperator<dim>::assemble_cell(                                                   \
+  template bool FEMOperator<dim>::assemble_whole_cell(                                           \
     const typename DoFHandler<dim>::active_cell_iterator &,                                      \
-    CellData &, const bool) const;                                                                           \
+    CellData &,                                                                                  \
+    const bool) const;                                                                           \
+  template void FEMOperator<dim>::assemble_cell(                                                 \
+    const typename DoFHandler<dim>::active_cell_iterator &,                                      \
+    CellData &,                                                                                  \
+    const bool) const;                                                                           \
   template void FEMOperator<dim>::find_crack_factors(CellData &);                                \
   template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                         \
   template void FEMOperator<dim>::check_material() const;                                        \

@@ -21,7 +21,7 @@ namespace PeriDeal
   void FEMOperator<dim>::find_diagonal()
   {
     initialize_vector(stiffness_diagonal);
-        if (bonds_apart)
+    if (bonds_apart)
       {
         set_form_factors();
         form = coupling->make_form();
@@ -149,18 +149,18 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template void FEMOperator<dim>::find_diagonal();                                                 \
-  template void FEMOperator<dim>::extract_remainder();                                             \
-  template void FEMOperator<dim>::add_remainder(Vector &,                                          \
-                                                const Vector &,                                    \
-                                                const unsigned int,                                \
-                                                const unsigned int) const;                         \
-  template void FEMOperator<dim>::multiply_then(Vector &, const Vector &, const RowsAction &)      \
-    const;                                                                                         \
-  template void FEMOperator<dim>::multiply(Vector &, const Vector &) const;                        \
-  template void FEMOperator<dim>::set_form_factors();                                              \
-  template void FEMOperator<dim>::change_form(const std::vector<unsigned int> &, Vector &);        \
+#define PERIDEAL_INSTANTIATE(dim)                                                             \
+  template void FEMOperator<dim>::find_diagonal();                                            \
+  template void FEMOperator<dim>::extract_remainder();                                        \
+  template void FEMOperator<dim>::add_remainder(Vector &,                                     \
+                                                const Vector &,                               \
+                                                const unsigned int,                           \
+                                                const unsigned int) const;                    \
+  template void FEMOperator<dim>::multiply_then(Vector &, const Vector &, const RowsAction &) \
+    const;                                                                                    \
+  template void FEMOperator<dim>::multiply(Vector &, const Vector &) const;                   \
+  template void FEMOperator<dim>::set_form_factors();                                         \
+  template void FEMOperator<dim>::change_form(const std::vector<unsigned int> &, Vector &);   \
   template void FEMOperator<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

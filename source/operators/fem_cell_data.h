@@ -34,7 +34,6 @@ namespace PeriDeal
     dealii::FEFaceValues<dim>                    face_values;
     dealii::FullMatrix<double>                   stiffness, mass, convection;
     std::vector<dealii::types::global_dof_index> indices;
-        std::vector<double>                          temperatures; // at the quadrature points
-    
+    std::vector<double>                          temperatures; // at the quadrature points
   };
 } // namespace PeriDeal

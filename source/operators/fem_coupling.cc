@@ -52,8 +52,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  typename FEMOperator<dim>::BondRows
-  FEMOperator<dim>::bond_rows(const std::vector<unsigned int> &nodes) const
+  typename FEMOperator<dim>::BondRows FEMOperator<dim>::bond_rows(
+    const std::vector<unsigned int> &nodes) const
   {
     std::vector<typename Coupling<dim>::Bond> bonds;
     BondRows                                  rows(nodes.size());
@@ -152,8 +152,7 @@ namespace PeriDeal
           coupling->bonds_of(i, bonds);
           for (const auto &bond : bonds)
             trace.local_element(i) +=
-              0.5 * bond.weight *
-              coupling->families().bond_vector(i, bond.neighbor).norm_square();
+              0.5 * bond.weight * coupling->families().bond_vector(i, bond.neighbor).norm_square();
         }
   }
 
@@ -172,10 +171,10 @@ namespace PeriDeal
           for (const auto &bond : bonds)
             if (bond.cut && bond.weight > 0.)
               {
-                const double factor =
-                  crack_factors.size() == 0 ? 1. :
-                                              0.5 * (crack_factors.local_element(i) +
-                                                     crack_factors.local_element(bond.neighbor));
+                const double factor = crack_factors.size() == 0 ?
+                                        1. :
+                                        0.5 * (crack_factors.local_element(i) +
+                                               crack_factors.local_element(bond.neighbor));
                 families.crossed_cracks(i, bond.neighbor, crossed);
                 for (const auto &[crack, side] : crossed) // each bond is seen from both of its ends
                   balance.cracks[crack] += 0.5 * side * factor * bond.weight *
@@ -200,8 +199,11 @@ namespace PeriDeal
       return;
     std::vector<unsigned int> node(1);
     for (node[0] = 0; node[0] < layout.locally_owned_size(); ++node[0])
-      for (const auto &[neighbor, conductance] : bond_rows(node)[0])
-        visit(node[0], neighbor, conductance);
+      {
+        const BondRows rows = bond_rows(node);
+        for (const auto &[neighbor, conductance] : rows[0])
+          visit(node[0], neighbor, conductance);
+      }
   }
 
 
@@ -225,7 +227,7 @@ namespace PeriDeal
   template <int dim>
   double FEMOperator<dim>::lowest_remainder() const
   {
-        CellData       &data   = *cell_data;
+    CellData       &data   = *cell_data;
     double          lowest = std::numeric_limits<double>::max();
     const auto      n      = data.indices.size();
     Eigen::MatrixXd matrix(n, n);
@@ -238,14 +240,14 @@ namespace PeriDeal
             for (unsigned int b = 0; b < n; ++b)
               matrix(a, b) = data.stiffness(a, b);
           const double scale = center_conductivity(cell) * std::pow(cell->measure(), 1. - 2. / dim);
-          lowest = std::min(lowest,
-                            Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix,
-                                                                           Eigen::EigenvaluesOnly)
-                                .eigenvalues()
-                                .minCoeff() /
-                              scale);
+          lowest =
+            std::min(lowest,
+                     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
+                         .eigenvalues()
+                         .minCoeff() /
+                       scale);
         }
-        return Utilities::MPI::min(lowest, dofs.get_communicator());
+    return Utilities::MPI::min(lowest, dofs.get_communicator());
   }
 
 
@@ -262,7 +264,7 @@ namespace PeriDeal
     std::vector<typename Coupling<dim>::Bond> bonds;
     std::vector<types::global_dof_index>      columns;
     std::vector<double>                       values;
-    const auto for_each_row = [&](const auto &visit) {
+    const auto                                for_each_row = [&](const auto &visit) {
       for (unsigned int i = 0; i < layout.locally_owned_size() && with_bonds; ++i)
         {
           coupling->bonds_of(i, bonds);
@@ -297,22 +299,23 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template void FEMOperator<dim>::add_bond_pattern(TrilinosWrappers::SparsityPattern &) const;     \
-  template typename FEMOperator<dim>::BondRows FEMOperator<dim>::bond_rows(                        \
-    const std::vector<unsigned int> &) const;                                                      \
-  template void FEMOperator<dim>::add_bonds(const std::vector<unsigned int> &, const BondRows &);  \
-  template void FEMOperator<dim>::change_bonds(const std::vector<unsigned int> &,                  \
-                                               const BondRows &,                                   \
-                                               Vector &);                                          \
-  template void   FEMOperator<dim>::mark_broken_bonds(Vector &) const;                             \
-  template void   FEMOperator<dim>::add_bond_traces(const Vector &, Vector &) const;               \
-  template void   FEMOperator<dim>::add_bond_heat(const Vector &, Balance &) const;                \
-  template void   FEMOperator<dim>::visit_conductances(                                           \
-    const std::function<void(const unsigned int, const unsigned int, const double)> &) const;      \
-  template void   FEMOperator<dim>::count_bonds() const;                                           \
-  template double FEMOperator<dim>::lowest_remainder() const;                                      \
-  template void   FEMOperator<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &, const bool) const;
+#define PERIDEAL_INSTANTIATE(dim)                                                                 \
+  template void FEMOperator<dim>::add_bond_pattern(TrilinosWrappers::SparsityPattern &) const;    \
+  template typename FEMOperator<dim>::BondRows FEMOperator<dim>::bond_rows(                       \
+    const std::vector<unsigned int> &) const;                                                     \
+  template void FEMOperator<dim>::add_bonds(const std::vector<unsigned int> &, const BondRows &); \
+  template void FEMOperator<dim>::change_bonds(const std::vector<unsigned int> &,                 \
+                                               const BondRows &,                                  \
+                                               Vector &);                                         \
+  template void FEMOperator<dim>::mark_broken_bonds(Vector &) const;                              \
+  template void FEMOperator<dim>::add_bond_traces(const Vector &, Vector &) const;                \
+  template void FEMOperator<dim>::add_bond_heat(const Vector &, Balance &) const;                 \
+  template void FEMOperator<dim>::visit_conductances(                                             \
+    const std::function<void(const unsigned int, const unsigned int, const double)> &) const;     \
+  template void   FEMOperator<dim>::count_bonds() const;                                          \
+  template double FEMOperator<dim>::lowest_remainder() const;                                     \
+  template void   FEMOperator<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &, const bool) \
+    const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

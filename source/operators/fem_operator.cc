@@ -33,7 +33,7 @@ namespace PeriDeal
     check_material();
     find_cut_cells();
     find_prescribed();
-        bonds_apart = this->coupling && this->coupling->has_form();
+    bonds_apart = this->coupling && this->coupling->has_form();
     assemble();
     find_diagonal();
     find_gershgorin();
@@ -87,7 +87,7 @@ namespace PeriDeal
   {
     std::string         message;
     double              bound = 0.;
-        std::vector<double> row_sums(stiffness_diagonal.locally_owned_size(), 0.);
+    std::vector<double> row_sums(stiffness_diagonal.locally_owned_size(), 0.);
     for (unsigned int i = 0; i < bond_sums.size(); ++i)
       row_sums[i] = 2. * bond_sums[i];
     for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
@@ -96,11 +96,12 @@ namespace PeriDeal
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
       {
         if (!(stiffness_diagonal.local_element(i) > 0.))
-                    message =
-            coupling ? "The node at " + place_of(i) +
-                         " is isolated: the cracks of section 'Cracks' cut all of its bonds and pairs." :
-                       "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
-                       "conducting cell. Use 'pairs' or a finer mesh.";
+          message =
+            coupling ?
+              "The node at " + place_of(i) +
+                " is isolated: the cracks of section 'Cracks' cut all of its bonds and pairs." :
+              "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
+              "conducting cell. Use 'pairs' or a finer mesh.";
         bound = std::max(bound, row_sums[i] / capacity.local_element(i));
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
@@ -170,7 +171,7 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
   {
-        ++applications;
+    ++applications;
     multiply(r, u);
     if (loads_vary)
       assemble_loads(scratch, t);
@@ -208,7 +209,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::capacity_is_diagonal() const
   {
-        return coupling || !scene.finite_elements.consistent_capacity; // bonds need it diagonal
+    return coupling || !scene.finite_elements.consistent_capacity; // bonds need it diagonal
   }
 
   template <int dim>
@@ -257,8 +258,7 @@ namespace PeriDeal
       return {gershgorin, gershgorin};
     if (bounds.safe == 0.)
       {
-                        bounds.sharp =
-          sharp_bound(*this, gershgorin, [&](Vector &vector) { vector = noise(); });
+        bounds.sharp = sharp_bound(*this, gershgorin, [&](Vector &vector) { vector = noise(); });
         bounds.safe  = gershgorin;
       }
     return bounds;
@@ -267,7 +267,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::symmetric() const
   {
-        return !coupling || coupling->symmetric();
+    return !coupling || coupling->symmetric();
   }
 
   template <int dim>
@@ -286,7 +286,7 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
-        if (form)
+    if (form)
       assemble_surrogate(matrix);
     else
       matrix.copy_from(stiffness);
@@ -304,7 +304,7 @@ namespace PeriDeal
   }
 
   template <int dim>
-    bool FEMOperator<dim>::surrogate_is_exact() const
+  bool FEMOperator<dim>::surrogate_is_exact() const
   {
     return !form;
   }
@@ -369,11 +369,13 @@ namespace PeriDeal
   {
     OperatorSize size;
     size.unknowns = dofs.n_dofs();
-        size.nonzeros = form ? Utilities::MPI::sum(remainder.values.size() + form->n_stored(), dofs.get_communicator()) : stiffness.n_nonzero_elements();
+    size.nonzeros = form ? Utilities::MPI::sum(remainder.values.size() + form->n_stored(),
+                                               dofs.get_communicator()) :
+                           stiffness.n_nonzero_elements();
     size.memory   = stiffness.memory_consumption() + mass.memory_consumption() +
                   capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
                   constant_loads.memory_consumption() + scratch.memory_consumption();
-        if (coupling)
+    if (coupling)
       {
         if (recount_bonds)
           count_bonds();
@@ -381,7 +383,7 @@ namespace PeriDeal
         size.memory +=
           coupling->memory_consumption() + coupling->families().nodes().memory_consumption();
       }
-        size.form = form ? form->name() : "matrix";
+    size.form = form ? form->name() : "matrix";
     return size;
   }
 
@@ -397,7 +399,7 @@ namespace PeriDeal
     return cut;
   }
 
-    template <int dim>
+  template <int dim>
   const Coupling<dim> &FEMOperator<dim>::bonds() const
   {
     Assert(coupling, ExcMessage("Finite elements alone have no bonds."));

@@ -29,7 +29,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::update(const double t)
   {
-        const double time = history.representative(t);
+    const double time = history.representative(t);
     if (time == cracks_of || !history.changes_ever())
       return false;
     const auto cuts  = history.changes(cracks_of, time);
@@ -40,7 +40,7 @@ namespace PeriDeal
     CellData                       &data   = *cell_data;
     const bool                      scaled = crack_factors.size() > 0;
     const double                    reach  = coupling ? coupling->families().reach() : 0.;
-    const std::vector<Cell>         near = cells_near(cuts, joins);
+    const std::vector<Cell>         near   = cells_near(cuts, joins);
     std::vector<FullMatrix<double>> old(near.size());
     for (std::size_t k = 0; k < near.size(); ++k)
       if (near[k]->is_locally_owned())
@@ -49,14 +49,16 @@ namespace PeriDeal
           scale_beside_cracks(data);
           old[k] = data.stiffness;
         }
-        std::vector<unsigned int> nodes;
+    std::vector<unsigned int> nodes;
     BondRows                  old_rows;
     if (coupling)
       {
-        const double wide = scaled ? reach + 3. * coupling->families().nodes().smallest_spacing() * std::sqrt(1. * dim) : 0.;
-        auto boxes = cuts;
+        const double wide  = scaled ? reach + 3. * coupling->families().nodes().smallest_spacing() *
+                                               std::sqrt(1. * dim) :
+                                      0.;
+        auto         boxes = cuts;
         boxes.insert(boxes.end(), joins.begin(), joins.end());
-        nodes      = coupling->families().nodes_near(boxes, reach + wide);
+        nodes = coupling->families().nodes_near(boxes, reach + wide);
         if (!bonds_apart)
           old_rows = bond_rows(nodes);
         coupling->set_cracks_of(time);
@@ -78,24 +80,24 @@ namespace PeriDeal
           data.stiffness.add(-1., old[k]);
           if (data.stiffness.linfty_norm() == 0.)
             continue;
-                    if (!(bonds_apart && coupling->leaves_nothing(near[k])))
+          if (!(bonds_apart && coupling->leaves_nothing(near[k])))
             stiffness.add(data.indices, data.stiffness);
           for (const auto i : data.indices)
             touched(i) = 1.;
         }
-        touched.compress(VectorOperation::max);
-        if (coupling && !bonds_apart)
+    touched.compress(VectorOperation::max);
+    if (coupling && !bonds_apart)
       change_bonds(nodes, old_rows, touched);
     stiffness.compress(VectorOperation::add);
     if (bonds_apart)
       change_form(nodes, touched);
-        update_rows(touched, Utilities::MPI::max(joins.size(), dofs.get_communicator()) > 0);
+    update_rows(touched, Utilities::MPI::max(joins.size(), dofs.get_communicator()) > 0);
     return true;
   }
 
 
   template <int dim>
-    void FEMOperator<dim>::update_rows(const Vector &touched, const bool zone_moves)
+  void FEMOperator<dim>::update_rows(const Vector &touched, const bool zone_moves)
   {
     const auto &partitioner = *stiffness_diagonal.get_partitioner();
     std::string message;
@@ -103,8 +105,8 @@ namespace PeriDeal
     for (unsigned int i = 0; i < touched.locally_owned_size(); ++i)
       if (touched.local_element(i) > 0.)
         {
-                    double       sum       = bonds_apart ? 2. * bond_sums[i] : 0.;
-          const double from_form = bonds_apart ? bond_sums[i] : 0.;
+          double       sum                    = bonds_apart ? 2. * bond_sums[i] : 0.;
+          const double from_form              = bonds_apart ? bond_sums[i] : 0.;
           stiffness_diagonal.local_element(i) = from_form;
           for_each_entry_of_row(stiffness, i, [&](const auto column, const double value) {
             sum += std::abs(value);
@@ -114,7 +116,7 @@ namespace PeriDeal
           bound = std::max(bound, sum / capacity.local_element(i));
           // Cells are taken away by subtraction, which leaves round-off behind.
           if (!(sum > 1e-13 * gershgorin * capacity.local_element(i)) && message.empty())
-                        message =
+            message =
               coupling ?
                 "The node at " + place_of(i) +
                   " becomes isolated: the growing cracks cut all of its bonds and pairs." :
@@ -123,7 +125,7 @@ namespace PeriDeal
         }
     throw_on_all_if_any(dofs.get_communicator(), message);
     // Pairs of a cell with positive entries off the diagonal (of unequal sides) conduct more than it did as a whole.
-        const bool stiffer = Utilities::MPI::max(pairs_stiffer ? 1 : 0, dofs.get_communicator()) > 0;
+    const bool stiffer = Utilities::MPI::max(pairs_stiffer ? 1 : 0, dofs.get_communicator()) > 0;
     if (stiffer || zone_moves || crack_factors.size() > 0 || history.may_close())
       {
         // Rates can have grown. Where cells are only cut, the old bounds still hold.
@@ -154,16 +156,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<typename FEMOperator<dim>::Cell>
-  FEMOperator<dim>::cells_near(const std::vector<BoundingBox<dim>> &cuts,
-                               const std::vector<BoundingBox<dim>> &joins)
+  std::vector<typename FEMOperator<dim>::Cell> FEMOperator<dim>::cells_near(
+    const std::vector<BoundingBox<dim>> &cuts,
+    const std::vector<BoundingBox<dim>> &joins)
   {
     if (!search)
       search = std::make_unique<CellSearch<dim>>(dofs);
     // Bonds change the cells that they pass. The factors of crack-side scaling change as far as the neighbours of cut cells and of nodes with broken bonds.
-    const bool   scaled = crack_factors.size() > 0;
-    const double reach  = coupling ? coupling->families().reach() : 0.;
-    const double wide   = scaled ? 2. * search->largest_diameter() : 0.;
+    const bool        scaled = crack_factors.size() > 0;
+    const double      reach  = coupling ? coupling->families().reach() : 0.;
+    const double      wide   = scaled ? 2. * search->largest_diameter() : 0.;
     std::vector<Cell> near;
     search->find(cuts, wide + (scaled ? reach : 0.), near);
     search->find(joins, wide + reach, near);
@@ -174,7 +176,7 @@ namespace PeriDeal
 
 
   template <int dim>
-    void FEMOperator<dim>::add_crack_heat(const Vector &u, Balance &balance) const
+  void FEMOperator<dim>::add_crack_heat(const Vector &u, Balance &balance) const
   {
     balance.cracks.assign(scene.cracks.cracks.size(), 0.);
     if (!scene.cracks.conduct())
@@ -206,7 +208,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                   \
-    template double FEMOperator<dim>::next_event(const double) const; \
+  template double FEMOperator<dim>::next_event(const double) const; \
   template void   FEMOperator<dim>::raise_bounds(const Vector &);   \
   template bool   FEMOperator<dim>::update(const double);           \
   template void   FEMOperator<dim>::add_crack_heat(const Vector &, Balance &) const;

@@ -94,9 +94,9 @@ namespace PeriDeal
     for (unsigned int i = 0; i < weights.size(); ++i)
       {
         const Point<dim> &p = bonds.nodes().position(i);
-        if (std::any_of(changes.begin(), changes.end(), [&](const auto &box) {
-              return box.point_inside(p);
-            }) &&
+        if (std::any_of(changes.begin(),
+                        changes.end(),
+                        [&](const auto &box) { return box.point_inside(p); }) &&
             weight_of(then, p) != weights[i])
           boxes.push_back({{p, p}});
       }
@@ -204,7 +204,7 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)      \
+#define PERIDEAL_INSTANTIATE(dim)       \
   template class WeightedCoupling<dim>; \
   template class Blending<dim>;         \
   template class Splice<dim>;

@@ -72,8 +72,7 @@ namespace PeriDeal
   {
     const auto list = obstacles_to_bonds_on_elements(*this);
     if (peridynamics.treatment == BoundaryTreatment::automatic)
-      peridynamics.treatment =
-        list.empty() ? BoundaryTreatment::exchange : BoundaryTreatment::none;
+      peridynamics.treatment = list.empty() ? BoundaryTreatment::exchange : BoundaryTreatment::none;
     else if (peridynamics.treatment == BoundaryTreatment::exchange && !list.empty() &&
              runs(*this, Model::peridynamics))
       entry_error(list.front().where,
@@ -90,14 +89,16 @@ namespace PeriDeal
     if (!list.empty())
       entry_error(list.front().where, list.front().reason + ", for 'Models = coupled'.");
     if (dim == 1 && coupling.zone == ZoneKind::near_cracks)
-      entry_error(coupling.where("Zone"),
-                  "'" + coupling.zone_text() +
-                    "' needs a crack, and bodies of 'Dimension' 1 have none. Give a formula of x, or 'everywhere'.");
+      entry_error(
+        coupling.where("Zone"),
+        "'" + coupling.zone_text() +
+          "' needs a crack, and bodies of 'Dimension' 1 have none. Give a formula of x, or 'everywhere'.");
     if ((coupling.zone == ZoneKind::near_cracks || coupling.zone == ZoneKind::adaptive) &&
         cracks.cracks.empty())
-      entry_error(coupling.where("Zone"),
-                  "'" + coupling.zone_text() +
-                    "' lies around cracks, but section 'Cracks' has none: the zone is empty. Give a formula, or 'everywhere'.");
+      entry_error(
+        coupling.where("Zone"),
+        "'" + coupling.zone_text() +
+          "' lies around cracks, but section 'Cracks' has none: the zone is empty. Give a formula, or 'everywhere'.");
     double widest = 0.;
     for (unsigned int d = 0; d < dim; ++d)
       widest = std::max(widest, domain.upper[d] - domain.lower[d]);
@@ -107,9 +108,10 @@ namespace PeriDeal
                     number_text(coupling.overlap * horizon()) + ", wider than the body, " +
                     number_text(widest) + ".");
     if (finite_elements.degree > 1)
-      entry_error(finite_elements.where("Degree"),
-                  "found " + std::to_string(finite_elements.degree) +
-                    "; bonds and elements share the nodes of elements of degree 1 ('Models = coupled').");
+      entry_error(
+        finite_elements.where("Degree"),
+        "found " + std::to_string(finite_elements.degree) +
+          "; bonds and elements share the nodes of elements of degree 1 ('Models = coupled').");
   }
 
 

@@ -9,31 +9,35 @@ namespace PeriDeal
   CouplingControl::CouplingControl()
     : SceneSection("Coupling")
   {
-    declare("Scheme",
-            EntryType::choice,
-            "exchange",
-            "",
-            "How the model `coupled` joins peridynamics in the zone with finite elements elsewhere: each bond in exchange for what "
-            "the elements conduct along it (symmetric, exact for linear fields); rows of either model side by side (not symmetric); or "
-            "both energies, weighted over the overlap.",
-            {"exchange", "splice", "blending"});
-        declare("Zone",
-            EntryType::text,
-            "cracks: 1",
-            "",
-            "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; `adaptive`, near cracks on a mesh that is "
-            "refined there; or a formula of x, y, z, in the zone where it is greater than 0.");
-    declare("Overlap",
-            EntryType::number,
-            "0",
-            "1",
-            "With `splice` and `blending`: width, in horizons, over which one model passes into the other, outwards from the zone's edge.");
-    declare("Certificate",
-            EntryType::boolean,
-            "true",
-            "",
-            "Examine the coupling before the run: linear, quadratic and cubic patch tests, symmetry, lowest eigenvalue. Costs about as "
-            "much as three steady solutions.");
+    declare(
+      "Scheme",
+      EntryType::choice,
+      "exchange",
+      "",
+      "How the model `coupled` joins peridynamics in the zone with finite elements elsewhere: each bond in exchange for what "
+      "the elements conduct along it (symmetric, exact for linear fields); rows of either model side by side (not symmetric); or "
+      "both energies, weighted over the overlap.",
+      {"exchange", "splice", "blending"});
+    declare(
+      "Zone",
+      EntryType::text,
+      "cracks: 1",
+      "",
+      "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; `adaptive`, near cracks on a mesh that is "
+      "refined there; or a formula of x, y, z, in the zone where it is greater than 0.");
+    declare(
+      "Overlap",
+      EntryType::number,
+      "0",
+      "1",
+      "With `splice` and `blending`: width, in horizons, over which one model passes into the other, outwards from the zone's edge.");
+    declare(
+      "Certificate",
+      EntryType::boolean,
+      "true",
+      "",
+      "Examine the coupling before the run: linear, quadratic and cubic patch tests, symmetry, lowest eigenvalue. Costs about as "
+      "much as three steady solutions.");
     parse();
   }
 
@@ -78,9 +82,10 @@ namespace PeriDeal
           error("Zone", "found '" + given + "', needs 0 or more horizons.");
       }
     else if (colon != std::string::npos || given == "cracks")
-      error("Zone",
-            "found '" + given +
-              "', needs 'cracks: c' with a number of horizons c, 'everywhere', 'adaptive', or a formula of x, y and z.");
+      error(
+        "Zone",
+        "found '" + given +
+          "', needs 'cracks: c' with a number of horizons c, 'everywhere', 'adaptive', or a formula of x, y and z.");
     else
       {
         zone    = ZoneKind::formula;

@@ -251,7 +251,7 @@ namespace PeriDeal
   }
 
 
-    template <int dim>
+  template <int dim>
   bool Domain<dim>::in_hole(const Point<dim> &p) const
   {
     if (shape != Shape::plate_with_hole)

@@ -12,7 +12,7 @@ namespace PeriDeal
 
   std::string to_string(const Model model)
   {
-        return model == Model::finite_elements ? "finite elements" :
+    return model == Model::finite_elements ? "finite elements" :
            model == Model::peridynamics    ? "peridynamics" :
                                              "coupled";
   }
@@ -31,13 +31,14 @@ namespace PeriDeal
       "What diffuses: heat (temperature), moisture (wetness, the concentration over the saturated one) or electricity "
       "(potential).",
       physics_choices());
-    declare("Models",
-            EntryType::choices,
-            "finite elements, peridynamics",
-            "",
-            "The models that are run, on the same mesh, and compared: finite elements and peridynamics, each in the whole body, and "
-            "`coupled`, peridynamics in the zone of section `Coupling` with finite elements elsewhere.",
-                        {"finite elements", "peridynamics", "coupled"});
+    declare(
+      "Models",
+      EntryType::choices,
+      "finite elements, peridynamics",
+      "",
+      "The models that are run, on the same mesh, and compared: finite elements and peridynamics, each in the whole body, and "
+      "`coupled`, peridynamics in the zone of section `Coupling` with finite elements elsewhere.",
+      {"finite elements", "peridynamics", "coupled"});
     declare(
       "Output directory",
       EntryType::text,
@@ -274,7 +275,7 @@ namespace PeriDeal
             &initial_and_source,
             &boundary_conditions,
             &cracks,
-                        &peridynamics,
+            &peridynamics,
             &coupling,
             &finite_elements,
             &time,
@@ -296,7 +297,7 @@ namespace PeriDeal
     boundary_conditions.parse(domain.shape != Shape::mesh_file,
                               domain.shape == Shape::plate_with_hole);
     cracks.parse();
-        peridynamics.parse();
+    peridynamics.parse();
     coupling.parse();
     finite_elements.parse();
     time.parse();
@@ -319,7 +320,7 @@ namespace PeriDeal
       entry_error(finite_elements.where("Degree"),
                   "found " + std::to_string(finite_elements.degree) +
                     "; cracks with 'Mesh' in section 'Cracks' = pairs need degree 1.");
-        resolve_boundary_treatment();
+    resolve_boundary_treatment();
     check_coupling();
     if (runs(*this, Model::peridynamics) || runs(*this, Model::coupled))
       {

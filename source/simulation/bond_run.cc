@@ -138,38 +138,8 @@ namespace PeriDeal
 
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
-        static const char *const kernels[]    = {"constant", "conical", "gaussian"};
-        static const char *const fractions[]  = {"none", "linear", "exact"};
-                        static const char *const treatments[] = {"auto", "exchange", "none",
-                                                 "layer",
-                                                 "fictitious mirror",
-                                                 "fictitious constant"};
-        static const char *const fluxes[]     = {"natural", "extrapolation", "layer extrapolation"};
-        const Peridynamics      &p            = scene.peridynamics;
-        std::vector<std::pair<std::string, std::string>> list{
-          {"nodes", scene.domain.nodes == NodePlacement::vertices ? "vertices" : "cell centers"},
-          {"horizon", to_text(scene.horizon())},
-          {"m", to_text(scene.horizon() / node_set->smallest_spacing())},
-          {"kernel",
-           std::string(kernels[static_cast<int>(p.kernel)]) + ", exponent " +
-             std::to_string(p.kernel_exponent)},
-          {"volume fraction", fractions[static_cast<int>(p.volume_fraction)]},
-          {"calibration",
-           p.calibration == Calibration::analytic    ? "analytic" :
-           bonds->families().has_complete_families() ? "discrete" :
-                                                       "analytic, because no family is complete"},
-          {"self term", p.self_term == SelfTerm::none ? "none" : "paper"},
-          {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
-          {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},
-          {"surface correction",
-           p.surface_correction == SurfaceCorrection::none ?
-             "none" :
-           p.surface_correction == SurfaceCorrection::crack_scaling ?
-             "crack scaling" :
-           p.correction_direction == CorrectionDirection::both ?
-             "energy, each direction" :
-             std::string("energy, direction ") + "xyz"[static_cast<int>(p.correction_direction)]},
-          {"operator form", bonds->form_note()}};
+        auto list = bond_settings(scene, bonds->families());
+        list.emplace_back("operator form", bonds->form_note());
         return list;
       }
 
@@ -205,6 +175,43 @@ namespace PeriDeal
 
 
   template <int dim>
+  std::vector<std::pair<std::string, std::string>> bond_settings(const Scene<dim>    &scene,
+                                                                 const Families<dim> &families)
+  {
+    static const char *const kernels[]   = {"constant", "conical", "gaussian"};
+    static const char *const fractions[] = {"none", "linear", "exact"};
+    static const char *const treatments[] =
+      {"auto", "exchange", "none", "layer", "fictitious mirror", "fictitious constant"};
+    static const char *const fluxes[] = {"natural", "extrapolation", "layer extrapolation"};
+    const Peridynamics      &p        = scene.peridynamics;
+    std::vector<std::pair<std::string, std::string>> list{
+      {"nodes", scene.domain.nodes == NodePlacement::vertices ? "vertices" : "cell centers"},
+      {"horizon", to_text(scene.horizon())},
+      {"m", to_text(scene.horizon() / families.nodes().smallest_spacing())},
+      {"kernel",
+       std::string(kernels[static_cast<int>(p.kernel)]) + ", exponent " +
+         std::to_string(p.kernel_exponent)},
+      {"volume fraction", fractions[static_cast<int>(p.volume_fraction)]},
+      {"calibration",
+       p.calibration == Calibration::analytic ? "analytic" :
+       families.has_complete_families()       ? "discrete" :
+                                                "analytic, because no family is complete"},
+      {"self term", p.self_term == SelfTerm::none ? "none" : "paper"},
+      {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
+      {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},
+      {"surface correction",
+       p.surface_correction == SurfaceCorrection::none ?
+         "none" :
+       p.surface_correction == SurfaceCorrection::crack_scaling ?
+         "crack scaling" :
+       p.correction_direction == CorrectionDirection::both ?
+         "energy, each direction" :
+         std::string("energy, direction ") + "xyz"[static_cast<int>(p.correction_direction)]}};
+    return list;
+  }
+
+
+  template <int dim>
   std::unique_ptr<ModelRun<dim>> make_bond_run(const Triangulation<dim> &mesh,
                                                const Scene<dim>         &scene)
   {
@@ -215,4 +222,10 @@ namespace PeriDeal
   template std::unique_ptr<ModelRun<1>> make_bond_run(const Triangulation<1> &, const Scene<1> &);
   template std::unique_ptr<ModelRun<2>> make_bond_run(const Triangulation<2> &, const Scene<2> &);
   template std::unique_ptr<ModelRun<3>> make_bond_run(const Triangulation<3> &, const Scene<3> &);
+  template std::vector<std::pair<std::string, std::string>> bond_settings(const Scene<1> &,
+                                                                          const Families<1> &);
+  template std::vector<std::pair<std::string, std::string>> bond_settings(const Scene<2> &,
+                                                                          const Families<2> &);
+  template std::vector<std::pair<std::string, std::string>> bond_settings(const Scene<3> &,
+                                                                          const Families<3> &);
 } // namespace PeriDeal

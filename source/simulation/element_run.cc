@@ -25,11 +25,11 @@ namespace PeriDeal
     class FEMRun : public ModelRun<dim>
     {
     public:
-            /** @param model finite elements, coupled, or peridynamics by exchange, which is `coupled` with the zone everywhere */
+      /** @param model finite elements, coupled, or peridynamics by exchange, which is `coupled` with the zone everywhere */
       FEMRun(const Model model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
         : scene(scene)
         , model(model)
-                , element(model == Model::finite_elements ? scene.finite_elements.degree : 1)
+        , element(model == Model::finite_elements ? scene.finite_elements.degree : 1)
         , handler(mesh)
       {
         {
@@ -38,7 +38,7 @@ namespace PeriDeal
           if (scene.domain.shape != Shape::mesh_file && element.degree == 1)
             number_along_lattice(handler, scene.domain);
         }
-                        build_operator();
+        build_operator();
         if (model == Model::coupled && scene.coupling.certificate)
           examine();
       }
@@ -53,7 +53,7 @@ namespace PeriDeal
         return handler;
       }
 
-            const Nodes<dim> *nodes() const override
+      const Nodes<dim> *nodes() const override
       {
         return model == Model::peridynamics ? node_set.get() : nullptr;
       }
@@ -70,14 +70,14 @@ namespace PeriDeal
 
       void set_initial_value(Vector &u) const override
       {
-                // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for higher degrees, which it would spoil, and for
+        // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for higher degrees, which it would spoil, and for
         // peridynamics, whose values are those of points.
-        const bool                           project = element.degree == 1 && model != Model::peridynamics;
-        FEValues<dim>                        values(element,
+        const bool    project = element.degree == 1 && model != Model::peridynamics;
+        FEValues<dim> values(element,
                              project ? Quadrature<dim>(QGauss<dim>(2)) :
-                                                              Quadrature<dim>(element.get_unit_support_points()),
+                                       Quadrature<dim>(element.get_unit_support_points()),
                              update_values | update_quadrature_points | update_JxW_values);
-        Vector                               weight(u);
+        Vector        weight(u);
         std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
         u      = 0.;
         weight = 0.;
@@ -109,7 +109,7 @@ namespace PeriDeal
         VectorField<dim> flux;
         for (Vector &component : flux)
           fem->initialize_vector(component);
-                std::vector<OutputField> fields;
+        std::vector<OutputField> fields;
         const std::string        flux_name = names_of(scene.general.physics).flux;
         if (model == Model::finite_elements)
           {
@@ -160,16 +160,15 @@ namespace PeriDeal
       Difference error(const Vector                                    &u,
                        const std::function<double(const Point<dim> &)> &exact) const override
       {
-                if (scene.cracks.cracks.empty() || scene.cracks.mesh == CrackMesh::faces ||
+        if (scene.cracks.cracks.empty() || scene.cracks.mesh == CrackMesh::faces ||
             element.degree > 1)
           return element_difference(handler, u, exact);
         // Inside a cut cell the interpolant runs across the crack: only the values at the nodes are the model's.
         Vector expected(u), weights(u);
-        for_each_node([&](const unsigned int i, const Point<dim> &p) {
-          expected.local_element(i) = exact(p);
-        });
+        for_each_node(
+          [&](const unsigned int i, const Point<dim> &p) { expected.local_element(i) = exact(p); });
         weights = 0.;
-        FEValues<dim>                        values(element, QGauss<dim>(2), update_values | update_JxW_values);
+        FEValues<dim> values(element, QGauss<dim>(2), update_values | update_JxW_values);
         std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
         for (const auto &cell : handler.active_cell_iterators())
           if (cell->is_locally_owned())
@@ -201,14 +200,15 @@ namespace PeriDeal
 
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
-                std::vector<std::pair<std::string, std::string>> list{
+        std::vector<std::pair<std::string, std::string>> list{
           {"element", "Q" + std::to_string(element.degree)},
           {"capacity", scene.finite_elements.consistent_capacity ? "consistent" : "lumped"}};
-                if (model != Model::finite_elements)
+        if (model != Model::finite_elements)
           {
-            list.emplace_back("horizon", to_text(scene.horizon()));
-            list.emplace_back("m", to_text(scene.horizon() / node_set->smallest_spacing()));
-                                    static const char *const schemes[] = {"exchange", "splice", "blending"};
+            for (const auto &setting : bond_settings(scene, fem->bonds().families()))
+              if (setting.first != "boundary treatment" || model == Model::peridynamics)
+                list.push_back(setting);
+            static const char *const schemes[] = {"exchange", "splice", "blending"};
             list.emplace_back("coupling", schemes[static_cast<int>(scheme())]);
             list.emplace_back("zone",
                               model == Model::coupled ? scene.coupling.zone_text() : "everywhere");
@@ -224,22 +224,21 @@ namespace PeriDeal
       }
 
     private:
-                  void build_operator()
+      void build_operator()
       {
         Timings::Scope                 scope(this->timings, "operator");
         std::unique_ptr<Coupling<dim>> coupling;
-                if (model != Model::finite_elements)
+        if (model != Model::finite_elements)
           {
-            node_set =  std::make_unique<Nodes<dim>>(handler,
+            node_set = std::make_unique<Nodes<dim>>(handler,
                                                     scene.domain,
                                                     scene.cracks,
                                                     NodalVolume::partial);
-                        coupling = make_coupling(*node_set,
-                                     scene,
-                                     model == Model::coupled ?
-                                                                              Zone<dim>(scene.coupling, scene.horizon()) :
-                                       Zone<dim>(),
-                                     scheme());
+            coupling = make_coupling(
+              *node_set,
+              scene,
+              model == Model::coupled ? Zone<dim>(scene.coupling, scene.horizon()) : Zone<dim>(),
+              scheme());
           }
         fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling));
       }
@@ -249,7 +248,7 @@ namespace PeriDeal
       void examine()
       {
         Timings::Scope scope(this->timings, "certificate");
-        certificate = examine_coupling(*fem, fem->symmetric());
+        certificate             = examine_coupling(*fem, fem->symmetric());
         const std::string fault = certificate->fault();
         AssertThrow(fault.empty() || scheme() != CouplingScheme::exchange,
                     UserError("The coupling of section 'Coupling' is not sound: " + fault +
@@ -267,13 +266,13 @@ namespace PeriDeal
       /** Which nodes are in the zone, and the part of their bonds that cracks have cut. */
       void add_bond_fields(const Vector &u, std::vector<OutputField> &fields) const
       {
-                std::array<Vector, 1>                     zone{u}, cut{u}, volume{u};
+        std::array<Vector, 1>                     zone{u}, cut{u}, volume{u};
         std::vector<typename Coupling<dim>::Bond> bonds;
         for (unsigned int i = 0; i < node_set->n_owned(); ++i)
           {
-                        zone[0].local_element(i)   = fem->bonds().in_zone(i);
+            zone[0].local_element(i)   = fem->bonds().in_zone(i);
             volume[0].local_element(i) = node_set->volume(i);
-            cut[0].local_element(i)  = 0.;
+            cut[0].local_element(i)    = 0.;
             if (!fem->bonds().families().near_crack(i))
               continue;
             fem->bonds().bonds_of(i, bonds);
@@ -287,7 +286,7 @@ namespace PeriDeal
           }
         if (model == Model::coupled)
           fields.push_back(vector_field<1>("zone", zone));
-                fields.push_back(vector_field<1>("node_volume", volume));
+        fields.push_back(vector_field<1>("node_volume", volume));
         fields.push_back(vector_field<1>("cut_fraction", cut));
       }
 
@@ -312,12 +311,12 @@ namespace PeriDeal
             }
       }
 
-            const Scene<dim>                 &scene;
-      const Model                       model;
-      FE_Q<dim>                         element;
-      DoFHandler<dim>                   handler;
-      std::unique_ptr<Nodes<dim>>       node_set; // null for finite elements alone
-      std::unique_ptr<FEMOperator<dim>> fem;
+      const Scene<dim>                  &scene;
+      const Model                        model;
+      FE_Q<dim>                          element;
+      DoFHandler<dim>                    handler;
+      std::unique_ptr<Nodes<dim>>        node_set; // null for finite elements alone
+      std::unique_ptr<FEMOperator<dim>>  fem;
       std::optional<CouplingCertificate> certificate;
     };
   } // namespace
@@ -332,7 +331,13 @@ namespace PeriDeal
   }
 
 
-  template std::unique_ptr<ModelRun<1>> make_element_run(const Model, const Triangulation<1> &, const Scene<1> &);
-  template std::unique_ptr<ModelRun<2>> make_element_run(const Model, const Triangulation<2> &, const Scene<2> &);
-  template std::unique_ptr<ModelRun<3>> make_element_run(const Model, const Triangulation<3> &, const Scene<3> &);
+  template std::unique_ptr<ModelRun<1>> make_element_run(const Model,
+                                                         const Triangulation<1> &,
+                                                         const Scene<1> &);
+  template std::unique_ptr<ModelRun<2>> make_element_run(const Model,
+                                                         const Triangulation<2> &,
+                                                         const Scene<2> &);
+  template std::unique_ptr<ModelRun<3>> make_element_run(const Model,
+                                                         const Triangulation<3> &,
+                                                         const Scene<3> &);
 } // namespace PeriDeal

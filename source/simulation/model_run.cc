@@ -13,7 +13,7 @@ namespace PeriDeal
                                                 const Scene<dim>         &scene)
   {
     std::unique_ptr<ModelRun<dim>> run;
-            if (model == Model::peridynamics && scene.peridynamics.treatment != BoundaryTreatment::exchange)
+    if (model == Model::peridynamics && scene.peridynamics.treatment != BoundaryTreatment::exchange)
       run = make_bond_run(mesh, scene);
     else
       run = make_element_run(model, mesh, scene);

@@ -9,6 +9,8 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace PeriDeal
 {
@@ -22,6 +24,12 @@ namespace PeriDeal
   template <int dim>
   std::unique_ptr<ModelRun<dim>> make_bond_run(const dealii::Triangulation<dim> &mesh,
                                                const Scene<dim>                 &scene);
+
+
+  /** What was chosen for the bonds, for the report. */
+  template <int dim>
+  std::vector<std::pair<std::string, std::string>> bond_settings(const Scene<dim>    &scene,
+                                                                 const Families<dim> &families);
 
 
   inline std::string to_text(const double x)

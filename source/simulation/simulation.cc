@@ -157,13 +157,14 @@ namespace PeriDeal
       if (name == "operator form")
         progress.line("  form: " + value);
       else if (name == "calibration" && value.find("because") != std::string::npos)
-                progress.line("  calibration: " + value);
+        progress.line("  calibration: " + value);
     if (const CouplingCertificate *c = model.examined())
       {
         std::ostringstream text;
         text.precision(2);
-        text << "  coupling: " << 100. * c->zone_share << " % of the body; patch errors " << c->linear
-             << " (linear), " << c->quadratic << " (quadratic), " << c->cubic << " (cubic)";
+        text << "  coupling: " << 100. * c->zone_share << " % of the body; patch errors "
+             << c->linear << " (linear), " << c->quadratic << " (quadratic), " << c->cubic
+             << " (cubic)";
         progress.line(text.str());
       }
   }
@@ -395,7 +396,7 @@ namespace PeriDeal
   void Simulation<dim>::compare_models(const double t)
   {
     const ModelRun<dim> *fem = nullptr, *pd = nullptr;
-        for (const auto &model : models)
+    for (const auto &model : models)
       if (model->name() != to_string(Model::coupled))
         (model->name() == to_string(Model::finite_elements) ? fem : pd) = model.get();
     if (fem == nullptr || pd == nullptr)
@@ -425,7 +426,7 @@ namespace PeriDeal
         fields[0].components[0].update_ghost_values();
         for (OutputField &field : models[m]->derived_fields(models[m]->solution, t))
           fields.push_back(std::move(field));
-                if (models[m]->name() == to_string(Model::peridynamics) && difference.size() > 0)
+        if (models[m]->name() == to_string(Model::peridynamics) && difference.size() > 0)
           {
             fields.push_back({"peridynamics_minus_finite_elements", {difference}});
             fields.back().components[0].update_ghost_values();

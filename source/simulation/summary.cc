@@ -114,7 +114,7 @@ namespace PeriDeal
     }
 
 
-        json describe_certificate(const CouplingCertificate &c)
+    json describe_certificate(const CouplingCertificate &c)
     {
       json entry;
       entry["patch error"] = {{"linear", c.linear}, {"quadratic", c.quadratic}, {"cubic", c.cubic}};
@@ -123,7 +123,8 @@ namespace PeriDeal
       if (std::isfinite(c.lowest_remainder))
         entry["lowest eigenvalue of a cell"] = c.lowest_remainder;
       entry["share of the body"] = c.zone_share;
-      entry["full peridynamics"] = {{"bonds", c.n_bonds_of_full}, {"nonzeros", c.n_nonzeros_of_full}};
+      entry["full peridynamics"] = {{"bonds", c.n_bonds_of_full},
+                                    {"nonzeros", c.n_nonzeros_of_full}};
       return entry;
     }
 
@@ -171,7 +172,7 @@ namespace PeriDeal
       Utilities::System::get_memory_stats(stats);
       entry["peak memory"] =
         1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
-            if (const CouplingCertificate *certificate = model.examined())
+      if (const CouplingCertificate *certificate = model.examined())
         entry["certificate"] = describe_certificate(*certificate);
       if (record.errors.contains(model.name()))
         entry["errors"] = record.errors.at(model.name());

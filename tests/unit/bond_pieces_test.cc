@@ -28,7 +28,8 @@ namespace
               for (unsigned int a = 0; a < piece.change[c].size(); ++a)
                 {
                   sum += piece.change[c][a];
-                  change += piece.change[c][a] * (piece.cells[c][d] + static_cast<int>((a >> d) & 1));
+                  change +=
+                    piece.change[c][a] * (piece.cells[c][d] + static_cast<int>((a >> d) & 1));
                 }
               EXPECT_NEAR(change, piece.length * offset[d], 1e-14);
               EXPECT_NEAR(sum, 0., 1e-14);
@@ -71,12 +72,18 @@ TEST(Zone, distance_to_pieces)
   using dealii::Point;
   EXPECT_NEAR(distance_to_piece<2>({{0., 0.}, {1., 0.}}, {0.5, 0.25}), 0.25, 1e-15);
   EXPECT_NEAR(distance_to_piece<2>({{0., 0.}, {1., 0.}}, {4., 4.}), 5., 1e-15);
-  EXPECT_NEAR(distance_to_piece<2>({{1., 0.}, {1., 0.}}, {4., 4.}), 5., 1e-15); // a crack that starts as a point
+  EXPECT_NEAR(distance_to_piece<2>({{1., 0.}, {1., 0.}}, {4., 4.}),
+              5.,
+              1e-15); // a crack that starts as a point
   const std::vector<Point<3>> square{{0., 0., 0.}, {1., 0., 0.}, {1., 1., 0.}, {0., 1., 0.}};
   EXPECT_NEAR(distance_to_piece<3>(square, {0.5, 0.4, -0.3}), 0.3, 1e-15);
   EXPECT_NEAR(distance_to_piece<3>(square, {4., 0.5, 4.}), 5., 1e-15);
   // An L: the point above the missing quarter is nearest to its inner edges.
-  const std::vector<Point<3>> corner{
-    {0., 0., 0.}, {2., 0., 0.}, {2., 1., 0.}, {1., 1., 0.}, {1., 2., 0.}, {0., 2., 0.}};
+  const std::vector<Point<3>> corner{{0., 0., 0.},
+                                     {2., 0., 0.},
+                                     {2., 1., 0.},
+                                     {1., 1., 0.},
+                                     {1., 2., 0.},
+                                     {0., 2., 0.}};
   EXPECT_NEAR(distance_to_piece<3>(corner, {1.3, 1.5, 0.4}), 0.5, 1e-15);
 }

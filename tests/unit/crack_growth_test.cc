@@ -164,12 +164,13 @@ namespace PeriDeal
       for (const std::string zone : {"cracks: 1", "cracks: 0.4", "everywhere", "0.7 - x"})
         for (const std::string correction : {"none", "crack scaling"})
           expect_grown<2>(scheme + ", " + zone + ", " + correction,
-                          square + Settings{{"Coupling/Scheme", scheme},
-                                            {"Coupling/Zone", zone},
-                                            {"Coupling/Overlap", scheme == "exchange" ? "0" : "0.8"},
-                                            {"Boundary conditions/Dirichlet", "left: y"},
-                                            {"Boundary conditions/Convection", "top: 2, 1"},
-                                            {"Peridynamics/Surface correction", correction}},
+                          square +
+                            Settings{{"Coupling/Scheme", scheme},
+                                     {"Coupling/Zone", zone},
+                                     {"Coupling/Overlap", scheme == "exchange" ? "0" : "0.8"},
+                                     {"Boundary conditions/Dirichlet", "left: y"},
+                                     {"Boundary conditions/Convection", "top: 2, 1"},
+                                     {"Peridynamics/Surface correction", correction}},
                           growing,
                           at_end,
                           Model::coupled);

@@ -14,7 +14,7 @@ using namespace PeriDeal::OperatorTests;
 namespace
 {
   const std::map<std::string, std::string> zones{
-        {"block", "0.3 - max(abs(x - 0.5), abs(y - z - 0.25))"},
+    {"block", "0.3 - max(abs(x - 0.5), abs(y - z - 0.25))"},
     {"random", "sin(4375.85*x + 1234.5*y + 777.7*z + 2) + 0.2"},
     {"half", "0.55 - x"},
     {"all", "everywhere"}};
@@ -22,15 +22,15 @@ namespace
 
   /** A body with the values of a field on all of its sides, a source that belongs to it, and a zone. */
   template <int dim>
-    Settings patch(const std::string &field,
+  Settings patch(const std::string &field,
                  const std::string &source,
                  const std::string &zone,
                  const bool         hole = false)
   {
-    const std::string all = dim == 1 ? "left: F; right: F" :
-                            dim == 2 ? "left: F; right: F; bottom: F; top: F" :
-                                       "left: F; right: F; bottom: F; top: F; back: F; front: F";
-        std::string       sides = hole ? "hole: (" + field + "); " : "";
+    const std::string all   = dim == 1 ? "left: F; right: F" :
+                              dim == 2 ? "left: F; right: F; bottom: F; top: F" :
+                                         "left: F; right: F; bottom: F; top: F; back: F; front: F";
+    std::string       sides = hole ? "hole: (" + field + "); " : "";
     for (const char c : all)
       sides += c == 'F' ? "(" + field + ")" : std::string(1, c);
     return {{"Boundary conditions/Dirichlet", sides},
@@ -56,23 +56,22 @@ namespace
 
 
   template <int dim>
-    void check_linear(const Settings &shape, const std::vector<std::string> &ratios = {"2", "3", "2.4"})
+  void check_linear(const Settings                 &shape,
+                    const std::vector<std::string> &ratios = {"2", "3", "2.4"})
   {
     for (const auto &[name, zone] : zones)
       for (const std::string &m : ratios)
         {
-          const Problem<dim> problem(shape + patch<dim>("1 + 2*x + 3*y - 2.5*z",
-                                                        "0",
-                                                        zone,
-                                                        shape.back().second == "0.23") +
-                                       Settings{{"Peridynamics/Horizon ratio", m}},
-                                     Model::coupled);
+          const Problem<dim> problem(
+            shape + patch<dim>("1 + 2*x + 3*y - 2.5*z", "0", zone, shape.back().second == "0.23") +
+              Settings{{"Peridynamics/Horizon ratio", m}},
+            Model::coupled);
           EXPECT_GT(problem.fem->size().bonds, 0u);
           EXPECT_LT(patch_error(problem), 1e-13) << name << ", m = " << m;
           EXPECT_LT(examine_coupling(*problem.fem, true).asymmetry, 1e-14) << name << ", m = " << m;
           EXPECT_GT(problem.fem->lowest_remainder(), -1e-13) << name << ", m = " << m;
           Vector one = problem.values([](const dealii::Point<dim> &) { return 1.; }), image = one;
-                    problem.fem->multiply(image, one);
+          problem.fem->multiply(image, one);
           EXPECT_LT(image.linfty_norm() / problem.fem->diagonal().linfty_norm(), 1e-13) << name;
         }
   }
@@ -94,7 +93,7 @@ TEST(Exchange, linear_patch_1d)
 TEST(Exchange, linear_patch_2d)
 {
   check_linear<2>(cells("16, 16", "1, 1"));
-    check_linear<2>(cells("12, 18", "1, 0.5"), {"6", "7.5"}); // rectangles 1:3
+  check_linear<2>(cells("12, 18", "1, 0.5"), {"6", "7.5"}); // rectangles 1:3
 }
 
 
@@ -107,7 +106,7 @@ TEST(Exchange, linear_patch_3d)
 
 TEST(Exchange, linear_patch_around_holes)
 {
-    check_linear<2>(cells("16, 16", "1, 1") + Settings{{"Domain/Shape", "plate with hole"},
+  check_linear<2>(cells("16, 16", "1, 1") + Settings{{"Domain/Shape", "plate with hole"},
                                                      {"Domain/Hole center", "0.5, 0.5"},
                                                      {"Domain/Hole radius", "0.23"}});
 }
@@ -136,9 +135,9 @@ TEST(Exchange, agrees_with_the_reference)
                                Model::coupled);
       EXPECT_EQ(problem.fem->size().bonds, n_bonds) << m << ' ' << zone;
       // K itself: without its capacity, whose nodes on the sides are lighter.
-      
-      Vector                   x = problem.values(bumpy<2>), y = x;
-      double                   norm = 0.;
+
+      Vector x = problem.values(bumpy<2>), y = x;
+      double norm = 0.;
       for (unsigned int k = 0; k < 3000; ++k)
         {
           x /= x.l2_norm();
@@ -154,11 +153,11 @@ TEST(Exchange, agrees_with_the_reference)
 /** Bonds as a form of their own, or in the matrix: the same operator. */
 TEST(Exchange, both_forms_agree)
 {
-  const Settings shape = cells("14, 17", "1.4, 1.7") +
-                         Settings{{"Cracks/Segments", "0.3,0.4 ; 0.92,1.21"},
-                                  {"Cracks/Transmission", "0.3"},
-                                  {"Boundary conditions/Dirichlet", "left: x + y"},
-                                  {"Boundary conditions/Convection", "top: 3, 20"}};
+  const Settings shape =
+    cells("14, 17", "1.4, 1.7") + Settings{{"Cracks/Segments", "0.3,0.4 ; 0.92,1.21"},
+                                           {"Cracks/Transmission", "0.3"},
+                                           {"Boundary conditions/Dirichlet", "left: x + y"},
+                                           {"Boundary conditions/Convection", "top: 3, 20"}};
   for (const char *correction : {"none", "crack scaling"})
     {
       const Settings   all = shape + Settings{{"Peridynamics/Surface correction", correction}};
@@ -203,14 +202,15 @@ TEST(Exchange, layers_and_graded_materials)
   for (const char *ratio : {"10", "1000"})
     {
       const std::string r = ratio;
-      const Problem<2>  layers(cells("16, 16", "1, 1") +
-                                Settings{{"Material/Conductivity", "x < 0.5 ? 1 : " + r},
-                                          {"Boundary conditions/Dirichlet", "left: 0; right: 1"},
-                                          {"Initial and source/Initial value",
-                                           "(x < 0.5 ? " + r + " * x : x - 0.5 + " + r + " / 2) * 2 / (1 + " + r + ")"},
-                                          {"Time/Steady", "true"},
-                                          {"Coupling/Zone", "everywhere"}},
-                              Model::coupled);
+      const Problem<2>  layers(
+        cells("16, 16", "1, 1") +
+          Settings{{"Material/Conductivity", "x < 0.5 ? 1 : " + r},
+                   {"Boundary conditions/Dirichlet", "left: 0; right: 1"},
+                   {"Initial and source/Initial value",
+                     "(x < 0.5 ? " + r + " * x : x - 0.5 + " + r + " / 2) * 2 / (1 + " + r + ")"},
+                   {"Time/Steady", "true"},
+                   {"Coupling/Zone", "everywhere"}},
+        Model::coupled);
       EXPECT_LT(patch_error(layers), 1e-12) << ratio;
     }
   // Conductivity 1 + x, T = log(1 + x).
@@ -227,7 +227,9 @@ TEST(Exchange, layers_and_graded_materials)
       const double     error = patch_error(graded);
       std::cout << "graded " << n << ' ' << error << std::endl;
       if (last > 0.)
-        EXPECT_LT(error, last / 3.2);
+        {
+          EXPECT_LT(error, last / 3.2);
+        }
       last = error;
     }
 }
@@ -235,14 +237,15 @@ TEST(Exchange, layers_and_graded_materials)
 
 TEST(Couplings, splice_is_exact_for_quadratics)
 {
-  const Problem<2> problem(cells("20, 20", "1, 1") +
-                             patch<2>("x^2 + x*y - 2*y^2", "2", "0.22 - max(abs(x - 0.5), abs(y - 0.5))") +
-                             Settings{{"Coupling/Scheme", "splice"}},
-                           Model::coupled);
+  const Problem<2> problem(
+    cells("20, 20", "1, 1") +
+      patch<2>("x^2 + x*y - 2*y^2", "2", "0.22 - max(abs(x - 0.5), abs(y - 0.5))") +
+      Settings{{"Coupling/Scheme", "splice"}},
+    Model::coupled);
   EXPECT_LT(patch_error(problem), 1e-12);
   const CouplingCertificate found = examine_coupling(*problem.fem, false);
   EXPECT_LT(found.quadratic, 1e-12);
-    EXPECT_LT(found.cubic, 1e-12); // since families are symmetric
+  EXPECT_LT(found.cubic, 1e-12); // since families are symmetric
   EXPECT_GT(found.asymmetry, 1e-3);
 }
 
@@ -252,17 +255,18 @@ TEST(Couplings, blending_is_symmetric_but_not_exact)
   double last = 0.;
   for (const char *overlap : {"0", "1", "2"})
     {
-      const Problem<2>          problem(cells("40, 40", "1, 1") +
-                                 Settings{{"Coupling/Zone", "0.2 - max(abs(x - 0.5), abs(y - 0.5))"},
-                                                    {"Coupling/Scheme", "blending"},
-                                                    {"Coupling/Overlap", overlap}},
-                               Model::coupled);
+      const Problem<2> problem(
+        cells("40, 40", "1, 1") +
+          Settings{{"Coupling/Zone", "0.2 - max(abs(x - 0.5), abs(y - 0.5))"},
+                   {"Coupling/Scheme", "blending"},
+                   {"Coupling/Overlap", overlap}},
+        Model::coupled);
       const CouplingCertificate found = examine_coupling(*problem.fem, true);
       std::cout << "blending, overlap " << overlap << ": " << found.linear << std::endl;
       EXPECT_LT(found.asymmetry, 1e-14);
       EXPECT_GT(found.linear, 1e-5);
       EXPECT_LT(found.linear, 2e-2);
-            EXPECT_FALSE(found.fault().empty());
+      EXPECT_FALSE(found.fault().empty());
       EXPECT_NE(found.linear, last) << "the overlap has no effect";
       last = found.linear;
     }
@@ -273,7 +277,7 @@ TEST(Couplings, certificate_of_exchange)
 {
   const Problem<2>          problem(cells("24, 24", "1, 1") +
                              Settings{{"Cracks/Segments", "0.3,0.4 ; 0.7,0.55"},
-                                                {"Boundary conditions/Dirichlet", "left: 1"}},
+                                      {"Boundary conditions/Dirichlet", "left: 1"}},
                            Model::coupled);
   const CouplingCertificate found = examine_coupling(*problem.fem, true);
   EXPECT_EQ(found.fault(), "");
@@ -282,10 +286,13 @@ TEST(Couplings, certificate_of_exchange)
   EXPECT_GT(found.cubic, 1e-8);
   EXPECT_LT(found.asymmetry, 1e-14);
   EXPECT_GT(found.lowest_remainder, -1e-13);
-  EXPECT_NEAR(found.lowest_eigenvalue, 2. * std::pow(std::acos(-1.), 2), 0.1); // of the square held all around
+  EXPECT_NEAR(found.lowest_eigenvalue,
+              2. * std::pow(std::acos(-1.), 2),
+              0.1); // of the square held all around
   EXPECT_GT(found.zone_share, 0.1);
   EXPECT_LT(found.zone_share, 0.4);
-  const Problem<2> full(cells("24, 24", "1, 1") + Settings{{"Peridynamics/Boundary treatment", "none"}});
+  const Problem<2> full(cells("24, 24", "1, 1") +
+                        Settings{{"Peridynamics/Boundary treatment", "none"}});
   EXPECT_EQ(found.n_bonds_of_full, full.op().size().bonds);
 }
 
@@ -300,7 +307,8 @@ TEST(Exchange, higher_patches_converge)
           // A random zone has another pattern on another mesh.
           const Problem<2> quadratic(cells(n, "1, 1") + patch<2>("x^2 + x*y - 2*y^2", "2", zone),
                                      Model::coupled);
-          const Problem<2> cubic(cells(n, "1, 1") + patch<2>("x^3 - y^2*x + y^3", "-4*x - 6*y", zone),
+          const Problem<2> cubic(cells(n, "1, 1") +
+                                   patch<2>("x^3 - y^2*x + y^3", "-4*x - 6*y", zone),
                                  Model::coupled);
           const double     a = patch_error(quadratic), b = patch_error(cubic);
           std::cout << name << ' ' << n << ": " << a << ' ' << b << std::endl;

@@ -76,8 +76,8 @@ namespace PeriDeal
         if (model == Model::peridynamics && scene.domain.nodes == NodePlacement::cell_centers)
           handler.distribute_dofs(dealii::FE_DGQ<dim>(0));
         else
-                    handler.distribute_dofs(dealii::FE_Q<dim>(
-            model == Model::finite_elements ? scene.finite_elements.degree : 1));
+          handler.distribute_dofs(
+            dealii::FE_Q<dim>(model == Model::finite_elements ? scene.finite_elements.degree : 1));
         if (scene.domain.shape != Shape::mesh_file && handler.get_fe().degree <= 1)
           number_along_lattice(handler, scene.domain);
         if (model == Model::peridynamics)
@@ -88,7 +88,7 @@ namespace PeriDeal
                                                  scene.peridynamics.nodal_volume);
             bonds = std::make_unique<BondOperator<dim>>(*nodes, scene);
           }
-                else
+        else
           {
             std::unique_ptr<Coupling<dim>> coupling;
             if (model == Model::coupled)
@@ -99,7 +99,8 @@ namespace PeriDeal
                                                      NodalVolume::partial);
                 coupling = make_coupling(*nodes,
                                          scene,
-                                         Zone<dim>(scene.coupling, scene.horizon()), scene.coupling.scheme);
+                                         Zone<dim>(scene.coupling, scene.horizon()),
+                                         scene.coupling.scheme);
               }
             fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling));
           }

@@ -32,7 +32,7 @@ namespace PeriDeal
                       VectorField<dim>          &two_sided,
                       VectorField<dim>          &one_sided);
 
-    /**
+  /**
    * The same where bonds stand beside finite elements: with all conductances of a node's row of K in the place of w V_i V_j k_ij. -kappa grad T for a linear field inside the
    * body and on its straight sides.
    */

@@ -23,8 +23,9 @@ namespace PeriDeal
     using Site    = std::array<int, dim>;
     using Corners = std::array<double, dealii::GeometryInfo<dim>::vertices_per_cell>;
 
-    double              length; // part of the bond, all pieces add up to 1
-    std::vector<Site>   cells;  // that share the piece: one, or those around a face or an edge; lowest corner relative to the bond's start
+    double length; // part of the bond, all pieces add up to 1
+    std::vector<Site>
+                         cells; // that share the piece: one, or those around a face or an edge; lowest corner relative to the bond's start
     std::vector<Corners> change; // of the shape functions along the piece, for each of the cells
   };
 

@@ -45,9 +45,7 @@ namespace PeriDeal
     };
 
     /** Adds the halo to the nodes. Collective. Throws UserError for empty families and isolated nodes. */
-    Families(Nodes<dim>      &nodes,
-             const Scene<dim> &scene,
-             const HaloAround  halo = HaloAround::nodes);
+    Families(Nodes<dim> &nodes, const Scene<dim> &scene, const HaloAround halo = HaloAround::nodes);
     ~Families();
 
     /** The family of an owned node, in its fixed order. @p bonds is overwritten, its memory is reused. */
@@ -123,7 +121,7 @@ namespace PeriDeal
     /** When the cracks or their transmission change. */
     const CrackHistory<dim> &crack_history() const;
 
-        /** The representative time of the cracks as they are now. */
+    /** The representative time of the cracks as they are now. */
     double cracks_now() const;
 
     /** What the cracks leave of a bond's conductance, and whether it crosses any. */
@@ -164,7 +162,7 @@ namespace PeriDeal
                                               const std::vector<FamilyMember<dim>> &offsets,
                                               std::vector<Bond>                    &bonds) const;
     void   bonds_off_lattice(const unsigned int node, std::vector<Bond> &bonds) const;
-        double node_factor(const unsigned int node, const unsigned int direction) const;
+    double node_factor(const unsigned int node, const unsigned int direction) const;
     double bond_factor(const unsigned int node, const unsigned int neighbor) const;
     template <typename Test>
     void test_crossings(const unsigned int        node,

@@ -7,7 +7,7 @@
 
 namespace PeriDeal
 {
-    /** What a process needs the neighbourhood of: its nodes, for their bonds; or its cells and ghost cells, for all bonds that pass through its cells, and all nodes on the way. */
+  /** What a process needs the neighbourhood of: its nodes, for their bonds; or its cells and ghost cells, for all bonds that pass through its cells, and all nodes on the way. */
   enum class HaloAround
   {
     nodes,
@@ -21,5 +21,5 @@ namespace PeriDeal
    * nodes that lie within @p reach of a box. The halo may hold a few nodes that no bond needs. Collective.
    */
   template <int dim>
-    void add_halo(Nodes<dim> &nodes, const double reach, const HaloAround around = HaloAround::nodes);
+  void add_halo(Nodes<dim> &nodes, const double reach, const HaloAround around = HaloAround::nodes);
 } // namespace PeriDeal

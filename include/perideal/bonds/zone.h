@@ -6,8 +6,8 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/base/point.h>
 
-#include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/coupling_control.h>
+#include <perideal/scene/crack_geometry.h>
 
 #include <vector>
 
@@ -32,13 +32,13 @@ namespace PeriDeal
 
     bool contains(const dealii::Point<dim> &p) const;
 
-        /**
+    /**
      * How far outside the zone a point lies, at most @p farthest. The distance to the zone of a formula is that in the nearest of a number of
      * directions (24 in 2D, 64 in 3D).
      */
     double distance(const dealii::Point<dim> &p, const double farthest) const;
 
-        bool is_everywhere() const;
+    bool is_everywhere() const;
 
     /** The zone changes with the cracks. */
     bool follows_cracks() const;
@@ -46,19 +46,20 @@ namespace PeriDeal
     /** Distance from a crack that is still in the zone. */
     double width() const;
 
-    private:
+  private:
     double distance_to_formula(const dealii::Point<dim> &p, const double farthest) const;
 
-    ZoneKind                     kind =  ZoneKind::everywhere;
-    double                       reach = 0.;
-    Expression                   formula;
-    std::vector<dealii::Tensor<1, dim>> directions; // to look for the zone of a formula
-    std::vector<CrackPiece<dim>> cracks;
+    ZoneKind                              kind  = ZoneKind::everywhere;
+    double                                reach = 0.;
+    Expression                            formula;
+    std::vector<dealii::Tensor<1, dim>>   directions; // to look for the zone of a formula
+    std::vector<CrackPiece<dim>>          cracks;
     std::vector<dealii::BoundingBox<dim>> boxes; // around each piece
   };
 
 
   /** Distance of a point to a segment (2D) or to a planar polygon (3D), given by its corners. */
   template <int dim>
-  double distance_to_piece(const std::vector<dealii::Point<dim>> &corners, const dealii::Point<dim> &p);
+  double distance_to_piece(const std::vector<dealii::Point<dim>> &corners,
+                           const dealii::Point<dim>              &p);
 } // namespace PeriDeal

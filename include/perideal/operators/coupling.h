@@ -44,7 +44,7 @@ namespace PeriDeal
      */
     virtual bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const = 0;
 
-            /** Last change of a cell's matrix, after cracks have cut it. */
+    /** Last change of a cell's matrix, after cracks have cut it. */
     virtual void finish_cell(const Cell &, dealii::FullMatrix<double> &) const {}
 
     /** Whether change_cell() leaves nothing at all of a cell, now and whatever cracks do. */
@@ -88,18 +88,18 @@ namespace PeriDeal
 
     virtual const Families<dim> &families() const = 0;
 
-        virtual std::size_t memory_consumption() const = 0;
+    virtual std::size_t memory_consumption() const = 0;
   };
 
 
-    /** Throws the UserError of a zone that has no node on any process. Collective. */
+  /** Throws the UserError of a zone that has no node on any process. Collective. */
   void throw_if_zone_empty(const double n_nodes, const MPI_Comm communicator);
 
 
   /** The coupling of a scheme. Adds the halo to the nodes. Collective. Throws UserError. */
   template <int dim>
-  std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>       &nodes,
-                                                                                              const Scene<dim> &scene,
-                                               const Zone<dim>  &zone,
+  std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>          &nodes,
+                                               const Scene<dim>    &scene,
+                                               const Zone<dim>     &zone,
                                                const CouplingScheme scheme);
 } // namespace PeriDeal

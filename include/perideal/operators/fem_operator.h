@@ -42,7 +42,7 @@ namespace PeriDeal
     void          initialize_vector(Vector &vector) const override;
     void          apply(Vector &y, const Vector &x) const override;
     void          residual(Vector &r, const Vector &u, const double t) const override;
-    void apply_then(Vector &y, const Vector &x, const RowsAction &finish) const override;
+    void          apply_then(Vector &y, const Vector &x, const RowsAction &finish) const override;
     void          distribute(Vector &u, const double t) const override;
     void          distribute_homogeneous(Vector &x) const override;
     void          clear_constrained(Vector &y) const override;
@@ -72,10 +72,11 @@ namespace PeriDeal
     /** Only in the model `coupled`. */
     const Coupling<dim> &bonds() const;
 
-        /** K of the body without its cracks, with the bonds of the zone as it is now (or without any), constraints left out. Collective. */
-    void assemble_intact(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool with_bonds) const;
+    /** K of the body without its cracks, with the bonds of the zone as it is now (or without any), constraints left out. Collective. */
+    void assemble_intact(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                         const bool                              with_bonds) const;
 
-        /**
+    /**
      * Call visit(owned unknown, other unknown, conductance) for all pairs between which bonds or cells conduct, by local numbers: the entries off the diagonal of K,
      * with the sign changed. A pair may come in several parts, and at both of its ends. Only with a coupling.
      */
@@ -115,24 +116,27 @@ namespace PeriDeal
       std::vector<double>       values;
     };
 
-    void   find_prescribed();
-    void   find_diagonal();
-    void   extract_remainder();
-    void   add_remainder(Vector &y, const Vector &x, const unsigned int begin, const unsigned int end) const;
-    void   multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const;
-    void   set_form_factors();
-    void   assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
-    void   add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
+    void     find_prescribed();
+    void     find_diagonal();
+    void     extract_remainder();
+    void     add_remainder(Vector            &y,
+                           const Vector      &x,
+                           const unsigned int begin,
+                           const unsigned int end) const;
+    void     multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const;
+    void     set_form_factors();
+    void     assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
+    void     add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
     BondRows bond_rows(const std::vector<unsigned int> &nodes) const;
-    void   add_bonds(const std::vector<unsigned int> &nodes, const BondRows &rows);
-    void   change_bonds(const std::vector<unsigned int> &nodes, const BondRows &old, Vector &touched);
-        void   change_form(const std::vector<unsigned int> &nodes, Vector &touched);
-    void   mark_broken_bonds(Vector &marked) const;
-    void   add_bond_traces(const Vector &marked, Vector &trace) const;
-    void   add_bond_heat(const Vector &u, Balance &balance) const;
-    void   count_bonds() const;
-    void   find_cut_cells();
-    bool   is_cut(const Cell &cell) const;
+    void     add_bonds(const std::vector<unsigned int> &nodes, const BondRows &rows);
+    void change_bonds(const std::vector<unsigned int> &nodes, const BondRows &old, Vector &touched);
+    void change_form(const std::vector<unsigned int> &nodes, Vector &touched);
+    void mark_broken_bonds(Vector &marked) const;
+    void add_bond_traces(const Vector &marked, Vector &trace) const;
+    void add_bond_heat(const Vector &u, Balance &balance) const;
+    void count_bonds() const;
+    void find_cut_cells();
+    bool is_cut(const Cell &cell) const;
     double kept_fraction(const Cell                                &cell,
                          const unsigned int                         a,
                          const unsigned int                         b,
@@ -146,25 +150,25 @@ namespace PeriDeal
     void   find_temperatures(CellData &data) const;
     double center_conductivity(const Cell &cell) const;
     double heat_of(const Vector &u) const;
-    bool   assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
-    void   assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
-            void          raise_bounds(const Vector &touched);
+    bool assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
+    void assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
+    void raise_bounds(const Vector &touched);
     std::vector<Cell> cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
                                  const std::vector<dealii::BoundingBox<dim>> &joins);
-    void   keep_unseparated_pairs(const Cell &cell, CellData &data) const;
-    void   assemble_loads(Vector &loads, const double t) const;
-    void   add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
-    void   find_crack_factors(CellData &data);
-    void   find_gershgorin();
-        void   mask(Vector &y, const double value = 0.) const;
-    void   mask(Vector            &y,
-                const double       value,
-                const unsigned int begin,
-                const unsigned int end) const;
+    void              keep_unseparated_pairs(const Cell &cell, CellData &data) const;
+    void              assemble_loads(Vector &loads, const double t) const;
+    void add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
+    void find_crack_factors(CellData &data);
+    void find_gershgorin();
+    void mask(Vector &y, const double value = 0.) const;
+    void mask(Vector            &y,
+              const double       value,
+              const unsigned int begin,
+              const unsigned int end) const;
 
     const dealii::DoFHandler<dim>         &dofs;
     const Scene<dim>                      &scene;
-        std::unique_ptr<Coupling<dim>>         coupling; // null: finite elements alone
+    std::unique_ptr<Coupling<dim>>         coupling; // null: finite elements alone
     const CrackHistory<dim>                history;
     double                                 cracks_of; // representative time of the cracks in K
     std::vector<CrackGeometry<dim>>        cracks;
@@ -172,21 +176,21 @@ namespace PeriDeal
     dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
     Vector                                 capacity, stiffness_diagonal, constant_loads;
     mutable Vector                         scratch;
-    Vector temperatures; // that K and C are those of, with ghosts; empty: initial values
-    bool                       bonds_apart = false; // in the form; else in the matrix
-    std::unique_ptr<BondForm>  form;
-    RemainderRows              remainder;
-    std::vector<double>        bond_sums; // of each owned node, from the form
-    mutable unsigned long long n_bonds = 0;
-    mutable bool               recount_bonds = true;
-    std::shared_ptr<CellData> cell_data; // memory of the cell loops
-        std::vector<Prescribed>   prescribed; // in the order of unknowns
-    std::vector<bool>         cut; // by active cell index
-    Vector                    crack_factors;
-    bool                      loads_vary = false, any_prescribed = false;
-    double                    gershgorin = 0.;
-        mutable Spectrum          bounds;
-    mutable Vector            noise_values; // of noise()
+    Vector temperatures;        // that K and C are those of, with ghosts; empty: initial values
+    bool   bonds_apart = false; // in the form; else in the matrix
+    std::unique_ptr<BondForm>        form;
+    RemainderRows                    remainder;
+    std::vector<double>              bond_sums; // of each owned node, from the form
+    mutable unsigned long long       n_bonds       = 0;
+    mutable bool                     recount_bonds = true;
+    std::shared_ptr<CellData>        cell_data;  // memory of the cell loops
+    std::vector<Prescribed>          prescribed; // in the order of unknowns
+    std::vector<bool>                cut;        // by active cell index
+    Vector                           crack_factors;
+    bool                             loads_vary = false, any_prescribed = false;
+    double                           gershgorin = 0.;
+    mutable Spectrum                 bounds;
+    mutable Vector                   noise_values; // of noise()
     std::unique_ptr<CellSearch<dim>> search;       // made for the first event
     mutable bool pairs_stiffer = false; // some cut cell's pairs conduct more than the cell
   };

@@ -45,12 +45,12 @@ namespace PeriDeal
     void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
     void possible_neighbors_of(const unsigned int         node,
                                std::vector<unsigned int> &neighbors) const override;
-        bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
+    bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
     bool leaves_nothing(const Cell &cell) const override;
-        bool has_form() const override;
-    std::unique_ptr<BondForm> make_form() override;
-    void                      set_form_factors(std::vector<double> factors) override;
-    bool                      symmetric() const override;
+    bool has_form() const override;
+    std::unique_ptr<BondForm>             make_form() override;
+    void                                  set_form_factors(std::vector<double> factors) override;
+    bool                                  symmetric() const override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
     void                                  set_cracks_of(const double time) override;
     double                                zone_share() const override;
@@ -62,13 +62,13 @@ namespace PeriDeal
   private:
     using Site = typename Lattice<dim>::Index;
 
-        /** What the lattice has at a site and in the cell whose lowest corner that is. */
+    /** What the lattice has at a site and in the cell whose lowest corner that is. */
     struct SiteData
     {
       unsigned int node    = dealii::numbers::invalid_unsigned_int;
       bool         in_zone = false, may_join = false; // now; at the end of the run
-      bool         cell    = false;                   // the body has that cell, and it has lattice size
-      double       volume  = 0.;
+      bool         cell   = false; // the body has that cell, and it has lattice size
+      double       volume = 0.;
       double       lowest = 0., highest = 0.; // conductivity in the cell
     };
 
@@ -84,12 +84,12 @@ namespace PeriDeal
     struct Passage
     {
       unsigned int                     offset, piece;
-      Site                             start; // of the bond, relative to the cell's lowest corner
+      Site                             start;  // of the bond, relative to the cell's lowest corner
       typename BondPiece<dim>::Corners change; // over the square root of the length
     };
 
     void            find_offsets();
-    void            find_sites(const Scene<dim> &scene, const std::vector<bool> &constrained);
+    void            find_sites(const std::vector<bool> &constrained);
     void            find_cells(const Scene<dim> &scene);
     void            find_full_matrix();
     const SiteData *at(const Site &site) const;
@@ -97,17 +97,17 @@ namespace PeriDeal
     Site            site_of(const unsigned int node) const;
     double          conductivity_on(const Offset &offset, const Site &start) const;
 
-    Families<dim>                 bonds;
-    Zone<dim>                     zone;
-    double                        last; // time of the run
-    OperatorForm                  form  = OperatorForm::automatic;
-    bool                          plain      = true; // no void, one conductivity, one cell size
-    bool                          calibrated = true; // A is the unit matrix
-    Site                          corner{}, extent{};
-    std::vector<SiteData>         sites;
-    std::vector<Offset>           offsets;
-    std::vector<Passage>          passages;
-    dealii::FullMatrix<double>    surplus; // M - Q[A], for unit conductivity
-    Site                          reach{};
+    Families<dim>              bonds;
+    Zone<dim>                  zone;
+    double                     last; // time of the run
+    OperatorForm               form       = OperatorForm::automatic;
+    bool                       plain      = true; // no void, one conductivity, one cell size
+    bool                       calibrated = true; // A is the unit matrix
+    Site                       corner{}, extent{};
+    std::vector<SiteData>      sites;
+    std::vector<Offset>        offsets;
+    std::vector<Passage>       passages;
+    dealii::FullMatrix<double> surplus; // M - Q[A], for unit conductivity
+    Site                       reach{};
   };
 } // namespace PeriDeal

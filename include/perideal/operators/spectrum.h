@@ -15,7 +15,7 @@ namespace PeriDeal
    * the number of processes, and never above the Gershgorin bound. The start vector is made from positions by @p fill. Iterations end early once the
    * bound has come down to @p enough. Collective.
    */
-    double sharp_bound(const Operator                            &op,
+  double sharp_bound(const Operator                            &op,
                      const double                               gershgorin,
                      const std::function<void(Vector &vector)> &fill,
                      const double                               enough = 0.);

@@ -46,7 +46,7 @@ namespace PeriDeal
 
     Families<dim>       bonds;
     Zone<dim>           zone;
-    double              overlap; // a length
+    double              overlap;                 // a length
     std::vector<double> weights, weights_at_end; // of nodes
   };
 

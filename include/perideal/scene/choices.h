@@ -43,7 +43,7 @@ namespace PeriDeal
     full
   };
 
-    enum class BoundaryTreatment
+  enum class BoundaryTreatment
   {
     automatic,
     exchange,

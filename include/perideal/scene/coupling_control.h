@@ -32,10 +32,10 @@ namespace PeriDeal
   public:
     CouplingControl();
 
-    CouplingScheme scheme  = CouplingScheme::exchange;
-    ZoneKind       zone    = ZoneKind::near_cracks;
-    double         width   = 1.; // of the zone on each side of a crack, in horizons
-    Expression     formula;      // in the zone where greater than 0
+    CouplingScheme scheme = CouplingScheme::exchange;
+    ZoneKind       zone   = ZoneKind::near_cracks;
+    double         width  = 1.;      // of the zone on each side of a crack, in horizons
+    Expression     formula;          // in the zone where greater than 0
     double         overlap     = 0.; // in horizons
     bool           certificate = true;
 

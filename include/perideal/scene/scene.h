@@ -21,7 +21,7 @@ namespace PeriDeal
 {
   enum class Model
   {
-        finite_elements,
+    finite_elements,
     peridynamics,
     coupled
   };
@@ -68,7 +68,7 @@ namespace PeriDeal
     BoundaryConditions<dim> boundary_conditions;
     Cracks<dim>             cracks;
     Peridynamics            peridynamics;
-        CouplingControl         coupling;
+    CouplingControl         coupling;
     FiniteElements          finite_elements;
     TimeControl             time;
     SolverControlParameters solver;
@@ -91,7 +91,7 @@ namespace PeriDeal
     /** All sections in the order of a scene file. */
     std::vector<SceneSection *> sections();
 
-        /** Parse all sections and check them one by one and against each other. Throws UserError. */
+    /** Parse all sections and check them one by one and against each other. Throws UserError. */
     void parse_and_validate();
 
   private:

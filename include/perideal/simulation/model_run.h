@@ -68,7 +68,7 @@ namespace PeriDeal
       return {};
     }
 
-        /** What is known of a coupling, or nullptr. */
+    /** What is known of a coupling, or nullptr. */
     virtual const CouplingCertificate *examined() const
     {
       return nullptr;
