@@ -84,6 +84,22 @@ def size_rows(run, words):
     return rows
 
 
+def certificate_rows(run):
+    """What is known of the coupling of a coupled model."""
+    rows = []
+    for title, path in (("Share of the body in the zone", ("share of the body",)),
+                        ("Patch error, linear field", ("patch error", "linear")),
+                        ("Patch error, quadratic field", ("patch error", "quadratic")),
+                        ("Patch error, cubic field", ("patch error", "cubic")),
+                        ("Asymmetry of the matrix", ("asymmetry",)),
+                        ("Lowest eigenvalue", ("lowest eigenvalue",)),
+                        ("Lowest eigenvalue of a cell", ("lowest eigenvalue of a cell",)),
+                        ("Bonds of full peridynamics", ("full peridynamics", "bonds")),
+                        ("Nonzeros of full peridynamics", ("full peridynamics", "nonzeros"))):
+        rows += model_rows(run, title, entry("certificate", *path))
+    return rows
+
+
 def cost_rows(run):
     """Wall times and memory."""
     cost, phases = [], []
@@ -134,7 +150,7 @@ def error_rows(run, words):
 def cost_table(run, words):
     """Cost and error of each model."""
     groups = (("Size and method", size_rows(run, words)), ("Cost", cost_rows(run)),
-              ("Error", error_rows(run, words)))
+              ("Error", error_rows(run, words)), ("Coupling", certificate_rows(run)))
     listed = []
     for title, part in groups:
         if part:

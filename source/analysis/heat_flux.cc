@@ -44,6 +44,33 @@ namespace PeriDeal
 
 
   template <int dim>
+  void coupled_heat_flux(const FEMOperator<dim> &op,
+                         const Vector           &u,
+                         VectorField<dim>       &two_sided,
+                         VectorField<dim>       &one_sided)
+  {
+    const Nodes<dim> &nodes = op.bonds().families().nodes();
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        two_sided[d] = 0.;
+        one_sided[d] = 0.;
+      }
+    op.visit_conductances(
+      [&](const unsigned int i, const unsigned int j, const double conductance) {
+        const double         difference = u.local_element(j) - u.local_element(i);
+        const Tensor<1, dim> q =
+          conductance / nodes.volume(i) * difference * (nodes.position(j) - nodes.position(i));
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            two_sided[d].local_element(i) -= 0.5 * q[d];
+            if (difference > 0.)
+              one_sided[d].local_element(i) -= q[d];
+          }
+      });
+  }
+
+
+  template <int dim>
   void cut_fraction(const Families<dim> &families, Vector &fraction)
   {
     const Nodes<dim>                         &nodes = families.nodes();
@@ -117,6 +144,10 @@ namespace PeriDeal
                                     const std::vector<double> &,  \
                                     VectorField<dim> &,           \
                                     VectorField<dim> &);          \
+  template void coupled_heat_flux<dim>(const FEMOperator<dim> &,  \
+                                       const Vector &,            \
+                                       VectorField<dim> &,        \
+                                       VectorField<dim> &);       \
   template void cut_fraction(const Families<dim> &, Vector &);    \
   template void element_heat_flux<dim>(const DoFHandler<dim> &,   \
                                        const Material &,          \

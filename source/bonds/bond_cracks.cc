@@ -177,6 +177,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  double Families<dim>::cracks_now() const
+  {
+    return cracks_of;
+  }
+
+
+  template <int dim>
   const CrackHistory<dim> &Families<dim>::crack_history() const
   {
     return history;
@@ -189,6 +196,7 @@ namespace PeriDeal
   template void                          Families<dim>::crossed_cracks(const unsigned int,                                 \
                                               const unsigned int,                                 \
                                               std::vector<std::pair<unsigned int, int>> &) const; \
+  template double                        Families<dim>::cracks_now() const;                                                \
   template std::vector<BoundingBox<dim>> Families<dim>::set_cracks_of(const double);                                       \
   template std::vector<unsigned int>     Families<dim>::nodes_near(                                                        \
     const std::vector<BoundingBox<dim>> &,                                                                             \

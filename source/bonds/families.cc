@@ -5,7 +5,6 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/bonds/families.h>
-#include <perideal/bonds/halo.h>
 #include <perideal/laws/crack_conductance.h>
 #include <perideal/laws/interface.h>
 
@@ -19,7 +18,7 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  Families<dim>::Families(Nodes<dim> &nodes, const Scene<dim> &scene)
+  Families<dim>::Families(Nodes<dim> &nodes, const Scene<dim> &scene, const HaloAround halo)
     : own_nodes(&nodes)
     , material(scene.material)
     , parameters(scene.peridynamics)
@@ -37,7 +36,7 @@ namespace PeriDeal
     const double layer = parameters.flux_treatment == FluxTreatment::layer_extrapolation ?
                            delta + 0.5 * nodes.smallest_spacing() :
                            0.;
-    add_halo(nodes, std::max(farthest, layer));
+    add_halo(nodes, std::max(farthest, layer), halo);
     typename Lattice<dim>::Index reach_in_sites{};
     for (const FamilyMember<dim> &member : members)
       for (unsigned int d = 0; d < dim; ++d)
@@ -46,11 +45,13 @@ namespace PeriDeal
       on_lattice || scene.boundary_conditions.symmetry.empty(),
       UserError(
         "'Symmetry' in section 'Boundary conditions' needs the lattice of a box without doubled nodes."));
-    outside = make_fictitious_nodes(nodes,
-                                    scene.boundary_conditions,
-                                    parameters.treatment,
-                                    parameters.nodal_volume,
-                                    reach_in_sites);
+    // Beside finite elements a symmetry side is an insulated one, and that exactly.
+    if (halo == HaloAround::nodes)
+      outside = make_fictitious_nodes(nodes,
+                                      scene.boundary_conditions,
+                                      parameters.treatment,
+                                      parameters.nodal_volume,
+                                      reach_in_sites);
     AssertThrow(
       on_lattice || outside.empty(),
       UserError(

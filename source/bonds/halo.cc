@@ -46,18 +46,44 @@ namespace PeriDeal
     };
 
 
-    /** Boxes around consecutive owned nodes, as numbers for gathering. */
     template <int dim>
-    std::vector<double> own_boxes(const Nodes<dim> &nodes)
+    std::vector<Point<dim>> own_positions(const Nodes<dim> &nodes)
+    {
+      std::vector<Point<dim>> positions(nodes.n_owned());
+      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        positions[i] = nodes.position(i);
+      return positions;
+    }
+
+
+    /** Corners of the cells that this process knows; @p margin the diagonal of the smallest of them, twice. */
+    template <int dim>
+    std::vector<Point<dim>> cell_corners(const Nodes<dim> &nodes, double &margin)
+    {
+      std::vector<Point<dim>> corners;
+      for (const auto &cell : nodes.dof_handler().active_cell_iterators())
+        if (!cell->is_artificial())
+          {
+            for (const unsigned int v : cell->vertex_indices())
+              corners.push_back(cell->vertex(v));
+            margin = margin == 0. ? 2. * cell->diameter() : std::min(margin, 2. * cell->diameter());
+          }
+      return corners;
+    }
+
+
+    /** Boxes around consecutive points, as numbers for gathering. */
+    template <int dim>
+    std::vector<double> boxes_around(const std::vector<Point<dim>> &points)
     {
       std::vector<double> numbers;
-      const std::size_t   n = nodes.n_owned();
+      const std::size_t   n = points.size();
       for (unsigned int b = 0; b < n_boxes_per_process && n > 0; ++b)
         {
           Box<dim> box;
           for (std::size_t i = n * b / n_boxes_per_process; i < n * (b + 1) / n_boxes_per_process;
                ++i)
-            box.include(nodes.position(i));
+            box.include(points[i]);
           if (!box.empty)
             for (unsigned int d = 0; d < dim; ++d)
               numbers.insert(numbers.end(), {box.low[d], box.high[d]});
@@ -109,15 +135,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  void add_halo(Nodes<dim> &nodes, const double reach)
+  void add_halo(Nodes<dim> &nodes, const double reach, const HaloAround around)
   {
     const MPI_Comm               communicator = nodes.communicator();
     const unsigned int           me           = Utilities::MPI::this_mpi_process(communicator);
     std::vector<NodeRecord<dim>> ghosts;
     if (Utilities::MPI::n_mpi_processes(communicator) > 1)
       {
-        const double limit = std::pow(reach * (1. + 1e-6), 2);
-        const auto   boxes = Utilities::MPI::all_gather(communicator, own_boxes(nodes));
+        double     margin  = 0.;
+        const auto boxes   = Utilities::MPI::all_gather(communicator,
+                                                      boxes_around(around == HaloAround::nodes ?
+                                                                     own_positions(nodes) :
+                                                                     cell_corners(nodes, margin)));
+        margin             = Utilities::MPI::max(margin, communicator);
+        const double limit = std::pow((reach + margin) * (1. + 1e-6), 2);
         std::map<unsigned int, std::vector<double>> to_send;
         for (unsigned int rank = 0; rank < boxes.size(); ++rank)
           {
@@ -139,7 +170,7 @@ namespace PeriDeal
   }
 
 
-  template void add_halo(Nodes<1> &, const double);
-  template void add_halo(Nodes<2> &, const double);
-  template void add_halo(Nodes<3> &, const double);
+  template void add_halo(Nodes<1> &, const double, const HaloAround);
+  template void add_halo(Nodes<2> &, const double, const HaloAround);
+  template void add_halo(Nodes<3> &, const double, const HaloAround);
 } // namespace PeriDeal

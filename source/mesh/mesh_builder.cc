@@ -74,20 +74,6 @@ namespace PeriDeal
     }
 
 
-    template <int dim>
-    bool in_hole(const Domain<dim> &domain, const Point<dim> &p)
-    {
-      Tensor<1, dim> r = p - domain.hole_center;
-      if (dim == 3) // the hole of a thick plate is a bore along z
-        r[dim - 1] = 0.;
-      if (domain.hole_shape == HoleShape::circle)
-        return r.norm() < domain.hole_radius;
-      const double angle = domain.hole_angle * std::acos(-1.) / 180., y = dim > 1 ? r[dim > 1] : 0.;
-      const double along  = std::cos(angle) * r[0] + std::sin(angle) * y,
-                   across = -std::sin(angle) * r[0] + std::cos(angle) * y;
-      return std::max(std::abs(along), std::abs(across)) < domain.hole_radius;
-    }
-
 
     /** Halvings that all cell counts allow, at most those that leave at least one coarse cell. */
     template <int dim>
@@ -260,7 +246,7 @@ namespace PeriDeal
     else if (domain.shape == Shape::plate_with_hole)
       {
         coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {
-          return !in_hole(domain, p);
+          return !domain.in_hole(p);
         });
         AssertThrow(
           !coarse.cells.empty(),

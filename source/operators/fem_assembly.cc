@@ -13,6 +13,7 @@
 #include <perideal/operators/fem_operator.h>
 
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 
 #include "fem_cell_data.h"
@@ -138,13 +139,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::assemble_cell(const Cell &cell, CellData &data) const
+  bool FEMOperator<dim>::assemble_whole_cell(const Cell &cell,
+                                             CellData   &data,
+                                             const bool  with_bonds) const
   {
     data.values.reinit(cell);
     find_temperatures(data);
     data.stiffness       = 0.;
     data.mass            = 0.;
-    data.convection      = 0.;
     const unsigned int n = data.indices.size();
     for (const unsigned int q : data.values.quadrature_point_indices())
       {
@@ -161,6 +163,18 @@ namespace PeriDeal
                 storage * data.values.shape_value(i, q) * data.values.shape_value(j, q);
             }
       }
+    return coupling && with_bonds && coupling->change_cell(cell, data.stiffness);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::assemble_cell(const Cell &cell,
+                                       CellData   &data,
+                                       const bool  with_bonds) const
+  {
+    assemble_whole_cell(cell, data, with_bonds);
+    data.convection      = 0.;
+    const unsigned int n = data.indices.size();
     if (cut[cell->active_cell_index()])
       {
         if (scene.cracks.mesh == CrackMesh::removed)
@@ -168,6 +182,8 @@ namespace PeriDeal
         else
           keep_unseparated_pairs(cell, data);
       }
+    if (coupling && with_bonds)
+      coupling->finish_cell(cell, data.stiffness);
     for (const unsigned int f : cell->face_indices())
       if (cell->face(f)->at_boundary())
         if (const auto *condition =
@@ -205,6 +221,8 @@ namespace PeriDeal
             marked(i) = 1.;
         }
     marked.compress(VectorOperation::max);
+    if (coupling)
+      mark_broken_bonds(marked);
     marked.update_ghost_values();
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -227,6 +245,8 @@ namespace PeriDeal
         }
     trace.compress(VectorOperation::add);
     expected.compress(VectorOperation::add);
+    if (coupling)
+      add_bond_traces(marked, trace);
     initialize_vector(crack_factors);
     for (unsigned int i = 0; i < crack_factors.locally_owned_size(); ++i)
       crack_factors.local_element(i) =
@@ -256,10 +276,13 @@ namespace PeriDeal
     IndexSet        relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
-    DoFTools::make_sparsity_pattern(dofs, pattern);
+    if (!bonds_apart)
+      DoFTools::make_sparsity_pattern(dofs, pattern);
+    if (coupling)
+      add_bond_pattern(pattern);
     pattern.compress();
     stiffness.reinit(pattern);
-    if (scene.finite_elements.consistent_capacity)
+    if (!capacity_is_diagonal())
       mass.reinit(pattern);
     initialize_vector(capacity);
     cell_data = std::make_shared<CellData>(dofs.get_fe());
@@ -277,18 +300,28 @@ namespace PeriDeal
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
+          const bool empty = bonds_apart && coupling->leaves_nothing(cell);
           assemble_cell(cell, data);
           scale_beside_cracks(data);
           data.stiffness.add(1., data.convection);
-          stiffness.add(data.indices, data.stiffness);
-          if (scene.finite_elements.consistent_capacity)
+          if (!empty)
+            stiffness.add(data.indices, data.stiffness);
+          if (!capacity_is_diagonal())
             mass.add(data.indices, data.mass);
           for (unsigned int a = 0; a < data.indices.size(); ++a)
             for (unsigned int b = 0; b < data.indices.size(); ++b)
               capacity(data.indices[a]) += data.mass(a, b);
         }
+    if (coupling && !bonds_apart)
+      {
+        std::vector<unsigned int> nodes(capacity.locally_owned_size());
+        std::iota(nodes.begin(), nodes.end(), 0);
+        add_bonds(nodes, bond_rows(nodes));
+      }
     stiffness.compress(VectorOperation::add);
-    if (scene.finite_elements.consistent_capacity)
+    if (bonds_apart)
+      extract_remainder();
+    if (!capacity_is_diagonal())
       mass.compress(VectorOperation::add);
     capacity.compress(VectorOperation::add);
   }
@@ -403,9 +436,14 @@ namespace PeriDeal
     const unsigned int,                                                                          \
     const unsigned int,                                                                          \
     std::vector<std::pair<unsigned int, int>> *) const;                                          \
+  template bool FEMOperator<dim>::assemble_whole_cell(                                           \
+    const typename DoFHandler<dim>::active_cell_iterator &,                                      \
+    CellData &,                                                                                  \
+    const bool) const;                                                                           \
   template void FEMOperator<dim>::assemble_cell(                                                 \
     const typename DoFHandler<dim>::active_cell_iterator &,                                      \
-    CellData &) const;                                                                           \
+    CellData &,                                                                                  \
+    const bool) const;                                                                           \
   template void FEMOperator<dim>::find_crack_factors(CellData &);                                \
   template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                         \
   template void FEMOperator<dim>::check_material() const;                                        \

@@ -19,9 +19,12 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  FEMOperator<dim>::FEMOperator(const DoFHandler<dim> &dof_handler, const Scene<dim> &scene)
+  FEMOperator<dim>::FEMOperator(const DoFHandler<dim>         &dof_handler,
+                                const Scene<dim>              &scene,
+                                std::unique_ptr<Coupling<dim>> coupling)
     : dofs(dof_handler)
     , scene(scene)
+    , coupling(std::move(coupling))
     , history(scene.crack_history())
     , cracks_of(history.representative(0.))
     , cracks(make_crack_geometries(history.pieces(cracks_of)))
@@ -30,11 +33,9 @@ namespace PeriDeal
     check_material();
     find_cut_cells();
     find_prescribed();
+    bonds_apart = this->coupling && this->coupling->has_form();
     assemble();
-    initialize_vector(stiffness_diagonal);
-    for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
-      stiffness_diagonal.local_element(i) =
-        stiffness.diag_element(stiffness_diagonal.get_partitioner()->local_to_global(i));
+    find_diagonal();
     find_gershgorin();
     loads_vary = scene.initial_and_source.source.depends_on_time() ||
                  scene.boundary_conditions.depends_on_time();
@@ -87,6 +88,8 @@ namespace PeriDeal
     std::string         message;
     double              bound = 0.;
     std::vector<double> row_sums(stiffness_diagonal.locally_owned_size(), 0.);
+    for (unsigned int i = 0; i < bond_sums.size(); ++i)
+      row_sums[i] = 2. * bond_sums[i];
     for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
       row_sums[row] += std::abs(value);
     });
@@ -94,8 +97,11 @@ namespace PeriDeal
       {
         if (!(stiffness_diagonal.local_element(i) > 0.))
           message =
-            "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
-            "conducting cell. Use 'pairs' or a finer mesh.";
+            coupling ?
+              "The node at " + place_of(i) +
+                " is isolated: the cracks of section 'Cracks' cut all of its bonds and pairs." :
+              "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
+              "conducting cell. Use 'pairs' or a finer mesh.";
         bound = std::max(bound, row_sums[i] / capacity.local_element(i));
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
@@ -107,6 +113,11 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::initialize_vector(Vector &vector) const
   {
+    if (coupling)
+      {
+        vector.reinit(coupling->families().nodes().partitioner());
+        return;
+      }
     IndexSet relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     vector.reinit(dofs.locally_owned_dofs(), relevant, dofs.get_communicator());
@@ -116,8 +127,24 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::mask(Vector &y, const double value) const
   {
-    for (const Prescribed &entry : prescribed)
-      y.local_element(entry.dof) = value;
+    mask(y, value, 0, y.locally_owned_size());
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::mask(Vector            &y,
+                              const double       value,
+                              const unsigned int begin,
+                              const unsigned int end) const
+  {
+    for (auto entry =
+           std::lower_bound(prescribed.begin(),
+                            prescribed.end(),
+                            begin,
+                            [](const Prescribed &a, const unsigned int b) { return a.dof < b; });
+         entry != prescribed.end() && entry->dof < end;
+         ++entry)
+      y.local_element(entry->dof) = value;
   }
 
 
@@ -125,8 +152,19 @@ namespace PeriDeal
   void FEMOperator<dim>::apply(Vector &y, const Vector &x) const
   {
     ++applications;
-    stiffness.vmult(y, x);
+    multiply(y, x);
     mask(y);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::apply_then(Vector &y, const Vector &x, const RowsAction &finish) const
+  {
+    ++applications;
+    multiply_then(y, x, [&](const unsigned int begin, const unsigned int end) {
+      mask(y, 0., begin, end);
+      finish(begin, end);
+    });
   }
 
 
@@ -134,7 +172,7 @@ namespace PeriDeal
   void FEMOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
   {
     ++applications;
-    stiffness.vmult(r, u);
+    multiply(r, u);
     if (loads_vary)
       assemble_loads(scratch, t);
     const Vector &loads = loads_vary ? scratch : constant_loads;
@@ -171,7 +209,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::capacity_is_diagonal() const
   {
-    return !scene.finite_elements.consistent_capacity;
+    return coupling || !scene.finite_elements.consistent_capacity; // bonds need it diagonal
   }
 
   template <int dim>
@@ -193,27 +231,34 @@ namespace PeriDeal
   }
 
   template <int dim>
+  const Vector &FEMOperator<dim>::noise() const
+  {
+    if (noise_values.size() > 0)
+      return noise_values;
+    initialize_vector(noise_values);
+    const MappingQ1<dim>                 mapping;
+    std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          cell->get_dof_indices(indices);
+          for (unsigned int i = 0; i < indices.size(); ++i)
+            if (noise_values.in_local_range(indices[i]))
+              noise_values(indices[i]) = position_noise(
+                mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i)));
+        }
+    return noise_values;
+  }
+
+
+  template <int dim>
   Spectrum FEMOperator<dim>::spectrum() const
   {
     if (depends_on_solution()) // changes with each step: the safe bound, which costs nothing
       return {gershgorin, gershgorin};
     if (bounds.safe == 0.)
       {
-        const auto fill = [&](Vector &vector) {
-          std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
-          for (const auto &cell : dofs.active_cell_iterators())
-            if (!cell->is_artificial())
-              {
-                cell->get_dof_indices(indices);
-                for (unsigned int i = 0; i < indices.size(); ++i)
-                  if (vector.in_local_range(indices[i]))
-                    vector(indices[i]) =
-                      position_noise(MappingQ1<dim>().transform_unit_to_real_cell(
-                        cell,
-                        dofs.get_fe().unit_support_point(i)));
-              }
-        };
-        bounds.sharp = sharp_bound(*this, gershgorin, fill);
+        bounds.sharp = sharp_bound(*this, gershgorin, [&](Vector &vector) { vector = noise(); });
         bounds.safe  = gershgorin;
       }
     return bounds;
@@ -222,7 +267,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::symmetric() const
   {
-    return true;
+    return !coupling || coupling->symmetric();
   }
 
   template <int dim>
@@ -241,7 +286,10 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    matrix.copy_from(stiffness);
+    if (form)
+      assemble_surrogate(matrix);
+    else
+      matrix.copy_from(stiffness);
     Vector held;
     initialize_vector(held);
     mask(held, 1.);
@@ -258,7 +306,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::surrogate_is_exact() const
   {
-    return true;
+    return !form;
   }
 
 
@@ -269,7 +317,7 @@ namespace PeriDeal
     initialize_vector(heat);
     initialize_vector(loads);
     assemble_loads(loads, t);
-    stiffness.vmult(heat, u);
+    multiply(heat, u);
     heat -=
       loads; // what leaves each unknown through the body; in a prescribed one it must come from outside
     Balance     balance;
@@ -321,11 +369,21 @@ namespace PeriDeal
   {
     OperatorSize size;
     size.unknowns = dofs.n_dofs();
-    size.nonzeros = stiffness.n_nonzero_elements();
+    size.nonzeros = form ? Utilities::MPI::sum(remainder.values.size() + form->n_stored(),
+                                               dofs.get_communicator()) :
+                           stiffness.n_nonzero_elements();
     size.memory   = stiffness.memory_consumption() + mass.memory_consumption() +
                   capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
                   constant_loads.memory_consumption() + scratch.memory_consumption();
-    size.form = "matrix";
+    if (coupling)
+      {
+        if (recount_bonds)
+          count_bonds();
+        size.bonds = n_bonds;
+        size.memory +=
+          coupling->memory_consumption() + coupling->families().nodes().memory_consumption();
+      }
+    size.form = form ? form->name() : "matrix";
     return size;
   }
 
@@ -340,6 +398,14 @@ namespace PeriDeal
   {
     return cut;
   }
+
+  template <int dim>
+  const Coupling<dim> &FEMOperator<dim>::bonds() const
+  {
+    Assert(coupling, ExcMessage("Finite elements alone have no bonds."));
+    return *coupling;
+  }
+
 
   template class FEMOperator<1>;
   template class FEMOperator<2>;

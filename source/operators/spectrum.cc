@@ -16,7 +16,7 @@ namespace PeriDeal
      * Largest eigenvalue by Lanczos iterations with the last two vectors only: once an eigenvalue has converged copies of it appear,
      * but the largest one is as good as with all vectors kept, which would take more memory than all else.
      */
-    double lanczos(const Operator &op, Vector &now)
+    double lanczos(const Operator &op, Vector &now, const double enough)
     {
       constexpr unsigned int n_max  = 60;
       constexpr double       margin = 4e-3;
@@ -49,7 +49,7 @@ namespace PeriDeal
           const double       residual = norm * std::abs(ritz.eigenvectors()(end, end));
           // Some eigenvalue is as near as the residual; where several lie close together the largest may be a little above it.
           bound = ritz.eigenvalues()[end] + std::max(residual, margin * ritz.eigenvalues()[end]);
-          if (residual < margin * bound || norm <= 1e-12 * bound)
+          if (residual < margin * bound || norm <= 1e-12 * bound || bound <= enough)
             break;
           beta.push_back(norm);
           y /= norm;
@@ -92,13 +92,16 @@ namespace PeriDeal
 
   double sharp_bound(const Operator                            &op,
                      const double                               gershgorin,
-                     const std::function<void(Vector &vector)> &fill)
+                     const std::function<void(Vector &vector)> &fill,
+                     const double                               enough)
   {
     Vector start;
     op.initialize_vector(start);
     fill(start);
     op.distribute_homogeneous(start);
-    const double bound = op.symmetric() ? lanczos(op, start) : power_iterations(op, start);
+    if (start.l2_norm() == 0.)
+      return 0.;
+    const double bound = op.symmetric() ? lanczos(op, start, enough) : power_iterations(op, start);
     return std::min(round_up(bound), gershgorin);
   }
 } // namespace PeriDeal

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/tensor.h>
+
 #include <perideal/scene/domain.h>
 #include <perideal/scene/lists.h>
 
@@ -246,6 +248,23 @@ namespace PeriDeal
       error("Mesh file", "is empty, but 'Shape' is 'mesh file'.");
     if (shape != Shape::mesh_file && !mesh_file.empty())
       error("Mesh file", "is given, but 'Shape' is '" + text("Shape") + "', not 'mesh file'.");
+  }
+
+
+  template <int dim>
+  bool Domain<dim>::in_hole(const Point<dim> &p) const
+  {
+    if (shape != Shape::plate_with_hole)
+      return false;
+    Tensor<1, dim> r = p - hole_center;
+    if (dim == 3) // the hole of a thick plate is a bore along z
+      r[dim - 1] = 0.;
+    if (hole_shape == HoleShape::circle)
+      return r.norm() < hole_radius;
+    const double angle = hole_angle * std::acos(-1.) / 180., y = dim > 1 ? r[dim > 1] : 0.;
+    const double along  = std::cos(angle) * r[0] + std::sin(angle) * y,
+                 across = -std::sin(angle) * r[0] + std::cos(angle) * y;
+    return std::max(std::abs(along), std::abs(across)) < hole_radius;
   }
 
 

@@ -83,13 +83,17 @@ namespace PeriDeal
 
   void Peridynamics::declare_boundary()
   {
-    declare("Boundary treatment",
-            EntryType::choice,
-            "none",
-            "",
-            "How Dirichlet values act: on the nodes of the side; on layers of nodes inside; or on "
-            "fictitious nodes outside the body, mirrored (2 T* - T) or constant (T*).",
-            {"none", "layer", "fictitious mirror", "fictitious constant"});
+    declare(
+      "Boundary treatment",
+      EntryType::choice,
+      "auto",
+      "",
+      "What happens at the surface of the body. `exchange`: bonds in exchange for what finite elements conduct along them, with the rest "
+      "left to the elements, so that a linear field is exact up to the surface and all conditions act as in finite elements. The others "
+      "cut families off at the surface, and Dirichlet values act on the nodes of the side (`none`), on layers of nodes inside, or on "
+      "fictitious nodes outside the body, mirrored (2 T* - T) or constant (T*). `auto`: exchange where it is possible (nodes on "
+      "vertices, no slaves, self term or energy correction), else none.",
+      {"auto", "exchange", "none", "layer", "fictitious mirror", "fictitious constant"});
     declare("Layer rows",
             EntryType::whole_number,
             "1",

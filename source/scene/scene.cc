@@ -12,7 +12,9 @@ namespace PeriDeal
 
   std::string to_string(const Model model)
   {
-    return model == Model::finite_elements ? "finite elements" : "peridynamics";
+    return model == Model::finite_elements ? "finite elements" :
+           model == Model::peridynamics    ? "peridynamics" :
+                                             "coupled";
   }
 
 
@@ -29,12 +31,14 @@ namespace PeriDeal
       "What diffuses: heat (temperature), moisture (wetness, the concentration over the saturated one) or electricity "
       "(potential).",
       physics_choices());
-    declare("Models",
-            EntryType::choices,
-            "finite elements, peridynamics",
-            "",
-            "The models that are run, on the same mesh, and compared.",
-            {"finite elements", "peridynamics"});
+    declare(
+      "Models",
+      EntryType::choices,
+      "finite elements, peridynamics",
+      "",
+      "The models that are run, on the same mesh, and compared: finite elements and peridynamics, each in the whole body, and "
+      "`coupled`, peridynamics in the zone of section `Coupling` with finite elements elsewhere.",
+      {"finite elements", "peridynamics", "coupled"});
     declare(
       "Output directory",
       EntryType::text,
@@ -272,6 +276,7 @@ namespace PeriDeal
             &boundary_conditions,
             &cracks,
             &peridynamics,
+            &coupling,
             &finite_elements,
             &time,
             &solver,
@@ -293,6 +298,7 @@ namespace PeriDeal
                               domain.shape == Shape::plate_with_hole);
     cracks.parse();
     peridynamics.parse();
+    coupling.parse();
     finite_elements.parse();
     time.parse();
     time.steady = time.steady ||
@@ -314,7 +320,9 @@ namespace PeriDeal
       entry_error(finite_elements.where("Degree"),
                   "found " + std::to_string(finite_elements.degree) +
                     "; cracks with 'Mesh' in section 'Cracks' = pairs need degree 1.");
-    if (runs(*this, Model::peridynamics))
+    resolve_boundary_treatment();
+    check_coupling();
+    if (runs(*this, Model::peridynamics) || runs(*this, Model::coupled))
       {
         check_shape_for_peridynamics(*this);
         check_horizon(*this);

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/analysis/coupling_certificate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
@@ -157,6 +158,15 @@ namespace PeriDeal
         progress.line("  form: " + value);
       else if (name == "calibration" && value.find("because") != std::string::npos)
         progress.line("  calibration: " + value);
+    if (const CouplingCertificate *c = model.examined())
+      {
+        std::ostringstream text;
+        text.precision(2);
+        text << "  coupling: " << 100. * c->zone_share << " % of the body; patch errors "
+             << c->linear << " (linear), " << c->quadratic << " (quadratic), " << c->cubic
+             << " (cubic)";
+        progress.line(text.str());
+      }
   }
 
 
@@ -387,7 +397,8 @@ namespace PeriDeal
   {
     const ModelRun<dim> *fem = nullptr, *pd = nullptr;
     for (const auto &model : models)
-      (model->nodes() == nullptr ? fem : pd) = model.get();
+      if (model->name() != to_string(Model::coupled))
+        (model->name() == to_string(Model::finite_elements) ? fem : pd) = model.get();
     if (fem == nullptr || pd == nullptr)
       return;
     pd->op().initialize_vector(difference);
@@ -415,7 +426,7 @@ namespace PeriDeal
         fields[0].components[0].update_ghost_values();
         for (OutputField &field : models[m]->derived_fields(models[m]->solution, t))
           fields.push_back(std::move(field));
-        if (models[m]->nodes() != nullptr && difference.size() > 0)
+        if (models[m]->name() == to_string(Model::peridynamics) && difference.size() > 0)
           {
             fields.push_back({"peridynamics_minus_finite_elements", {difference}});
             fields.back().components[0].update_ghost_values();

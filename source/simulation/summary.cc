@@ -4,9 +4,11 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
+#include <perideal/analysis/coupling_certificate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/simulation/simulation.h>
 
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -112,6 +114,21 @@ namespace PeriDeal
     }
 
 
+    json describe_certificate(const CouplingCertificate &c)
+    {
+      json entry;
+      entry["patch error"] = {{"linear", c.linear}, {"quadratic", c.quadratic}, {"cubic", c.cubic}};
+      entry["asymmetry"]   = c.asymmetry;
+      entry["lowest eigenvalue"] = c.lowest_eigenvalue;
+      if (std::isfinite(c.lowest_remainder))
+        entry["lowest eigenvalue of a cell"] = c.lowest_remainder;
+      entry["share of the body"] = c.zone_share;
+      entry["full peridynamics"] = {{"bonds", c.n_bonds_of_full},
+                                    {"nonzeros", c.n_nonzeros_of_full}};
+      return entry;
+    }
+
+
     template <int dim>
     json describe_model(const ModelRun<dim> &model,
                         const ResultRecord  &record,
@@ -155,6 +172,8 @@ namespace PeriDeal
       Utilities::System::get_memory_stats(stats);
       entry["peak memory"] =
         1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
+      if (const CouplingCertificate *certificate = model.examined())
+        entry["certificate"] = describe_certificate(*certificate);
       if (record.errors.contains(model.name()))
         entry["errors"] = record.errors.at(model.name());
       entry.update(record.balances.at(model.name()));

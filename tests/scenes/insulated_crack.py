@@ -40,7 +40,8 @@ SCENE = "prm/quick_start.prm"
 def settings(cells, steady, **more):
     """Overrides of the sample scene; keywords: section and entry joined by two underscores."""
     chosen = {"Domain/Cells": f"{cells}, {cells}", "Output/Fields": "none", "Output/Line": "", "Output/Write at": "",
-              "Solver/Tolerance": "1e-12", "Time/Tolerance": "1e-9", "Time/Steady": "true" if steady else "false"}
+              "Solver/Tolerance": "1e-12", "Time/Tolerance": "1e-9", "Time/Steady": "true" if steady else "false",
+              "Peridynamics/Boundary treatment": "none"}
     chosen.update({key.replace("__", "/").replace("_", " "): value for key, value in more.items()})
     return chosen
 

@@ -37,6 +37,9 @@ end
 subsection Cracks
   set Segments = 0.2,0.31 ; 0.9,0.73
 end
+subsection Peridynamics
+  set Boundary treatment = none
+end
 subsection Output
   set Fields = none
   set Probes = 0.3,0.35 ; 0.31,0.62 ; 1.17,0.04
@@ -66,6 +69,7 @@ subsection Cracks
   set Polygons = 0.21,0.5,0.2 ; 0.81,0.5,0.2 ; 0.81,0.5,0.63 ; 0.21,0.5,0.63
 end
 subsection Peridynamics
+  set Boundary treatment = none
   set Horizon ratio = 2
 end
 subsection Output
@@ -94,6 +98,9 @@ end
 subsection Boundary conditions
   set Dirichlet = left: 1
   set Flux      = right: 2
+end
+subsection Peridynamics
+  set Boundary treatment = none
 end
 subsection Output
   set Fields = none
@@ -237,6 +244,27 @@ def others():
     return folder
 
 
+def coupled():
+    """Cells are summed in another order on each number of processes: no same digits."""
+    explicit = {"coupled": 1e-12, "peridynamics": 1e-12}
+    exchange = {"Peridynamics/Boundary treatment": "exchange"}
+    growing = {"Cracks/Growth": "2: 0, 5,3 ; 1: 0.01, -3,-2", "Cracks/Transmission": "0.05"}
+    for name in ("euler", "chebyshev"):
+        for correction in ("none", "crack scaling"):
+            compare(f"plate, coupled, {name}, {correction}", PLATE,
+                    {**FIXED[name], **exchange, "Peridynamics/Surface correction": correction}, explicit)
+    compare("plate, growing, chebyshev", PLATE, {**FIXED["chebyshev"], **exchange, **growing}, explicit)
+    compare("plate, growing, rk4", PLATE, {**FIXED["rk4"], **exchange, **growing}, explicit)
+    for scheme in ("blending", "splice"):
+        compare(f"plate, {scheme}, euler", PLATE,
+                {**FIXED["euler"], "Coupling/Scheme": scheme, "Coupling/Overlap": "1"}, {"coupled": 1e-12})
+    compare("3D, coupled, chebyshev", BODY, {**FIXED["chebyshev"], **exchange}, explicit)
+    solved = {"coupled": 1e-8, "peridynamics": 1e-8}
+    compare("plate, coupled, steady", PLATE, {**ADAPTIVE["steady"], **exchange}, solved)
+    compare("plate, splice, steady", PLATE, {**ADAPTIVE["steady"], "Coupling/Scheme": "splice"}, {"coupled": 1e-8})
+    compare("3D, coupled, steady", BODY, {**ADAPTIVE["steady"], **exchange}, solved)
+
+
 def implicit():
     bounds = {"peridynamics": 1e-8, "finite elements": 1e-8}
     for name, choice in ADAPTIVE.items():
@@ -253,11 +281,12 @@ def quick():
     plates({("chebyshev", "vertices", "lattice"), ("euler", "cell centers", "stored")})
     compare("3D, chebyshev", BODY, FIXED["chebyshev"], BOTH, ranks=(2,))
     compare("plate, steady", PLATE, ADAPTIVE["steady"], {"peridynamics": 1e-8, "finite elements": 1e-8}, ranks=(2,))
+    compare("plate, coupled, chebyshev", PLATE, FIXED["chebyshev"], {"coupled": 1e-12}, ranks=(2,))
 
 
 def main():
-    parts = {"plates": plates, "bodies": bodies, "others": others, "implicit": implicit, "quick": quick}
-    folders = [parts[name]() for name in sys.argv[1:] or ("plates", "bodies", "others", "implicit")]
+    parts = {"plates": plates, "bodies": bodies, "others": others, "implicit": implicit, "coupled": coupled, "quick": quick}
+    folders = [parts[name]() for name in sys.argv[1:] or ("plates", "bodies", "others", "implicit", "coupled")]
     print_table("Differences from the run on one process", ("case", "model", "processes", "difference", "allowed"), ROWS)
     finish(*[folder for folder in folders if folder])
 

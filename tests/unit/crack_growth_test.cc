@@ -157,6 +157,26 @@ namespace PeriDeal
   }
 
 
+  /** The zone moves with the cracks; bonds that join behind a tip are broken by what it has done before. */
+  TEST(CrackGrowth, moving_zones_end_where_a_new_operator_starts)
+  {
+    for (const std::string scheme : {"exchange", "blending", "splice"})
+      for (const std::string zone : {"cracks: 1", "cracks: 0.4", "everywhere", "0.7 - x"})
+        for (const std::string correction : {"none", "crack scaling"})
+          expect_grown<2>(scheme + ", " + zone + ", " + correction,
+                          square +
+                            Settings{{"Coupling/Scheme", scheme},
+                                     {"Coupling/Zone", zone},
+                                     {"Coupling/Overlap", scheme == "exchange" ? "0" : "0.8"},
+                                     {"Boundary conditions/Dirichlet", "left: y"},
+                                     {"Boundary conditions/Convection", "top: 2, 1"},
+                                     {"Peridynamics/Surface correction", correction}},
+                          growing,
+                          at_end,
+                          Model::coupled);
+  }
+
+
   TEST(CrackGrowth, updates_end_where_a_new_operator_starts)
   {
     for (const std::string placement : {"vertices", "cell centers"})

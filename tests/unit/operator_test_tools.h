@@ -68,8 +68,7 @@ namespace PeriDeal
                        const Model     model        = Model::peridynamics,
                        const MPI_Comm  communicator = MPI_COMM_WORLD)
       {
-        scene.general.set("Models",
-                          model == Model::peridynamics ? "peridynamics" : "finite elements");
+        scene.general.set("Models", to_string(model));
         set(scene, settings);
         mesh = build_mesh(scene.domain, scene.cracks, communicator, notes);
         set_material_ids(*mesh, scene.material.phases.all());
@@ -78,7 +77,7 @@ namespace PeriDeal
           handler.distribute_dofs(dealii::FE_DGQ<dim>(0));
         else
           handler.distribute_dofs(
-            dealii::FE_Q<dim>(model == Model::peridynamics ? 1 : scene.finite_elements.degree));
+            dealii::FE_Q<dim>(model == Model::finite_elements ? scene.finite_elements.degree : 1));
         if (scene.domain.shape != Shape::mesh_file && handler.get_fe().degree <= 1)
           number_along_lattice(handler, scene.domain);
         if (model == Model::peridynamics)
@@ -90,7 +89,21 @@ namespace PeriDeal
             bonds = std::make_unique<BondOperator<dim>>(*nodes, scene);
           }
         else
-          fem = std::make_unique<FEMOperator<dim>>(handler, scene);
+          {
+            std::unique_ptr<Coupling<dim>> coupling;
+            if (model == Model::coupled)
+              {
+                nodes    = std::make_unique<Nodes<dim>>(handler,
+                                                     scene.domain,
+                                                     scene.cracks,
+                                                     NodalVolume::partial);
+                coupling = make_coupling(*nodes,
+                                         scene,
+                                         Zone<dim>(scene.coupling, scene.horizon()),
+                                         scene.coupling.scheme);
+              }
+            fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling));
+          }
         find_positions();
       }
 

@@ -163,6 +163,49 @@ namespace PeriDeal
   }
 
 
+  TEST(RankIndependence, coupled)
+  {
+    const Settings conditions{{"Boundary conditions/Dirichlet", "left: y ; top: 2*t"},
+                              {"Boundary conditions/Flux", "right: 1"},
+                              {"Boundary conditions/Convection", "bottom: 3, x"},
+                              {"Initial and source/Source", "x*y"}};
+    for (const std::string scheme : {"exchange", "blending", "splice"})
+      for (const std::string zone : {"cracks: 1", "everywhere", "0.4 - abs(x - 0.5)"})
+        for (const std::string correction : {"none", "crack scaling"})
+          expect_same<2>(scheme + ", " + zone + ", " + correction,
+                         cracked + conditions +
+                           Settings{{"Coupling/Scheme", scheme},
+                                    {"Coupling/Zone", zone},
+                                    {"Peridynamics/Surface correction", correction}},
+                         1e-13,
+                         Model::coupled);
+    expect_same<2>("materials and hole",
+                   {{"Domain/Shape", "plate with hole"},
+                    {"Domain/Cells", "30, 30"},
+                    {"Domain/Hole center", "0.4, 0.5"},
+                    {"Domain/Hole radius", "0.2"},
+                    {"Material/Conductivity", "1 + x + 4*(y > 0.44)"},
+                    {"Coupling/Zone", "everywhere"},
+                    {"Boundary conditions/Dirichlet", "hole: 1"}},
+                   1e-13,
+                   Model::coupled);
+    expect_same<1>("bar",
+                   {{"Domain/Cells", "33"}, {"Coupling/Zone", "0.6 - x"}},
+                   1e-13,
+                   Model::coupled);
+    for (const std::string zone : {"cracks: 0.5", "everywhere"})
+      expect_same<3>("brick",
+                     {{"Domain/Cells", "12, 12, 8"},
+                      {"Domain/Upper corner", "1.2, 1.2, 0.8"},
+                      {"Peridynamics/Horizon ratio", "2.2"},
+                      {"Cracks/Polygons", "0.2,0.2,0.43 ; 0.8,0.2,0.43 ; 0.8,0.8,0.61"},
+                      {"Coupling/Zone", zone},
+                      {"Boundary conditions/Dirichlet", "left: y ; front: 1"}},
+                     1e-13,
+                     Model::coupled);
+  }
+
+
   TEST(RankIndependence, finite_elements)
   {
     const Settings conditions{{"Boundary conditions/Dirichlet", "left: y ; top: 2*t"},

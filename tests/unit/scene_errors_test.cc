@@ -72,7 +72,10 @@ namespace PeriDeal
     expect_fault(fault(s, "Density = -2*pi"), s, "Density", {"greater than 0"});
     expect_fault(fault(s, "Heat capacity = 0"), s, "Heat capacity", {"greater than 0"});
     expect_fault(fault(s, "Conductivity = 1 + t"), s, "Conductivity", {"depends on t"});
-    expect_fault(fault(s, "Conductivity = 1 + S"), s, "Conductivity", {"'S'", "column 5", "x, y, z, t, T"});
+    expect_fault(fault(s, "Conductivity = 1 + S"),
+                 s,
+                 "Conductivity",
+                 {"'S'", "column 5", "x, y, z, t, T"});
     expect_fault(fault(s, "Conductivity ="), s, "Conductivity", {"is empty"});
     expect_fault(fault(s, "Interface rule = harmonics"),
                  s,
@@ -240,7 +243,7 @@ namespace PeriDeal
     expect_fault(fault(s, "Self term = x"), s, "Self term", {"none, paper"});
     expect_fault(fault(s, "Nodal volume = x"), s, "Nodal volume", {"partial, full"});
     expect_fault(fault(s, "Layer rows = 0"), s, "Layer rows", {"1 or more"});
-    expect_fault(fault(s, "Boundary treatment = exchange"),
+    expect_fault(fault(s, "Boundary treatment = exchanged"),
                  s,
                  "Boundary treatment",
                  {"fictitious mirror"});

@@ -177,7 +177,8 @@ end
     expect_parts(fault("set Models =\n"), {"a.prm:2: ", "'Models'", "is empty"});
     expect_parts(fault("set Models = peridynamics, peridynamics\n"), {"'Models'", "named twice"});
     expect_parts(fault("set Models = peridynamic\n"), {"'Models'", "Did you mean 'peridynamics'?"});
-    expect_parts(fault("set Models = coupled\n"), {"'Models'", "finite elements, peridynamics"});
+    expect_parts(fault("set Models = molecular\n"),
+                 {"'Models'", "finite elements, peridynamics, coupled"});
     expect_parts(fault("set Output directory =\n"), {"'Output directory'", "is empty"});
     for (const std::string dimension : {"4", "0", "two", "2.5", ""})
       expect_parts(message_of([&] {

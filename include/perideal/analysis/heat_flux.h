@@ -7,6 +7,7 @@
 
 #include <perideal/base/types.h>
 #include <perideal/bonds/families.h>
+#include <perideal/operators/fem_operator.h>
 
 #include <array>
 
@@ -30,6 +31,16 @@ namespace PeriDeal
                       const std::vector<double> &outside,
                       VectorField<dim>          &two_sided,
                       VectorField<dim>          &one_sided);
+
+  /**
+   * The same where bonds stand beside finite elements: with all conductances of a node's row of K in the place of w V_i V_j k_ij. -kappa grad T for a linear field inside the
+   * body and on its straight sides.
+   */
+  template <int dim>
+  void coupled_heat_flux(const FEMOperator<dim> &op,
+                         const Vector           &u,
+                         VectorField<dim>       &two_sided,
+                         VectorField<dim>       &one_sided);
 
   /** Part of each family (by volume) whose bonds cross a crack. Not collective. */
   template <int dim>

@@ -5,6 +5,7 @@
 
 #include <perideal/base/types.h>
 #include <perideal/bonds/fictitious_nodes.h>
+#include <perideal/bonds/halo.h>
 #include <perideal/laws/lattice_family.h>
 #include <perideal/mesh/nodes.h>
 #include <perideal/scene/crack_geometry.h>
@@ -44,7 +45,7 @@ namespace PeriDeal
     };
 
     /** Adds the halo to the nodes. Collective. Throws UserError for empty families and isolated nodes. */
-    Families(Nodes<dim> &nodes, const Scene<dim> &scene);
+    Families(Nodes<dim> &nodes, const Scene<dim> &scene, const HaloAround halo = HaloAround::nodes);
     ~Families();
 
     /** The family of an owned node, in its fixed order. @p bonds is overwritten, its memory is reused. */
@@ -120,6 +121,12 @@ namespace PeriDeal
     /** When the cracks or their transmission change. */
     const CrackHistory<dim> &crack_history() const;
 
+    /** The representative time of the cracks as they are now. */
+    double cracks_now() const;
+
+    /** What the cracks leave of a bond's conductance, and whether it crosses any. */
+    double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const;
+
     /** The cracks that a bond crosses: +1 if the node lies on the left side, -1 if its neighbour does. @p crossed is overwritten. */
     void crossed_cracks(const unsigned int                         node,
                         const unsigned int                         neighbor,
@@ -155,7 +162,6 @@ namespace PeriDeal
                                               const std::vector<FamilyMember<dim>> &offsets,
                                               std::vector<Bond>                    &bonds) const;
     void   bonds_off_lattice(const unsigned int node, std::vector<Bond> &bonds) const;
-    double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const;
     double node_factor(const unsigned int node, const unsigned int direction) const;
     double bond_factor(const unsigned int node, const unsigned int neighbor) const;
     template <typename Test>

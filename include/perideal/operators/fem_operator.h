@@ -7,10 +7,13 @@
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <perideal/mesh/cell_search.h>
+#include <perideal/operators/coupling.h>
 #include <perideal/operators/operator.h>
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/scene.h>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -24,18 +27,22 @@ namespace PeriDeal
    * crack's transmission (doc/theory.md). With `Surface correction = crack scaling` the cell matrices next to cracks are multiplied by the mean of their vertices' factors.
    * `removed`: cut cells conduct nothing.
    *
-   * Vectors have the locally relevant dofs as ghosts.
+      * With a coupling the cells keep what it leaves of them, and its bonds are added: the model `coupled`. Then the elements are Q1, and vectors
+   * have the horizon-wide halo of the nodes. Otherwise vectors have the locally relevant dofs as ghosts.
    */
   template <int dim>
   class FEMOperator : public Operator
   {
   public:
     /** Collective. Throws UserError for material values that are not positive and for nodes that `removed` isolates. */
-    FEMOperator(const dealii::DoFHandler<dim> &dof_handler, const Scene<dim> &scene);
+    FEMOperator(const dealii::DoFHandler<dim> &dof_handler,
+                const Scene<dim>              &scene,
+                std::unique_ptr<Coupling<dim>> coupling = nullptr);
 
     void          initialize_vector(Vector &vector) const override;
     void          apply(Vector &y, const Vector &x) const override;
     void          residual(Vector &r, const Vector &u, const double t) const override;
+    void          apply_then(Vector &y, const Vector &x, const RowsAction &finish) const override;
     void          distribute(Vector &u, const double t) const override;
     void          distribute_homogeneous(Vector &x) const override;
     void          clear_constrained(Vector &y) const override;
@@ -62,6 +69,32 @@ namespace PeriDeal
     /** Cells of this process that a crack cuts, by active cell index. */
     const std::vector<bool> &cut_cells() const;
 
+    /** Only in the model `coupled`. */
+    const Coupling<dim> &bonds() const;
+
+    /** K of the body without its cracks, with the bonds of the zone as it is now (or without any), constraints left out. Collective. */
+    void assemble_intact(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                         const bool                              with_bonds) const;
+
+    /**
+     * Call visit(owned unknown, other unknown, conductance) for all pairs between which bonds or cells conduct, by local numbers: the entries off the diagonal of K,
+     * with the sign changed. A pair may come in several parts, and at both of its ends. Only with a coupling.
+     */
+    void visit_conductances(
+      const std::function<void(const unsigned int, const unsigned int, const double)> &visit) const;
+
+    /** y = K x, constraints left out. Collective. */
+    void multiply(Vector &y, const Vector &x) const;
+
+    /** Numbers in [-1, 1] that look random but depend on the unknowns' positions alone. Collective. */
+    const Vector &noise() const;
+
+    /**
+     * Lowest eigenvalue of what the coupling leaves of any cell before cracks cut it, in units of the conductivity times h^(dim-2); infinite if it
+     * leaves all cells as they are. Collective.
+     */
+    double lowest_remainder() const;
+
   private:
     struct Prescribed
     {
@@ -73,15 +106,43 @@ namespace PeriDeal
     struct CellData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
-    void   find_prescribed();
-    void   find_cut_cells();
-    bool   is_cut(const Cell &cell) const;
+    /** Some rows of bonds: numbers of neighbours (local) and conductances. */
+    using BondRows = std::vector<std::vector<std::pair<unsigned int, double>>>;
+
+    /** The rows of the cells' matrix that are not empty, by local numbers, where the bonds are a form of their own. */
+    struct RemainderRows
+    {
+      std::vector<unsigned int> rows, starts, columns;
+      std::vector<double>       values;
+    };
+
+    void     find_prescribed();
+    void     find_diagonal();
+    void     extract_remainder();
+    void     add_remainder(Vector            &y,
+                           const Vector      &x,
+                           const unsigned int begin,
+                           const unsigned int end) const;
+    void     multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const;
+    void     set_form_factors();
+    void     assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
+    void     add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
+    BondRows bond_rows(const std::vector<unsigned int> &nodes) const;
+    void     add_bonds(const std::vector<unsigned int> &nodes, const BondRows &rows);
+    void change_bonds(const std::vector<unsigned int> &nodes, const BondRows &old, Vector &touched);
+    void change_form(const std::vector<unsigned int> &nodes, Vector &touched);
+    void mark_broken_bonds(Vector &marked) const;
+    void add_bond_traces(const Vector &marked, Vector &trace) const;
+    void add_bond_heat(const Vector &u, Balance &balance) const;
+    void count_bonds() const;
+    void find_cut_cells();
+    bool is_cut(const Cell &cell) const;
     double kept_fraction(const Cell                                &cell,
                          const unsigned int                         a,
                          const unsigned int                         b,
                          std::vector<std::pair<unsigned int, int>> *crossed) const;
     void   scale_beside_cracks(CellData &data) const;
-    void   update_rows(const Vector &touched);
+    void   update_rows(const Vector &touched, const bool zone_moves);
     void   add_crack_heat(const Vector &u, Balance &balance) const;
     void   check_material() const;
     void   assemble();
@@ -89,16 +150,25 @@ namespace PeriDeal
     void   find_temperatures(CellData &data) const;
     double center_conductivity(const Cell &cell) const;
     double heat_of(const Vector &u) const;
-    void   assemble_cell(const Cell &cell, CellData &data) const;
-    void   keep_unseparated_pairs(const Cell &cell, CellData &data) const;
-    void   assemble_loads(Vector &loads, const double t) const;
-    void   add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
-    void   find_crack_factors(CellData &data);
-    void   find_gershgorin();
-    void   mask(Vector &y, const double value = 0.) const;
+    bool assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
+    void assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
+    void raise_bounds(const Vector &touched);
+    std::vector<Cell> cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
+                                 const std::vector<dealii::BoundingBox<dim>> &joins);
+    void              keep_unseparated_pairs(const Cell &cell, CellData &data) const;
+    void              assemble_loads(Vector &loads, const double t) const;
+    void add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
+    void find_crack_factors(CellData &data);
+    void find_gershgorin();
+    void mask(Vector &y, const double value = 0.) const;
+    void mask(Vector            &y,
+              const double       value,
+              const unsigned int begin,
+              const unsigned int end) const;
 
     const dealii::DoFHandler<dim>         &dofs;
     const Scene<dim>                      &scene;
+    std::unique_ptr<Coupling<dim>>         coupling; // null: finite elements alone
     const CrackHistory<dim>                history;
     double                                 cracks_of; // representative time of the cracks in K
     std::vector<CrackGeometry<dim>>        cracks;
@@ -106,14 +176,22 @@ namespace PeriDeal
     dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
     Vector                                 capacity, stiffness_diagonal, constant_loads;
     mutable Vector                         scratch;
-    Vector temperatures; // that K and C are those of, with ghosts; empty: initial values
-    std::shared_ptr<CellData> cell_data; // memory of the cell loops
-    std::vector<Prescribed>   prescribed;
-    std::vector<bool>         cut; // by active cell index
-    Vector                    crack_factors;
-    bool                      loads_vary = false, any_prescribed = false;
-    double                    gershgorin = 0.;
-    mutable Spectrum          bounds;
+    Vector temperatures;        // that K and C are those of, with ghosts; empty: initial values
+    bool   bonds_apart = false; // in the form; else in the matrix
+    std::unique_ptr<BondForm>        form;
+    RemainderRows                    remainder;
+    std::vector<double>              bond_sums; // of each owned node, from the form
+    mutable unsigned long long       n_bonds       = 0;
+    mutable bool                     recount_bonds = true;
+    std::shared_ptr<CellData>        cell_data;  // memory of the cell loops
+    std::vector<Prescribed>          prescribed; // in the order of unknowns
+    std::vector<bool>                cut;        // by active cell index
+    Vector                           crack_factors;
+    bool                             loads_vary = false, any_prescribed = false;
+    double                           gershgorin = 0.;
+    mutable Spectrum                 bounds;
+    mutable Vector                   noise_values; // of noise()
+    std::unique_ptr<CellSearch<dim>> search;       // made for the first event
     mutable bool pairs_stiffer = false; // some cut cell's pairs conduct more than the cell
   };
 } // namespace PeriDeal

@@ -45,6 +45,8 @@ namespace PeriDeal
 
   enum class BoundaryTreatment
   {
+    automatic,
+    exchange,
     none,
     layer,
     fictitious_mirror,

@@ -77,6 +77,9 @@ namespace PeriDeal
      */
     bool contains(const dealii::Point<dim> &p) const;
 
+    /** Plate with a hole: whether the point lies in the hole. A cell whose centre does so does not exist. */
+    bool in_hole(const dealii::Point<dim> &p) const;
+
   private:
     /** Cells or Node spacing. */
     void parse_cells();

@@ -24,7 +24,7 @@ namespace PeriDeal
     Calibration         calibration          = Calibration::discrete;
     SelfTerm            self_term            = SelfTerm::none;
     NodalVolume         nodal_volume         = NodalVolume::partial;
-    BoundaryTreatment   treatment            = BoundaryTreatment::none;
+    BoundaryTreatment   treatment            = BoundaryTreatment::automatic; // resolved by Scene
     unsigned int        layer_rows           = 1;
     FluxTreatment       flux_treatment       = FluxTreatment::natural;
     SurfaceCorrection   surface_correction   = SurfaceCorrection::none;

@@ -5,6 +5,7 @@
 
 #include <perideal/scene/boundary_conditions.h>
 #include <perideal/scene/control.h>
+#include <perideal/scene/coupling_control.h>
 #include <perideal/scene/crack_history.h>
 #include <perideal/scene/domain.h>
 #include <perideal/scene/material.h>
@@ -21,10 +22,11 @@ namespace PeriDeal
   enum class Model
   {
     finite_elements,
-    peridynamics
+    peridynamics,
+    coupled
   };
 
-  /** `finite elements` or `peridynamics`: as in scenes and in all output files. */
+  /** `finite elements`, `peridynamics` or `coupled`: as in scenes and in all output files. */
   std::string to_string(const Model model);
 
 
@@ -66,6 +68,7 @@ namespace PeriDeal
     BoundaryConditions<dim> boundary_conditions;
     Cracks<dim>             cracks;
     Peridynamics            peridynamics;
+    CouplingControl         coupling;
     FiniteElements          finite_elements;
     TimeControl             time;
     SolverControlParameters solver;
@@ -90,6 +93,12 @@ namespace PeriDeal
 
     /** Parse all sections and check them one by one and against each other. Throws UserError. */
     void parse_and_validate();
+
+  private:
+    /** What `Boundary treatment = auto` means here. Throws UserError where `exchange` is asked for and not possible. */
+    void resolve_boundary_treatment();
+
+    void check_coupling() const;
   };
 
 

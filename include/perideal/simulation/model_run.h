@@ -21,6 +21,8 @@
 
 namespace PeriDeal
 {
+  struct CouplingCertificate;
+
   /**
    * One model of a scene during a run: its unknowns on the shared mesh, its operator, its solution, and what both have cost so far. All
    * functions are collective.
@@ -64,6 +66,12 @@ namespace PeriDeal
     virtual std::vector<std::string> notes() const
     {
       return {};
+    }
+
+    /** What is known of a coupling, or nullptr. */
+    virtual const CouplingCertificate *examined() const
+    {
+      return nullptr;
     }
 
     Vector                   solution;

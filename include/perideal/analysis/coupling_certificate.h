@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/fem_operator.h>
+
+#include <string>
+
+namespace PeriDeal
+{
+  /**
+   * What a coupling is worth, found out before the run on the body without its cracks, with values prescribed on its whole surface.
+   *
+   * The patch errors are the largest differences between the solution of the coupled model and that of finite elements for the boundary values and sources of a
+   * linear, a quadratic and a cubic field, over the largest value of the field: what the coupling adds to the error of finite elements.
+   */
+  struct CouplingCertificate
+  {
+    double linear = 0., quadratic = 0., cubic = 0.;
+    double asymmetry         = 0.; // the largest of |(K - K^T) x|/|K x| for some fields x of noise
+    double lowest_eigenvalue = 0.; // of C^{-1} K, the rate of the slowest decay
+    double lowest_remainder =
+      0.; // eigenvalue of what is left of a cell, in units of its conductivity; infinite if all cells are whole
+    double             zone_share      = 0.;                        // of the body's volume
+    unsigned long long n_bonds_of_full = 0, n_nonzeros_of_full = 0; // peridynamics everywhere
+
+    /** What is wrong, or nothing: a linear field that is not exact to 1e-10, a negative eigenvalue. */
+    std::string fault() const;
+  };
+
+
+  /** Collective. */
+  template <int dim>
+  CouplingCertificate examine_coupling(const FEMOperator<dim> &op, const bool symmetric);
+} // namespace PeriDeal

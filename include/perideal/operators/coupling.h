@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/full_matrix.h>
+
+#include <perideal/bonds/families.h>
+#include <perideal/bonds/zone.h>
+#include <perideal/operators/bond_form.h>
+
+#include <memory>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * How peridynamic bonds in a zone and finite elements Q1 share one body: which bonds there are, with which conductance, and what is left of
+   * each cell's matrix. Both act on the same unknowns, the nodes on the vertices of the mesh; FEMOperator adds up
+   *
+   *   K = sum of bonds W_ij (e_i - e_j)(e_i - e_j)^T + sum of cells R_c.
+   *
+   * Every process asks for the bonds of its own nodes and for its own cells only. Not collective unless stated.
+   */
+  template <int dim>
+  class Coupling
+  {
+  public:
+    using Bond = typename Families<dim>::Bond;
+    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+
+    virtual ~Coupling() = default;
+
+    /** What the row of an owned node has of bonds, in a fixed order: `weight` and `intact` as in Families, broken bonds included. */
+    virtual void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const = 0;
+
+    /** Nodes that an owned node may ever have a bond to, however the zone moves. @p neighbors is overwritten. */
+    virtual void possible_neighbors_of(const unsigned int         node,
+                                       std::vector<unsigned int> &neighbors) const = 0;
+
+    /**
+     * Turn the matrix K_c of an intact cell into what is left of it, R_c; broken bonds count as whole ones. Returns whether anything has changed.
+     */
+    virtual bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const = 0;
+
+    /** Last change of a cell's matrix, after cracks have cut it. */
+    virtual void finish_cell(const Cell &, dealii::FullMatrix<double> &) const {}
+
+    /** Whether change_cell() leaves nothing at all of a cell, now and whatever cracks do. */
+    virtual bool leaves_nothing(const Cell &) const
+    {
+      return false;
+    }
+
+    /** The bonds are better kept as a form of their own than in a matrix. The same on all processes. */
+    virtual bool has_form() const
+    {
+      return false;
+    }
+
+    /** All of the bonds as one operator. The coupling must outlive it. */
+    virtual std::unique_ptr<BondForm> make_form()
+    {
+      return nullptr;
+    }
+
+    /** Factors of owned nodes and ghosts, by whose mean the form multiplies bonds. */
+    virtual void set_form_factors(std::vector<double>) {}
+
+    /** K is symmetric and R_c positive semidefinite. */
+    virtual bool symmetric() const = 0;
+
+    /** Boxes around the nodes that join the zone on the way to the cracks of that representative time. */
+    virtual std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const = 0;
+
+    /**
+     * Move on to the cracks of that representative time, and the zone with them. A bond's conductance follows from the cracks as they are
+     * then, their whole way included: bonds that join find themselves broken where a crack has passed before.
+     */
+    virtual void set_cracks_of(const double time) = 0;
+
+    /** Share of the body's volume whose nodes are in the zone. Collective. */
+    virtual double zone_share() const = 0;
+
+    /** Whether an owned node is in the zone. */
+    virtual bool in_zone(const unsigned int node) const = 0;
+
+    virtual const Families<dim> &families() const = 0;
+
+    virtual std::size_t memory_consumption() const = 0;
+  };
+
+
+  /** Throws the UserError of a zone that has no node on any process. Collective. */
+  void throw_if_zone_empty(const double n_nodes, const MPI_Comm communicator);
+
+
+  /** The coupling of a scheme. Adds the halo to the nodes. Collective. Throws UserError. */
+  template <int dim>
+  std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>          &nodes,
+                                               const Scene<dim>    &scene,
+                                               const Zone<dim>     &zone,
+                                               const CouplingScheme scheme);
+} // namespace PeriDeal

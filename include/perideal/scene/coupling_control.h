@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/expression.h>
+#include <perideal/scene/section.h>
+
+namespace PeriDeal
+{
+  /** How peridynamics and finite elements share a body. */
+  enum class CouplingScheme
+  {
+    exchange,
+    splice,
+    blending
+  };
+
+  /** Which part of the body peridynamics gets. */
+  enum class ZoneKind
+  {
+    near_cracks,
+    everywhere,
+    adaptive,
+    formula
+  };
+
+
+  /** Section `Coupling`: the model `coupled`. */
+  class CouplingControl : public SceneSection
+  {
+  public:
+    CouplingControl();
+
+    CouplingScheme scheme = CouplingScheme::exchange;
+    ZoneKind       zone   = ZoneKind::near_cracks;
+    double         width  = 1.;      // of the zone on each side of a crack, in horizons
+    Expression     formula;          // in the zone where greater than 0
+    double         overlap     = 0.; // in horizons
+    bool           certificate = true;
+
+    /** Throws UserError for a zone that is none, a width or an overlap below 0, contradicting entries. */
+    void parse();
+
+    /** The entry `Zone` as given. */
+    std::string zone_text() const;
+
+  private:
+    void parse_zone();
+  };
+} // namespace PeriDeal

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/operators/lattice_exchange.h>
+#include <perideal/operators/weighted_coupling.h>
+
+namespace PeriDeal
+{
+  void throw_if_zone_empty(const double n_nodes, const MPI_Comm communicator)
+  {
+    AssertThrow(
+      dealii::Utilities::MPI::sum(n_nodes, communicator) > 0.,
+      UserError(
+        "'Zone' in section 'Coupling': no node of the mesh lies in the zone. Choose a wider zone or a finer "
+        "mesh, or 'Models = finite elements'."));
+  }
+
+
+  template <int dim>
+  std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>          &nodes,
+                                               const Scene<dim>    &scene,
+                                               const Zone<dim>     &zone,
+                                               const CouplingScheme scheme)
+  {
+    if (scheme == CouplingScheme::splice)
+      return std::make_unique<Splice<dim>>(nodes, scene, zone);
+    if (scheme == CouplingScheme::blending)
+      return std::make_unique<Blending<dim>>(nodes, scene, zone);
+    return std::make_unique<LatticeExchange<dim>>(nodes, scene, zone, std::vector<bool>());
+  }
+
+
+  template std::unique_ptr<Coupling<1>> make_coupling(Nodes<1> &,
+                                                      const Scene<1> &,
+                                                      const Zone<1> &,
+                                                      const CouplingScheme);
+  template std::unique_ptr<Coupling<2>> make_coupling(Nodes<2> &,
+                                                      const Scene<2> &,
+                                                      const Zone<2> &,
+                                                      const CouplingScheme);
+  template std::unique_ptr<Coupling<3>> make_coupling(Nodes<3> &,
+                                                      const Scene<3> &,
+                                                      const Zone<3> &,
+                                                      const CouplingScheme);
+} // namespace PeriDeal

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/operators/weighted_coupling.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  WeightedCoupling<dim>::WeightedCoupling(Nodes<dim>       &nodes,
+                                          const Scene<dim> &scene,
+                                          const Zone<dim>  &zone)
+    : bonds(nodes, scene, HaloAround::cells)
+    , zone(zone)
+    , overlap(scene.coupling.overlap * bonds.horizon())
+  {
+    const CrackHistory<dim> &history = bonds.crack_history();
+    Zone<dim>                at_end  = zone;
+    at_end.set_cracks(history.pieces(scene.cracks.end_time));
+    this->zone.set_cracks(history.pieces(history.representative(0.)));
+    double n_in_zone = 0.;
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      {
+        weights.push_back(weight_of(this->zone, nodes.position(i)));
+        weights_at_end.push_back(weight_of(at_end, nodes.position(i)));
+        n_in_zone += i < nodes.n_owned() && weights_at_end[i] > 0.;
+      }
+    throw_if_zone_empty(n_in_zone, nodes.communicator());
+  }
+
+
+  template <int dim>
+  double WeightedCoupling<dim>::weight_of(const Zone<dim> &in, const Point<dim> &p) const
+  {
+    if (overlap == 0.)
+      return in.contains(p) ? 1. : 0.;
+    return 1. - std::min(1., in.distance(p, overlap) / overlap);
+  }
+
+
+  template <int dim>
+  void WeightedCoupling<dim>::bonds_of(const unsigned int node, std::vector<Bond> &list) const
+  {
+    bonds.bonds_of(node, list);
+    unsigned int n_kept = 0;
+    for (Bond &bond : list)
+      {
+        const double weight = bond_weight(weights[node], weights[bond.neighbor]);
+        bond.weight *= weight;
+        bond.intact *= weight;
+        if (weight > 0.)
+          list[n_kept++] = bond;
+      }
+    list.resize(n_kept);
+  }
+
+
+  template <int dim>
+  void WeightedCoupling<dim>::possible_neighbors_of(const unsigned int         node,
+                                                    std::vector<unsigned int> &neighbors) const
+  {
+    std::vector<Bond> list;
+    neighbors.clear();
+    bonds.bonds_of(node, list);
+    for (const Bond &bond : list)
+      if (bond_weight(weights_at_end[node], weights_at_end[bond.neighbor]) > 0.)
+        neighbors.push_back(bond.neighbor);
+  }
+
+
+  template <int dim>
+  double WeightedCoupling<dim>::weight_at(const Cell &cell, const unsigned int vertex) const
+  {
+    return weights[bonds.nodes().partitioner()->global_to_local(cell->vertex_dof_index(vertex, 0))];
+  }
+
+
+  template <int dim>
+  std::vector<BoundingBox<dim>> WeightedCoupling<dim>::joining_by(const double time) const
+  {
+    std::vector<BoundingBox<dim>> boxes;
+    if (!zone.follows_cracks())
+      return boxes;
+    Zone<dim> then = zone;
+    then.set_cracks(bonds.crack_history().pieces(time));
+    auto changes = bonds.crack_history().changes(bonds.cracks_now(), time);
+    for (BoundingBox<dim> &box : changes)
+      box.extend(zone.width() + overlap + bonds.nodes().smallest_spacing());
+    for (unsigned int i = 0; i < weights.size(); ++i)
+      {
+        const Point<dim> &p = bonds.nodes().position(i);
+        if (std::any_of(changes.begin(),
+                        changes.end(),
+                        [&](const auto &box) { return box.point_inside(p); }) &&
+            weight_of(then, p) != weights[i])
+          boxes.push_back({{p, p}});
+      }
+    return boxes;
+  }
+
+
+  template <int dim>
+  void WeightedCoupling<dim>::set_cracks_of(const double time)
+  {
+    bonds.set_cracks_of(time);
+    zone.set_cracks(bonds.crack_history().pieces(time));
+    if (zone.follows_cracks())
+      for (unsigned int i = 0; i < weights.size(); ++i)
+        weights[i] = weight_of(zone, bonds.nodes().position(i));
+  }
+
+
+  template <int dim>
+  double WeightedCoupling<dim>::zone_share() const
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    double            in = 0., all = 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        all += nodes.volume(i);
+        in += in_zone(i) ? nodes.volume(i) : 0.;
+      }
+    return Utilities::MPI::sum(in, nodes.communicator()) /
+           Utilities::MPI::sum(all, nodes.communicator());
+  }
+
+  template <int dim>
+  bool WeightedCoupling<dim>::in_zone(const unsigned int node) const
+  {
+    return weights[node] > 0.;
+  }
+
+  template <int dim>
+  const Families<dim> &WeightedCoupling<dim>::families() const
+  {
+    return bonds;
+  }
+
+  template <int dim>
+  std::size_t WeightedCoupling<dim>::memory_consumption() const
+  {
+    return bonds.memory_consumption() +
+           (weights.capacity() + weights_at_end.capacity()) * sizeof(double);
+  }
+
+
+  template <int dim>
+  bool Blending<dim>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
+  {
+    double mean = 0.;
+    for (const unsigned int v : cell->vertex_indices())
+      mean += this->weight_at(cell, v) / cell->n_vertices();
+    if (mean == 0.)
+      return false;
+    stiffness *= std::max(0., 1. - mean);
+    return true;
+  }
+
+  template <int dim>
+  double Blending<dim>::bond_weight(const double own, const double neighbor) const
+  {
+    return 0.5 * (own + neighbor);
+  }
+
+  template <int dim>
+  bool Blending<dim>::symmetric() const
+  {
+    return true;
+  }
+
+
+  template <int dim>
+  bool Splice<dim>::change_cell(const Cell &, FullMatrix<double> &) const
+  {
+    return false;
+  }
+
+  template <int dim>
+  void Splice<dim>::finish_cell(const Cell &cell, FullMatrix<double> &stiffness) const
+  {
+    for (const unsigned int v : cell->vertex_indices())
+      {
+        const double weight = 1. - this->weight_at(cell, v);
+        for (unsigned int b = 0; b < stiffness.n(); ++b)
+          stiffness(v, b) *= weight;
+      }
+  }
+
+  template <int dim>
+  double Splice<dim>::bond_weight(const double own, const double) const
+  {
+    return own;
+  }
+
+  template <int dim>
+  bool Splice<dim>::symmetric() const
+  {
+    return false;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)       \
+  template class WeightedCoupling<dim>; \
+  template class Blending<dim>;         \
+  template class Splice<dim>;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

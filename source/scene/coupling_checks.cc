@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// What exchange and the other couplings need of the rest of a scene.
+
+#include <perideal/scene/lists.h>
+#include <perideal/scene/scene.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    template <int dim>
+    bool runs(const Scene<dim> &scene, const Model model)
+    {
+      const std::vector<Model> &models = scene.general.models;
+      return std::find(models.begin(), models.end(), model) != models.end();
+    }
+
+
+    /** An entry that bonds beside finite elements cannot have, and why. */
+    struct Obstacle
+    {
+      std::string where, reason;
+    };
+
+
+    template <int dim>
+    std::vector<Obstacle> obstacles_to_bonds_on_elements(const Scene<dim> &scene)
+    {
+      const Peridynamics   &pd = scene.peridynamics;
+      std::vector<Obstacle> list;
+      const auto add = [&](const bool wrong, const std::string &where, const std::string &reason) {
+        if (wrong)
+          list.push_back({where, reason});
+      };
+      add(scene.domain.nodes != NodePlacement::vertices,
+          scene.domain.where("Nodes"),
+          "is 'cell centers'; bonds and elements share the nodes on the vertices");
+      add(scene.domain.shape == Shape::mesh_file,
+          scene.domain.where("Shape"),
+          "is 'mesh file'; the bonds need a lattice of cells (box or plate with hole)");
+      add(scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty(),
+          scene.cracks.where("Mesh"),
+          "is 'faces', which doubles nodes; use 'pairs'");
+      add(pd.flux_treatment != FluxTreatment::natural,
+          pd.where("Flux treatment"),
+          "makes slaves of nodes; use 'natural'");
+      add(pd.self_term != SelfTerm::none, pd.where("Self term"), "is not 'none'");
+      add(pd.surface_correction == SurfaceCorrection::energy,
+          pd.where("Surface correction"),
+          "is 'energy', for bonds without finite elements; use 'none' or 'crack scaling'");
+      add(pd.nodal_volume != NodalVolume::partial,
+          pd.where("Nodal volume"),
+          "is 'full'; use 'partial'");
+      add(scene.material.depends_on_temperature(),
+          scene.material.where("Conductivity"),
+          "or the heat capacity depends on T, which bonds beside elements do not follow");
+      return list;
+    }
+
+
+    const char *const own_treatments =
+      " Use 'Boundary treatment = none' (section 'Peridynamics') for bonds alone.";
+  } // namespace
+
+
+  template <int dim>
+  void Scene<dim>::resolve_boundary_treatment()
+  {
+    const auto list = obstacles_to_bonds_on_elements(*this);
+    if (peridynamics.treatment == BoundaryTreatment::automatic)
+      peridynamics.treatment = list.empty() ? BoundaryTreatment::exchange : BoundaryTreatment::none;
+    else if (peridynamics.treatment == BoundaryTreatment::exchange && !list.empty() &&
+             runs(*this, Model::peridynamics))
+      entry_error(list.front().where,
+                  list.front().reason + ", for 'Boundary treatment = exchange'." + own_treatments);
+  }
+
+
+  template <int dim>
+  void Scene<dim>::check_coupling() const
+  {
+    if (!runs(*this, Model::coupled))
+      return;
+    const auto list = obstacles_to_bonds_on_elements(*this);
+    if (!list.empty())
+      entry_error(list.front().where, list.front().reason + ", for 'Models = coupled'.");
+    if (dim == 1 && coupling.zone == ZoneKind::near_cracks)
+      entry_error(
+        coupling.where("Zone"),
+        "'" + coupling.zone_text() +
+          "' needs a crack, and bodies of 'Dimension' 1 have none. Give a formula of x, or 'everywhere'.");
+    if ((coupling.zone == ZoneKind::near_cracks || coupling.zone == ZoneKind::adaptive) &&
+        cracks.cracks.empty())
+      entry_error(
+        coupling.where("Zone"),
+        "'" + coupling.zone_text() +
+          "' lies around cracks, but section 'Cracks' has none: the zone is empty. Give a formula, or 'everywhere'.");
+    double widest = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      widest = std::max(widest, domain.upper[d] - domain.lower[d]);
+    if (domain.shape != Shape::mesh_file && coupling.overlap * horizon() > widest)
+      entry_error(coupling.where("Overlap"),
+                  "is " + number_text(coupling.overlap) + " horizons, " +
+                    number_text(coupling.overlap * horizon()) + ", wider than the body, " +
+                    number_text(widest) + ".");
+    if (finite_elements.degree > 1)
+      entry_error(
+        finite_elements.where("Degree"),
+        "found " + std::to_string(finite_elements.degree) +
+          "; bonds and elements share the nodes of elements of degree 1 ('Models = coupled').");
+  }
+
+
+  template void Scene<1>::resolve_boundary_treatment();
+  template void Scene<2>::resolve_boundary_treatment();
+  template void Scene<3>::resolve_boundary_treatment();
+  template void Scene<1>::check_coupling() const;
+  template void Scene<2>::check_coupling() const;
+  template void Scene<3>::check_coupling() const;
+} // namespace PeriDeal

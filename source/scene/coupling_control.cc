@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/coupling_control.h>
+#include <perideal/scene/lists.h>
+
+namespace PeriDeal
+{
+  CouplingControl::CouplingControl()
+    : SceneSection("Coupling")
+  {
+    declare(
+      "Scheme",
+      EntryType::choice,
+      "exchange",
+      "",
+      "How the model `coupled` joins peridynamics in the zone with finite elements elsewhere: each bond in exchange for what "
+      "the elements conduct along it (symmetric, exact for linear fields); rows of either model side by side (not symmetric); or "
+      "both energies, weighted over the overlap.",
+      {"exchange", "splice", "blending"});
+    declare(
+      "Zone",
+      EntryType::text,
+      "cracks: 1",
+      "",
+      "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; `adaptive`, near cracks on a mesh that is "
+      "refined there; or a formula of x, y, z, in the zone where it is greater than 0.");
+    declare(
+      "Overlap",
+      EntryType::number,
+      "0",
+      "1",
+      "With `splice` and `blending`: width, in horizons, over which one model passes into the other, outwards from the zone's edge.");
+    declare(
+      "Certificate",
+      EntryType::boolean,
+      "true",
+      "",
+      "Examine the coupling before the run: linear, quadratic and cubic patch tests, symmetry, lowest eigenvalue. Costs about as "
+      "much as three steady solutions.");
+    parse();
+  }
+
+
+  void CouplingControl::parse()
+  {
+    scheme      = choice<CouplingScheme>("Scheme");
+    overlap     = number("Overlap");
+    certificate = boolean("Certificate");
+    if (overlap < 0.)
+      error("Overlap", "found " + text("Overlap") + ", needs 0 or more horizons.");
+    parse_zone();
+    if (zone == ZoneKind::adaptive && scheme != CouplingScheme::exchange)
+      error("Zone",
+            "'adaptive' changes the mesh while the run goes on, which 'Scheme = " +
+              choice_name("Scheme") + "' cannot follow. Use 'exchange', or 'cracks: 1'.");
+    if (overlap > 0. && scheme == CouplingScheme::exchange)
+      error("Overlap", "is for 'Scheme' = splice and blending; 'exchange' has none.");
+  }
+
+
+  std::string CouplingControl::zone_text() const
+  {
+    return text("Zone");
+  }
+
+
+  void CouplingControl::parse_zone()
+  {
+    const std::string &given = text("Zone");
+    const auto         colon = given.find(':');
+    const auto         head  = trimmed(given.substr(0, colon));
+    if (given == "everywhere")
+      zone = ZoneKind::everywhere;
+    else if (given == "adaptive")
+      zone = ZoneKind::adaptive;
+    else if (colon != std::string::npos && head == "cracks")
+      {
+        zone  = ZoneKind::near_cracks;
+        width = parse_number(given.substr(colon + 1), where("Zone"));
+        if (width < 0.)
+          error("Zone", "found '" + given + "', needs 0 or more horizons.");
+      }
+    else if (colon != std::string::npos || given == "cracks")
+      error(
+        "Zone",
+        "found '" + given +
+          "', needs 'cracks: c' with a number of horizons c, 'everywhere', 'adaptive', or a formula of x, y and z.");
+    else
+      {
+        zone    = ZoneKind::formula;
+        formula = Expression(given, where("Zone"));
+        if (formula.depends_on_time())
+          error("Zone", "found '" + given + "'; a formula of the zone may not depend on t.");
+      }
+  }
+} // namespace PeriDeal

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <perideal/analysis/coupling_certificate.h>
+#include <perideal/analysis/heat_flux.h>
+#include <perideal/base/user_error.h>
+#include <perideal/operators/coupling.h>
+#include <perideal/operators/fem_operator.h>
+
+#include <optional>
+
+#include "model_runs.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    class FEMRun : public ModelRun<dim>
+    {
+    public:
+      /** @param model finite elements, coupled, or peridynamics by exchange, which is `coupled` with the zone everywhere */
+      FEMRun(const Model model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
+        : scene(scene)
+        , model(model)
+        , element(model == Model::finite_elements ? scene.finite_elements.degree : 1)
+        , handler(mesh)
+      {
+        {
+          Timings::Scope scope(this->timings, "unknowns");
+          handler.distribute_dofs(element);
+          if (scene.domain.shape != Shape::mesh_file && element.degree == 1)
+            number_along_lattice(handler, scene.domain);
+        }
+        build_operator();
+        if (model == Model::coupled && scene.coupling.certificate)
+          examine();
+      }
+
+      std::string name() const override
+      {
+        return to_string(model);
+      }
+
+      const DoFHandler<dim> &dofs() const override
+      {
+        return handler;
+      }
+
+      const Nodes<dim> *nodes() const override
+      {
+        return model == Model::peridynamics ? node_set.get() : nullptr;
+      }
+
+      Operator &op() const override
+      {
+        return *fem;
+      }
+
+      bool update(const double t) override
+      {
+        return fem->update(t);
+      }
+
+      void set_initial_value(Vector &u) const override
+      {
+        // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for higher degrees, which it would spoil, and for
+        // peridynamics, whose values are those of points.
+        const bool    project = element.degree == 1 && model != Model::peridynamics;
+        FEValues<dim> values(element,
+                             project ? Quadrature<dim>(QGauss<dim>(2)) :
+                                       Quadrature<dim>(element.get_unit_support_points()),
+                             update_values | update_quadrature_points | update_JxW_values);
+        Vector        weight(u);
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        u      = 0.;
+        weight = 0.;
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              values.reinit(cell);
+              cell->get_dof_indices(indices);
+              for (const unsigned int q : values.quadrature_point_indices())
+                for (unsigned int i = 0; i < indices.size(); ++i)
+                  {
+                    const double share = project ? values.shape_value(i, q) * values.JxW(q) :
+                                                   (i == q ? 1. : 0.);
+                    if (share == 0.)
+                      continue;
+                    weight(indices[i]) += share;
+                    u(indices[i]) += share * scene.initial_and_source.initial_value.value(
+                                               values.quadrature_point(q));
+                  }
+            }
+        u.compress(VectorOperation::add);
+        weight.compress(VectorOperation::add);
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          u.local_element(i) /= weight.local_element(i);
+      }
+
+      std::vector<OutputField> derived_fields(const Vector &u, const double) const override
+      {
+        VectorField<dim> flux;
+        for (Vector &component : flux)
+          fem->initialize_vector(component);
+        std::vector<OutputField> fields;
+        const std::string        flux_name = names_of(scene.general.physics).flux;
+        if (model == Model::finite_elements)
+          {
+            element_heat_flux<dim>(handler, scene.material, fem->cut_cells(), u, flux);
+            fields.push_back(vector_field<dim>(flux_name, flux));
+          }
+        else
+          {
+            VectorField<dim> one_sided = flux;
+            coupled_heat_flux<dim>(*fem, u, flux, one_sided);
+            fields.push_back(vector_field<dim>(flux_name, flux));
+            fields.push_back(vector_field<dim>(flux_name + "_one_sided", one_sided));
+            add_bond_fields(u, fields);
+          }
+        if (scene.general.physics == Physics::moisture)
+          {
+            std::array<Vector, 1> concentration{u};
+            for_each_node([&](const unsigned int i, const Point<dim> &p) {
+              concentration[0].local_element(i) =
+                scene.material.saturated_concentration.value(p) * u.local_element(i);
+            });
+            fields.push_back(vector_field<1>("concentration", concentration));
+          }
+        return fields;
+      }
+
+      double weight(const Vector &u) const override
+      {
+        FEValues<dim>       values(element,
+                             QGauss<dim>(element.degree + 1),
+                             update_values | update_quadrature_points | update_JxW_values);
+        std::vector<double> wetness(values.n_quadrature_points);
+        double              sum = 0.;
+        u.update_ghost_values();
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              values.reinit(cell);
+              values.get_function_values(u, wetness);
+              for (const unsigned int q : values.quadrature_point_indices())
+                sum += scene.material.saturated_concentration.value(values.quadrature_point(q)) *
+                       wetness[q] * values.JxW(q);
+            }
+        u.set_ghost_state(false);
+        return Utilities::MPI::sum(sum, handler.get_communicator());
+      }
+
+      Difference error(const Vector                                    &u,
+                       const std::function<double(const Point<dim> &)> &exact) const override
+      {
+        if (scene.cracks.cracks.empty() || scene.cracks.mesh == CrackMesh::faces ||
+            element.degree > 1)
+          return element_difference(handler, u, exact);
+        // Inside a cut cell the interpolant runs across the crack: only the values at the nodes are the model's.
+        Vector expected(u), weights(u);
+        for_each_node(
+          [&](const unsigned int i, const Point<dim> &p) { expected.local_element(i) = exact(p); });
+        weights = 0.;
+        FEValues<dim> values(element, QGauss<dim>(2), update_values | update_JxW_values);
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              values.reinit(cell);
+              cell->get_dof_indices(indices);
+              for (const unsigned int q : values.quadrature_point_indices())
+                for (unsigned int i = 0; i < indices.size(); ++i)
+                  weights(indices[i]) += values.shape_value(i, q) * values.JxW(q);
+            }
+        weights.compress(VectorOperation::add);
+        return nodal_difference(u, expected, [&](const unsigned int i) {
+          return weights.local_element(i);
+        });
+      }
+
+      std::vector<std::string> notes() const override
+      {
+        if (!certificate || certificate->fault().empty())
+          return {};
+        return {certificate->fault() +
+                ". 'Scheme = exchange' (section 'Coupling') has neither fault."};
+      }
+
+      const CouplingCertificate *examined() const override
+      {
+        return certificate ? &*certificate : nullptr;
+      }
+
+      std::vector<std::pair<std::string, std::string>> settings() const override
+      {
+        std::vector<std::pair<std::string, std::string>> list{
+          {"element", "Q" + std::to_string(element.degree)},
+          {"capacity", scene.finite_elements.consistent_capacity ? "consistent" : "lumped"}};
+        if (model != Model::finite_elements)
+          {
+            for (const auto &setting : bond_settings(scene, fem->bonds().families()))
+              if (setting.first != "boundary treatment" || model == Model::peridynamics)
+                list.push_back(setting);
+            static const char *const schemes[] = {"exchange", "splice", "blending"};
+            list.emplace_back("coupling", schemes[static_cast<int>(scheme())]);
+            list.emplace_back("zone",
+                              model == Model::coupled ? scene.coupling.zone_text() : "everywhere");
+            list.emplace_back("share of the body in the zone",
+                              to_text(100. * fem->bonds().zone_share()) + " %");
+          }
+        if (!scene.cracks.cracks.empty())
+          list.emplace_back("cracks",
+                            scene.cracks.mesh == CrackMesh::pairs ? "pairs" :
+                            scene.cracks.mesh == CrackMesh::faces ? "faces" :
+                                                                    "removed");
+        return list;
+      }
+
+    private:
+      void build_operator()
+      {
+        Timings::Scope                 scope(this->timings, "operator");
+        std::unique_ptr<Coupling<dim>> coupling;
+        if (model != Model::finite_elements)
+          {
+            node_set = std::make_unique<Nodes<dim>>(handler,
+                                                    scene.domain,
+                                                    scene.cracks,
+                                                    NodalVolume::partial);
+            coupling = make_coupling(
+              *node_set,
+              scene,
+              model == Model::coupled ? Zone<dim>(scene.coupling, scene.horizon()) : Zone<dim>(),
+              scheme());
+          }
+        fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling));
+      }
+
+
+      /** Exchange that is not exact must not run; of the others the user is told how wrong they are. */
+      void examine()
+      {
+        Timings::Scope scope(this->timings, "certificate");
+        certificate             = examine_coupling(*fem, fem->symmetric());
+        const std::string fault = certificate->fault();
+        AssertThrow(fault.empty() || scheme() != CouplingScheme::exchange,
+                    UserError("The coupling of section 'Coupling' is not sound: " + fault +
+                              ". Choose another 'Zone', or a mesh with less distorted cells."));
+      }
+
+
+      /** Peridynamics alone has nothing to splice or to blend with. */
+      CouplingScheme scheme() const
+      {
+        return model == Model::coupled ? scene.coupling.scheme : CouplingScheme::exchange;
+      }
+
+
+      /** Which nodes are in the zone, and the part of their bonds that cracks have cut. */
+      void add_bond_fields(const Vector &u, std::vector<OutputField> &fields) const
+      {
+        std::array<Vector, 1>                     zone{u}, cut{u}, volume{u};
+        std::vector<typename Coupling<dim>::Bond> bonds;
+        for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+          {
+            zone[0].local_element(i)   = fem->bonds().in_zone(i);
+            volume[0].local_element(i) = node_set->volume(i);
+            cut[0].local_element(i)    = 0.;
+            if (!fem->bonds().families().near_crack(i))
+              continue;
+            fem->bonds().bonds_of(i, bonds);
+            double all = 0., gone = 0.;
+            for (const auto &bond : bonds)
+              {
+                all += bond.intact;
+                gone += bond.cut ? bond.intact : 0.;
+              }
+            cut[0].local_element(i) = all > 0. ? gone / all : 0.;
+          }
+        if (model == Model::coupled)
+          fields.push_back(vector_field<1>("zone", zone));
+        fields.push_back(vector_field<1>("node_volume", volume));
+        fields.push_back(vector_field<1>("cut_fraction", cut));
+      }
+
+
+      /** Call visit(local index, position) for each owned dof. */
+      void for_each_node(
+        const std::function<void(const unsigned int, const Point<dim> &)> &visit) const
+      {
+        FEValues<dim>                        values(element,
+                             Quadrature<dim>(element.get_unit_support_points()),
+                             update_quadrature_points);
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        const auto                          &owned = this->solution.get_partitioner();
+        for (const auto &cell : handler.active_cell_iterators())
+          if (!cell->is_artificial())
+            {
+              values.reinit(cell);
+              cell->get_dof_indices(indices);
+              for (unsigned int i = 0; i < indices.size(); ++i)
+                if (owned->in_local_range(indices[i]))
+                  visit(owned->global_to_local(indices[i]), values.quadrature_point(i));
+            }
+      }
+
+      const Scene<dim>                  &scene;
+      const Model                        model;
+      FE_Q<dim>                          element;
+      DoFHandler<dim>                    handler;
+      std::unique_ptr<Nodes<dim>>        node_set; // null for finite elements alone
+      std::unique_ptr<FEMOperator<dim>>  fem;
+      std::optional<CouplingCertificate> certificate;
+    };
+  } // namespace
+
+
+  template <int dim>
+  std::unique_ptr<ModelRun<dim>> make_element_run(const Model               model,
+                                                  const Triangulation<dim> &mesh,
+                                                  const Scene<dim>         &scene)
+  {
+    return std::make_unique<FEMRun<dim>>(model, mesh, scene);
+  }
+
+
+  template std::unique_ptr<ModelRun<1>> make_element_run(const Model,
+                                                         const Triangulation<1> &,
+                                                         const Scene<1> &);
+  template std::unique_ptr<ModelRun<2>> make_element_run(const Model,
+                                                         const Triangulation<2> &,
+                                                         const Scene<2> &);
+  template std::unique_ptr<ModelRun<3>> make_element_run(const Model,
+                                                         const Triangulation<3> &,
+                                                         const Scene<3> &);
+} // namespace PeriDeal
