@@ -295,13 +295,30 @@ namespace PeriDeal
                                const bool         with_self_term) const
   {
     AssertIndexRange(node, own_nodes->n_owned());
+    known_bonds_of(node, bonds);
+    if (with_self_term && !self_additions.empty())
+      add_self_term(node, bonds);
+  }
+
+
+  template <int dim>
+  void Families<dim>::known_bonds_of(const unsigned int node, std::vector<Bond> &bonds) const
+  {
     bonds.clear();
     if (on_lattice)
       bonds_on_lattice(node, members, bonds);
     else
       bonds_off_lattice(node, bonds);
-    if (with_self_term && !self_additions.empty())
-      add_self_term(node, bonds);
+  }
+
+
+  template <int dim>
+  bool Families<dim>::is_parted(const unsigned int node, const unsigned int neighbor) const
+  {
+    bool cut = false;
+    if (own_nodes->has_doubled_nodes())
+      kept_fraction(node, neighbor, cut);
+    return cut;
   }
 
 

@@ -5,6 +5,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/operators/lattice_exchange.h>
+#include <perideal/operators/mesh_exchange.h>
 #include <perideal/operators/weighted_coupling.h>
 
 namespace PeriDeal
@@ -29,7 +30,9 @@ namespace PeriDeal
       return std::make_unique<Splice<dim>>(nodes, scene, zone);
     if (scheme == CouplingScheme::blending)
       return std::make_unique<Blending<dim>>(nodes, scene, zone);
-    return std::make_unique<LatticeExchange<dim>>(nodes, scene, zone, std::vector<bool>());
+        if (nodes.lattice() && !nodes.has_doubled_nodes())
+      return std::make_unique<LatticeExchange<dim>>(nodes, scene, zone, std::vector<bool>());
+    return std::make_unique<MeshExchange<dim>>(nodes, scene, zone);
   }
 
 

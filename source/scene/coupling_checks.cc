@@ -39,12 +39,6 @@ namespace PeriDeal
       add(scene.domain.nodes != NodePlacement::vertices,
           scene.domain.where("Nodes"),
           "is 'cell centers'; bonds and elements share the nodes on the vertices");
-      add(scene.domain.shape == Shape::mesh_file,
-          scene.domain.where("Shape"),
-          "is 'mesh file'; the bonds need a lattice of cells (box or plate with hole)");
-      add(scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty(),
-          scene.cracks.where("Mesh"),
-          "is 'faces', which doubles nodes; use 'pairs'");
       add(pd.flux_treatment != FluxTreatment::natural,
           pd.where("Flux treatment"),
           "makes slaves of nodes; use 'natural'");

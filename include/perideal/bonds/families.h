@@ -53,6 +53,12 @@ namespace PeriDeal
                   std::vector<Bond> &bonds,
                   const bool         with_self_term = true) const;
 
+        /** The same for any node known here: the bonds whose other ends are known here, too. Without self term. */
+    void known_bonds_of(const unsigned int node, std::vector<Bond> &bonds) const;
+
+    /** A crack that is cut into the mesh lies between two nodes. */
+    bool is_parted(const unsigned int node, const unsigned int neighbor) const;
+
     /** On a lattice only: the bonds to neighbours one spacing away along an axis, without self term. Else as bonds_of(). */
     void nearest_bonds_of(const unsigned int node, std::vector<Bond> &bonds) const;
 

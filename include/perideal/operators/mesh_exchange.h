@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/mesh/cell_geometry.h>
+#include <perideal/operators/coupling.h>
+#include <perideal/scene/scene.h>
+
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Bondwise exchange on any mesh of quadrilaterals or hexahedra (doc/coupling.md): each bond is followed through the cells on its way, and cells may be
+   * distorted. What the bonds of a zone would take from a distorted cell can be more than it has: with lambda_c the largest eigenvalue of sum W_b L_b against
+   * K_c on linear fields each bond is scaled by
+   *
+   *   s_b = min(1, 0.9 min over its way of 1/lambda_c),
+   *
+   * and R_c = K_c + H E H^T - sum s_b W_b L_b, H orthonormal and orthogonal to linear fields, E the smallest that makes R_c positive semidefinite:
+   * the positive part of B^T A^+ B - C, with A, B, C the linear, mixed and hourglass blocks of K_c - sum s_b W_b L_b.
+   */
+  template <int dim>
+  class MeshExchange : public Coupling<dim>
+  {
+  public:
+    using typename Coupling<dim>::Bond;
+    using typename Coupling<dim>::Cell;
+
+    /** Collective. Throws UserError for a zone without nodes, and for cells so distorted that hardly any bond is left. */
+    MeshExchange(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone);
+    ~MeshExchange() override;
+
+    void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
+    void possible_neighbors_of(const unsigned int         node,
+                               std::vector<unsigned int> &neighbors) const override;
+    bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
+    bool symmetric() const override;
+    std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
+    void                                  set_cracks_of(const double time) override;
+    double                                zone_share() const override;
+    bool                                  in_zone(const unsigned int node) const override;
+    const Families<dim>                  &families() const override;
+    std::size_t                           memory_consumption() const override;
+
+    /** Part of the bonds' conductance that distorted cells leave: sum s_b W_b over sum W_b. Collective. */
+    double kept_share() const;
+
+  private:
+    static constexpr unsigned int n_corners = dealii::GeometryInfo<dim>::vertices_per_cell;
+
+    /** A cell of this process, or a copy of one of another. */
+    struct NearCell
+    {
+      CellCorners<dim> corners;
+      double           lowest, highest; // conductivity
+      double           strain = 0.;     // lambda_c
+    };
+
+    /** What a bond has in a cell: W L = weight change change^T. */
+    struct Passage
+    {
+      unsigned int bond, cell;
+      std::array<double, n_corners>
+        change; // over the square root of the length, times that of the share
+    };
+
+    /** Between two nodes known here, the first one of a smaller local number. */
+    struct ZoneBond
+    {
+      unsigned int nodes[2];
+      double       intact; // without cracks and scaling
+      double       scale = 1.;
+    };
+
+    struct Tree;
+
+    void find_cells(const Scene<dim> &scene);
+    void send_cells();
+    void share_strains();
+    void find_bonds();
+    bool follow(const ZoneBond &bond, std::vector<Passage> &way) const;
+    void find_strains();
+    void sum_up();
+
+    Families<dim>                                     bonds;
+    Zone<dim>                                         zone;
+    double                                            last;             // time of the run
+    std::vector<bool>                                 joined, may_join; // by local number of nodes
+    std::vector<NearCell>                             cells;            // this process's first
+    std::vector<unsigned int>                         cell_of_index;    // by active cell index
+    std::map<unsigned int, std::vector<unsigned int>> sent, received;   // cells, by process
+    std::unique_ptr<Tree>                             tree;
+    std::vector<ZoneBond>                             zone_bonds;
+    std::vector<Passage>                   passages; // of zone_bonds in own cells, in their order
+    std::vector<std::vector<unsigned int>> bonds_of_node; // owned
+    std::vector<std::vector<double>>       taken;         // of own cells, sum s W L; empty: no bond
+  };
+} // namespace PeriDeal

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/analysis/coupling_certificate.h>
+#include <perideal/mesh/cell_geometry.h>
+#include <perideal/operators/mesh_exchange.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "operator_test_tools.h"
+
+using namespace PeriDeal;
+using namespace PeriDeal::OperatorTests;
+
+namespace
+{
+  /**
+   * A Gmsh file of n^dim quadrilaterals or hexahedra on the unit square or cube, whose inner vertices are moved by up to a part of the spacing. Each process
+   * writes its own, all the same.
+   */
+  template <int dim>
+  std::string distorted_mesh(const unsigned int n, const double part)
+  {
+    const std::string name =
+      (std::filesystem::temp_directory_path() /
+       ("perideal_" + std::to_string(getpid()) + "_" + std::to_string(dim) + ".msh"))
+        .string();
+    std::ofstream file(name);
+    file.precision(17);
+    unsigned int n_nodes = 1, n_cells = 1;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        n_nodes *= n + 1;
+        n_cells *= n;
+      }
+    std::mt19937                           random(7);
+    std::uniform_real_distribution<double> shift(-part / n, part / n);
+    file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << n_nodes << '\n';
+    for (unsigned int k = 0; k < n_nodes; ++k)
+      {
+        std::array<unsigned int, 3> at{k % (n + 1), k / (n + 1) % (n + 1), k / (n + 1) / (n + 1)};
+        bool                        inside = true;
+        for (unsigned int d = 0; d < dim; ++d)
+          inside = inside && at[d] > 0 && at[d] < n;
+        file << k + 1;
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            const double moved = shift(random);
+            file << ' ' << (d < dim ? at[d] / double(n) + (inside ? moved : 0.) : 0.);
+          }
+        file << '\n';
+      }
+    file << "$EndNodes\n$Elements\n" << n_cells << '\n';
+    const auto node = [&](const unsigned int i, const unsigned int j, const unsigned int k) {
+      return 1 + i + (n + 1) * (j + (dim == 3 ? (n + 1) * k : 0));
+    };
+    for (unsigned int c = 0; c < n_cells; ++c)
+      {
+        const unsigned int i = c % n, j = c / n % n, k = c / n / n;
+        file << c + 1 << (dim == 3 ? " 5 2 1 1" : " 3 2 1 1");
+        for (unsigned int level = 0; level < (dim == 3 ? 2u : 1u); ++level)
+          file << ' ' << node(i, j, k + level) << ' ' << node(i + 1, j, k + level) << ' '
+               << node(i + 1, j + 1, k + level) << ' ' << node(i, j + 1, k + level);
+        file << '\n';
+      }
+    file << "$EndElements\n";
+    return name;
+  }
+
+
+  template <int dim>
+  Settings on(const std::string &mesh, const std::string &horizon, const std::string &zone)
+  {
+    return {{"Domain/Shape", "mesh file"},
+            {"Domain/Mesh file", mesh},
+            {"Peridynamics/Horizon", horizon},
+            {"Coupling/Zone", zone}};
+  }
+
+
+  template <int dim>
+  void check(const std::string &mesh, const std::string &horizon, const double least_kept)
+  {
+    for (const std::string zone : {"everywhere",
+                                   "0.3 - max(abs(x - 0.5), abs(y - 0.5))",
+                                   "0.55 - x",
+                                   "sin(4375.85*x + 1234.5*y + 777.7*z + 2) + 0.2"})
+      {
+        const Problem<dim>        problem(on<dim>(mesh, horizon, zone), Model::coupled);
+        const CouplingCertificate found = examine_coupling(*problem.fem, true);
+        const double              kept =
+          dynamic_cast<const MeshExchange<dim> &>(problem.fem->bonds()).kept_share();
+        EXPECT_LT(found.linear, 1e-12) << zone;
+        EXPECT_LT(found.asymmetry, 1e-13) << zone;
+        EXPECT_GT(found.lowest_remainder, -1e-13) << zone;
+        EXPECT_GT(found.lowest_eigenvalue, 0.) << zone;
+        EXPECT_GT(problem.fem->size().bonds, 0u) << zone;
+        EXPECT_GT(kept, least_kept) << zone;
+        if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+          std::cout << dim << "D, " << zone << ": linear " << found.linear << ", quadratic "
+                    << found.quadratic << ", cubic " << found.cubic << ", kept " << kept
+                    << ", cell " << found.lowest_remainder << std::endl;
+        Vector one = problem.values([](const dealii::Point<dim> &) { return 1.; }), image = one;
+        problem.fem->multiply(image, one);
+        EXPECT_LT(image.linfty_norm() / problem.fem->diagonal().linfty_norm(), 1e-13) << zone;
+      }
+  }
+} // namespace
+
+
+TEST(CellGeometry, unit_points_and_crossings)
+{
+  const CellCorners<3>   cell{{{0., 0., 0.},
+                               {1.1, 0.1, 0.},
+                               {-0.1, 0.9, 0.1},
+                               {1., 1.2, 0.},
+                               {0.1, 0., 1.},
+                               {1., 0.05, 1.1},
+                               {0., 1., 0.9},
+                               {1.1, 1., 1.05}}};
+  const dealii::Point<3> unit(0.3, 0.8, 0.4);
+  dealii::Point<3>       p, found;
+  const auto             values = shape_values(unit);
+  for (unsigned int v = 0; v < values.size(); ++v)
+    p += values[v] * (cell[v] - dealii::Point<3>());
+  ASSERT_TRUE(unit_point(cell, p, found));
+  EXPECT_LT(found.distance(unit), 1e-14);
+  // From the middle a ray leaves through one face; where it does, one unit coordinate is 0 or 1.
+  for (const dealii::Point<3> &end : {dealii::Point<3>(3., 0.4, 0.7),
+                                      dealii::Point<3>(0.4, -2., 0.3),
+                                      dealii::Point<3>(0.4, 0.5, 4.)})
+    {
+      std::vector<double> places;
+      add_face_crossings(cell, p, end, places);
+      unsigned int n_ahead = 0;
+      for (const double s : places)
+        if (s > 0.)
+          {
+            ++n_ahead;
+            ASSERT_TRUE(unit_point(cell, p + s * (end - p), found));
+            double nearest = 1.;
+            for (unsigned int d = 0; d < 3; ++d)
+              nearest = std::min({nearest, std::abs(found[d]), std::abs(found[d] - 1.)});
+            EXPECT_LT(nearest, 1e-12);
+          }
+      EXPECT_EQ(n_ahead, 1u);
+    }
+}
+
+
+TEST(MeshExchange, quadrilaterals_distorted_by_30_percent)
+{
+  check<2>(distorted_mesh<2>(12, 0.3), "0.25", 0.3);
+}
+
+
+TEST(MeshExchange, hexahedra_distorted_by_10_percent)
+{
+  check<3>(distorted_mesh<3>(6, 0.1), "0.4", 0.3);
+}
+
+
+TEST(MeshExchange, crack_cut_into_the_mesh)
+{
+  const Settings            shape{{"Domain/Cells", "16, 16"},
+                       {"Cracks/Segments", "0.25,0.5 ; 0.75,0.5"},
+                       {"Cracks/Mesh", "faces"},
+                       {"Coupling/Zone", "everywhere"}};
+  const Problem<2>          problem(shape, Model::coupled), elements(shape, Model::finite_elements);
+  const CouplingCertificate found = examine_coupling(*problem.fem, true);
+  EXPECT_LT(found.linear, 1e-12);
+  EXPECT_GT(found.lowest_remainder, -1e-13);
+  EXPECT_GT(problem.fem->size().bonds, 1000u);
+}
+
+
+TEST(MeshExchange, same_on_all_processes)
+{
+  const Settings settings = on<2>(distorted_mesh<2>(12, 0.3), "0.25", "0.55 - x") +
+                            Settings{{"Cracks/Segments", "0.2,0.31 ; 0.71,0.52"}};
+  const Problem<2> all(settings, Model::coupled), alone(settings, Model::coupled, MPI_COMM_SELF);
+  Vector           a = all.vector(), b = alone.vector();
+  all.fem->apply(a, all.values(bumpy<2>));
+  alone.fem->apply(b, alone.values(bumpy<2>));
+  EXPECT_LT(difference(all, a, alone, b), 1e-13 * alone.op().diagonal().linfty_norm());
+  EXPECT_EQ(all.op().size().bonds, alone.op().size().bonds);
+}
