@@ -3,6 +3,7 @@
 
 // Bonds as a form of their own beside the matrix of the cells: peridynamics in the whole body.
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
@@ -10,6 +11,7 @@
 #include <perideal/operators/fem_operator.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "fem_cell_data.h"
 
@@ -42,8 +44,14 @@ namespace PeriDeal
   {
     remainder          = RemainderRows();
     const auto &layout = *coupling->families().nodes().partitioner();
+    double      size   = 0.;
+    for_each_entry(stiffness, [&](const unsigned int, const auto, const double value) {
+      size = std::max(size, std::abs(value));
+    });
+    // What is left of two equal terms is round-off, another on each number of processes.
+    const double nothing = 1e-14 * Utilities::MPI::max(size, dofs.get_communicator());
     for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
-      if (value == 0.)
+      if (std::abs(value) <= nothing)
         return;
       if (remainder.rows.empty() || remainder.rows.back() != i)
         {

@@ -202,9 +202,9 @@ def growing():
 
 def others():
     """The remaining scenes: both models agree as far as they did when this was written, and no heat is lost."""
-    # Measured differences of the heat: 1.03e-3, 3.2e-3, 3.4e-4, 7.3e-4; along the line 1.1e-3, 3.4e-3, 1.5e-3, 2.0e-3.
+    # Measured differences of the heat: 1.03e-3, 3.2e-3, 3.4e-4, 7.3e-4, 4.5e-3; along the line 1.1e-3, 3.4e-3, 1.5e-3, 2.0e-3, 0.26 (of 100).
     for name, allowed, apart in (("crack_leaving_body", 1.5e-3, 1.7e-3), ("graded_material_crack", 4.8e-3, 5.1e-3),
-                                 ("hole_beside_crack", 5.1e-4, 2.2e-3), ("square_crack_3d", 1.1e-3, 3e-3)):
+                                 ("hole_beside_crack", 5.1e-4, 2.2e-3), ("square_crack_3d", 1.1e-3, 3e-3), ("distorted_mesh", 6.7e-3, 0.4)):
         run = run_quietly(name)
         heats = [next(iter(run.model(m)["boundary flux"].values())) for m in (FEM, BOTH)]
         check_close(heats[1], heats[0], relative=allowed, what=f"{name}: heat of the coupled model")

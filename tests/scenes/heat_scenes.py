@@ -178,13 +178,21 @@ def gmsh_plate():
     for horizon in (0.2, 0.1):
         run = run_quietly("gmsh_plate", Peridynamics__Horizon=str(horizon), Solver__Tolerance="1e-12")
         errors.append(run.error("peridynamics"))
-    # Measured: 2.2e-4, 6.0e-2; heat off by 6e-5 (chords instead of arcs).
+    # Measured: 2.2e-4, 2.3e-4; heat off by 6e-5 (chords instead of arcs).
     table.add_limit("finite elements: relative error", run.error("finite elements"), 3.3e-4)
-    table.add_limit("peridynamics, horizon 0.1: relative error", errors[1], 8.9e-2)
+    table.add_limit("peridynamics, horizon 0.1: relative error", errors[1], 3.5e-4)
     table.add("finite elements: heat", run.model("finite elements")["boundary flux"]["1"], heat, relative=9e-5)
-    table.add("peridynamics: order in the horizon", observed_orders([2, 1], errors)[0], 1, absolute=0.15)
+    # The mesh is the same: what is left at the smaller horizon is the mesh's own error.
+    table.add("peridynamics: order in the horizon", observed_orders([2, 1], errors)[0], 1.7, absolute=0.15)
     for model in ("finite elements", "peridynamics"):
         table.add_limit(f"{model}: imbalance of heat", abs(run.model(model)["heat balance"]["imbalance"]), 1e-8)
+    # Without exchange families are cut off along all sides, an error of first order; measured: 6.0e-2.
+    errors = []
+    for horizon in (0.2, 0.1):
+        run = run_quietly("gmsh_plate", Peridynamics__Horizon=str(horizon), Solver__Tolerance="1e-12", Peridynamics__Boundary_treatment="none")
+        errors.append(run.error("peridynamics"))
+    table.add_limit("peridynamics, none, horizon 0.1: relative error", errors[1], 8.9e-2)
+    table.add("peridynamics, none: order in the horizon", observed_orders([2, 1], errors)[0], 1, absolute=0.15)
     table.show()
     check(run.model("peridynamics")["operator form"] == "stored", "a mesh without a lattice needs stored bonds")
 
