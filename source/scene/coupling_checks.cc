@@ -82,6 +82,10 @@ namespace PeriDeal
     const auto list = obstacles_to_bonds_on_elements(*this);
     if (!list.empty())
       entry_error(list.front().where, list.front().reason + ", for 'Models = coupled'.");
+    if (coupling.zone == ZoneKind::adaptive)
+      entry_error(
+        coupling.where("Zone"),
+        "'adaptive' needs a mesh that is refined while the run goes on, which this version does not have. Use 'cracks: 1' on a finer mesh.");
     if (dim == 1 && coupling.zone == ZoneKind::near_cracks)
       entry_error(
         coupling.where("Zone"),

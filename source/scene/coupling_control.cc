@@ -23,8 +23,8 @@ namespace PeriDeal
       EntryType::text,
       "cracks: 1",
       "",
-      "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; `adaptive`, near cracks on a mesh that is "
-      "refined there; or a formula of x, y, z, in the zone where it is greater than 0.");
+      "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; or a formula of "
+      "x, y, z, in the zone where it is greater than 0. (`adaptive`, near cracks on a mesh that is refined there, is not there yet.)");
     declare(
       "Overlap",
       EntryType::number,

@@ -119,6 +119,7 @@ def scene_mistakes(folder):
         ("zone of negative width", {"Models": "coupled", "Coupling/Zone": "cracks: -1"}, ["'Zone'", "0 or more"]),
         ("zone that changes", {"Models": "coupled", "Coupling/Zone": "x - t"}, ["'Zone'", "may not depend on t"]),
         ("adaptive splice", {"Models": "coupled", "Coupling/Zone": "adaptive", "Coupling/Scheme": "splice"}, ["'Zone'", "'adaptive'", "exchange"]),
+        ("adaptive zone", {"Models": "coupled", "Coupling/Zone": "adaptive"}, ["'Zone'", "'adaptive'", "'cracks: 1'"]),
         ("overlap wider than the body", {"Models": "coupled", "Coupling/Zone": "everywhere", "Coupling/Scheme": "blending", "Coupling/Overlap": "1000"},
          ["'Overlap'", "wider than the body"]),
         ("overlap of exchange", {"Models": "coupled", "Coupling/Zone": "everywhere", "Coupling/Overlap": "1"}, ["'Overlap'", "'exchange'"]),
