@@ -21,6 +21,21 @@ namespace PeriDeal
 
 
   template <int dim>
+  double Coupling<dim>::zone_share() const
+  {
+    const Nodes<dim> &nodes = families().nodes();
+    double            in = 0., all = 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        all += nodes.volume(i);
+        in += in_zone(i) ? nodes.volume(i) : 0.;
+      }
+    return dealii::Utilities::MPI::sum(in, nodes.communicator()) /
+           dealii::Utilities::MPI::sum(all, nodes.communicator());
+  }
+
+
+  template <int dim>
   std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>          &nodes,
                                                const Scene<dim>    &scene,
                                                const Zone<dim>     &zone,
@@ -30,12 +45,15 @@ namespace PeriDeal
       return std::make_unique<Splice<dim>>(nodes, scene, zone);
     if (scheme == CouplingScheme::blending)
       return std::make_unique<Blending<dim>>(nodes, scene, zone);
-        if (nodes.lattice() && !nodes.has_doubled_nodes())
+    if (nodes.lattice() && !nodes.has_doubled_nodes())
       return std::make_unique<LatticeExchange<dim>>(nodes, scene, zone, std::vector<bool>());
     return std::make_unique<MeshExchange<dim>>(nodes, scene, zone);
   }
 
 
+  template double                       Coupling<1>::zone_share() const;
+  template double                       Coupling<2>::zone_share() const;
+  template double                       Coupling<3>::zone_share() const;
   template std::unique_ptr<Coupling<1>> make_coupling(Nodes<1> &,
                                                       const Scene<1> &,
                                                       const Zone<1> &,

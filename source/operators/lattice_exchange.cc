@@ -247,20 +247,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  double LatticeExchange<dim>::zone_share() const
-  {
-    const Nodes<dim> &nodes = bonds.nodes();
-    double            in = 0., all = 0.;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        all += nodes.volume(i);
-        in += in_zone(i) ? nodes.volume(i) : 0.;
-      }
-    return Utilities::MPI::sum(in, nodes.communicator()) /
-           Utilities::MPI::sum(all, nodes.communicator());
-  }
-
-  template <int dim>
   bool LatticeExchange<dim>::in_zone(const unsigned int node) const
   {
     return at(site_of(node))->in_zone;

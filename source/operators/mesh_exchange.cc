@@ -361,20 +361,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  double MeshExchange<dim>::zone_share() const
-  {
-    const Nodes<dim> &nodes = bonds.nodes();
-    double            in = 0., all = 0.;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        all += nodes.volume(i);
-        in += joined[i] ? nodes.volume(i) : 0.;
-      }
-    return Utilities::MPI::sum(in, nodes.communicator()) /
-           Utilities::MPI::sum(all, nodes.communicator());
-  }
-
-  template <int dim>
   bool MeshExchange<dim>::in_zone(const unsigned int node) const
   {
     return joined[node];

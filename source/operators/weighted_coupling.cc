@@ -116,20 +116,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  double WeightedCoupling<dim>::zone_share() const
-  {
-    const Nodes<dim> &nodes = bonds.nodes();
-    double            in = 0., all = 0.;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        all += nodes.volume(i);
-        in += in_zone(i) ? nodes.volume(i) : 0.;
-      }
-    return Utilities::MPI::sum(in, nodes.communicator()) /
-           Utilities::MPI::sum(all, nodes.communicator());
-  }
-
-  template <int dim>
   bool WeightedCoupling<dim>::in_zone(const unsigned int node) const
   {
     return weights[node] > 0.;

@@ -81,7 +81,7 @@ namespace PeriDeal
     virtual void set_cracks_of(const double time) = 0;
 
     /** Share of the body's volume whose nodes are in the zone. Collective. */
-    virtual double zone_share() const = 0;
+    double zone_share() const;
 
     /** Whether an owned node is in the zone. */
     virtual bool in_zone(const unsigned int node) const = 0;

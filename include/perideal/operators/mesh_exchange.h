@@ -41,7 +41,6 @@ namespace PeriDeal
     bool symmetric() const override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
     void                                  set_cracks_of(const double time) override;
-    double                                zone_share() const override;
     bool                                  in_zone(const unsigned int node) const override;
     const Families<dim>                  &families() const override;
     std::size_t                           memory_consumption() const override;
