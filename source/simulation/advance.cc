@@ -116,8 +116,16 @@ namespace PeriDeal
     if (scene.time.steady)
       {
         solve_models();
-        for (unsigned int round = 0; round < 2 * scene.domain.coarsening && adapt(0.); ++round)
-          solve_models();
+        constexpr double settled = 0.05; // share of cells more or fewer
+        for (unsigned int round = 0; round < 2 * scene.domain.coarsening; ++round)
+          {
+            const double n_before = mesh->n_global_active_cells();
+            if (!adapt(0.))
+              break;
+            solve_models();
+            if (std::abs(mesh->n_global_active_cells() - n_before) < settled * n_before)
+              break;
+          }
       }
     while (now < t)
       {
