@@ -275,19 +275,19 @@ namespace PeriDeal
   void Simulation<dim>::advance_to(const double t)
   {
     for (auto &model : models)
-      {
-        Timings::Scope scope(model->timings, scene.time.steady ? "solve" : "time stepping");
-        with_formulas([&] {
-          if (scene.time.steady)
+      with_formulas([&] {
+        if (scene.time.steady)
+          {
+            Timings::Scope scope(model->timings, "solve");
             model->steady_iterations = solve_steady(model->op(),
                                                     model->solution,
                                                     0.,
                                                     scene.solver.tolerance,
                                                     scene.solver.max_iterations);
-          else
-            advance_through_events(*model, t);
-        });
-      }
+          }
+        else
+          advance_through_events(*model, t);
+      });
     now = t;
   }
 
@@ -297,9 +297,14 @@ namespace PeriDeal
   {
     for (double from = now; from < t;)
       {
-        if (model.update(from))
-          model.stepper->restart();
-        const double to = std::min(t, model.op().next_event(from));
+        if (scene.cracks.change())
+          {
+            Timings::Scope scope(model.timings, "changing cracks");
+            if (model.update(from))
+              model.stepper->restart();
+          }
+        Timings::Scope scope(model.timings, "time stepping");
+        const double   to = std::min(t, model.op().next_event(from));
         model.stepper->advance(model.solution, from, to);
         from = to;
       }
