@@ -240,6 +240,7 @@ namespace PeriDeal
     result.lowest_eigenvalue  = system.lowest_eigenvalue();
     result.lowest_remainder   = op.lowest_remainder();
     result.zone_share         = op.bonds().zone_share();
+    result.kept_share         = op.bonds().kept_share();
     result.n_bonds_of_full    = count_all_bonds(families);
     result.n_nonzeros_of_full = 2 * result.n_bonds_of_full + nodes.n_global();
     return result;
