@@ -105,8 +105,8 @@ namespace PeriDeal
     CellData    &data   = *cell_data;
     const bool   scaled = crack_factors.size() > 0;
     const double reach  = coupling ? coupling->families().reach() : 0.;
-    // The factors of crack-side scaling change as far as the neighbours of cut cells and of nodes with broken bonds.
-    const double                    wide = scaled ? 2. * search->largest_diameter() : 0.;
+    // The factors of crack-side scaling change at the vertices of the cells whose own matrix does, and of all cells around these.
+    const double                    wide = scaled ? search->largest_diameter() : 0.;
     const std::vector<Cell>         near = cells_near(cuts, joins, wide);
     std::vector<FullMatrix<double>> old(near.size());
     for (std::size_t k = 0; k < near.size(); ++k)
@@ -120,11 +120,8 @@ namespace PeriDeal
     BondRows                  old_rows;
     if (coupling)
       {
-        const double beyond =
-          scaled ?
-            reach + 3. * coupling->families().nodes().smallest_spacing() * std::sqrt(1. * dim) :
-            0.;
-        auto boxes = cuts;
+        const double beyond = scaled ? reach + wide : 0.; // bonds have the factors of both ends
+        auto         boxes  = cuts;
         boxes.insert(boxes.end(), joins.begin(), joins.end());
         nodes = coupling->families().nodes_near(boxes, reach + beyond);
         if (!bonds_apart)
