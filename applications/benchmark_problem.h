@@ -9,6 +9,7 @@
 #include <perideal/operators/bond_operator.h>
 
 #include <chrono>
+#include <ctime>
 #include <fstream>
 #include <sstream>
 
@@ -22,6 +23,13 @@ namespace PeriDeal
   inline double seconds_since(const std::chrono::steady_clock::time_point start)
   {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+
+  /** Processor time of this process, which other work on the machine lengthens less than the time that passes. */
+  inline double processor_seconds()
+  {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   }
 
 

@@ -3,7 +3,7 @@
 
 // Speed and memory of the operators and steppers on one core, next to what the machine can do, measured in the same run. Timings are
 // never tests: the exit status is 0 whatever comes out. Options are those of Google Benchmark; --quick leaves out the
-// run with four million nodes.
+// run with four million nodes, --coupling leaves out all but coupled operators.
 
 #include <deal.II/base/mpi.h>
 
@@ -16,6 +16,7 @@
 #include <cstring>
 #include <map>
 
+#include "benchmark_findings.h"
 #include "benchmark_problem.h"
 #include "machine_limits.h"
 
@@ -23,37 +24,6 @@ namespace PeriDeal
 {
   namespace
   {
-    /** Lines of the final table. */
-    struct Finding
-    {
-      std::string what, measured, target;
-      int         met; // -1: no target
-    };
-
-    std::vector<Finding> findings;
-
-    template <typename... Arguments>
-    std::string text(const char *format, const Arguments... arguments)
-    {
-      char buffer[200];
-      std::snprintf(buffer, sizeof(buffer), format, arguments...);
-      return buffer;
-    }
-
-    void found(const std::string &what, const std::string &measured)
-    {
-      findings.push_back({what, measured, "", -1});
-    }
-
-    void found(const std::string &what,
-               const std::string &measured,
-               const std::string &target,
-               const bool         met)
-    {
-      findings.push_back({what, measured, target, met});
-    }
-
-
     /** Keeps the best time of each benchmark. */
     class BestTimes : public benchmark::ConsoleReporter
     {
@@ -364,25 +334,35 @@ namespace PeriDeal
 
     void run(int argc, char **argv)
     {
-      bool quick = false;
-      for (int k = 1; k < argc; ++k)
-        if (std::strcmp(argv[k], "--quick") == 0)
-          {
-            quick = true;
-            std::rotate(argv + k, argv + k + 1, argv + argc);
-            --argc;
-          }
+      const auto take = [&](const char *option) {
+        for (int k = 1; k < argc; ++k)
+          if (std::strcmp(argv[k], option) == 0)
+            {
+              std::rotate(argv + k, argv + k + 1, argv + argc);
+              --argc;
+              return true;
+            }
+        return false;
+      };
+      const bool quick = take("--quick"), coupling_alone = take("--coupling");
       benchmark::Initialize(&argc, argv);
 #if defined(__GLIBC__)
       mallopt(M_MMAP_THRESHOLD,
               1 << 20); // what is freed goes back at once, so that growth means something
 #endif
+      MachineLimits machine;
+      if (coupling_alone)
+        {
+          measure_machine(machine);
+          measure_coupling();
+          print_findings(machine);
+          return;
+        }
       if (!quick)
         measure_memory(); // first, before anything has been freed
       // The machine may be busy with other things for a while: all is measured more than once.
-      MachineLimits machine;
-      BestTimes     times;
-      FormResult    results[6];
+      BestTimes  times;
+      FormResult results[6];
       for (unsigned int round = 0; round < 2; ++round)
         {
           measure_machine(machine);
@@ -399,6 +379,7 @@ namespace PeriDeal
       compare_forms(machine, "3D 100 x 100 x 100, m = 3", results[2], results[3], 5., 0., 0.7);
       compare_forms(machine, "1D 1000000, m = 6.5", results[4], results[5], 0., 0., 0.);
       compare_steppers();
+      measure_coupling();
       print_findings(machine);
     }
   } // namespace

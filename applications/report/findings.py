@@ -101,6 +101,16 @@ def how_far_apart(run, words, difference):
     return text[0].upper() + text[1:]
 
 
+def how_far_coupled(run):
+    """The coupled model against the others."""
+    parts = [f"by {percent(last(entries['relative l2']))} from {pair.split(' minus ')[1]}"
+             for pair, entries in (run.get("comparisons") or {}).items()]
+    if not parts:
+        return None
+    when = "The" if run.get("steady", default=False) else "At the end the"
+    return f"{when} coupled model differs {' and '.join(parts)} in the relative L2 norm."
+
+
 def how_wrong(run):
     """Errors against the exact solution."""
     errors = {m: last((run.summary["models"][m].get("errors") or {}).get("relative l2"))
@@ -185,6 +195,7 @@ def what_broke(run, words):
 def sentences(run, words, difference):
     """Three to five sentences; difference: the largest one at the end, or None."""
     found = [what_ran(run, words), what_broke(run, words),
-             how_far_apart(run, words, difference), how_wrong(run), what_it_cost(run),
+             how_far_apart(run, words, difference), how_far_coupled(run), how_wrong(run),
+             what_it_cost(run),
              is_conserved(run, words)]
     return [s for s in found if s]

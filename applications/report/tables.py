@@ -88,6 +88,7 @@ def certificate_rows(run):
     """What is known of the coupling of a coupled model."""
     rows = []
     for title, path in (("Share of the body in the zone", ("share of the body",)),
+                        ("Share of the bonds' conductance kept", ("share of the conductance kept",)),
                         ("Patch error, linear field", ("patch error", "linear")),
                         ("Patch error, quadratic field", ("patch error", "quadratic")),
                         ("Patch error, cubic field", ("patch error", "cubic")),
@@ -195,6 +196,10 @@ def error_table(run, words):
         series = run.get("comparison", key)
         if series:
             columns.append((f"PD − FEM, {title}", dict(map(tuple, series))))
+    for pair, entries in (run.get("comparisons") or {}).items():
+        first, second = (name(m) for m in pair.split(" minus "))
+        for key, title in (("relative l2", "relative L2"), ("maximum", "largest")):
+            columns.append((f"{first} − {second}, {title}", dict(map(tuple, entries[key]))))
     for model in run.models:
         for key, title in (("relative l2", "relative L2"), ("maximum", "largest")):
             series = entry("errors", key)(run.summary["models"][model])

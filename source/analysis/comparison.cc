@@ -41,7 +41,7 @@ namespace PeriDeal
     std::vector<double>                  cell_values(fe.n_dofs_per_cell());
     std::vector<types::global_dof_index> indices(fe.n_dofs_per_cell());
     for (const auto &cell : fem_dofs.active_cell_iterators())
-      if (!cell->is_artificial())
+      if (cell->is_locally_owned())
         {
           const typename DoFHandler<dim>::active_cell_iterator other(&fem_dofs.get_triangulation(),
                                                                      cell->level(),

@@ -242,6 +242,7 @@ namespace PeriDeal
     result.lowest_eigenvalue      = system.lowest_eigenvalue();
     result.lowest_remainder       = op.lowest_remainder();
     result.zone_share             = op.bonds().zone_share();
+    result.kept_share             = op.bonds().kept_share();
     const auto [n_nodes, n_bonds] = count_all_bonds(families);
     result.n_bonds_of_full        = n_bonds;
     result.n_nonzeros_of_full     = 2 * n_bonds + n_nodes;

@@ -7,6 +7,7 @@
 #include <perideal/bonds/families.h>
 #include <perideal/laws/crack_conductance.h>
 #include <perideal/laws/interface.h>
+#include <perideal/laws/kernel.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,8 @@ namespace PeriDeal
     , transmission(history.transmission(cracks_of))
     , contact_conductance(scene.cracks.contact_conductance)
     , delta(scene.horizon())
+    , conductivity_scale(
+        micro_conductivity(dim, parameters.kernel, parameters.kernel_exponent, delta))
     , on_lattice(nodes.lattice().has_value() && !nodes.has_doubled_nodes())
   {
     find_weights();

@@ -26,13 +26,15 @@ namespace PeriDeal
                               (r <= delta * (1. + 1e-9) ? 1. : 0.);
     if (fraction == 0.)
       return 0.;
-    const double at = parameters.kernel == KernelShape::conical &&
+    const double at    = parameters.kernel == KernelShape::conical &&
                           parameters.volume_fraction == VolumeFraction::linear ?
-                        shifted_distance(r, delta, h) :
-                        r;
-    return factor * micro_conductivity(dim, parameters.kernel, parameters.kernel_exponent, delta) *
-           kernel_shape(parameters.kernel, at, delta) * fraction /
-           std::pow(r, static_cast<double>(parameters.kernel_exponent));
+                           shifted_distance(r, delta, h) :
+                           r;
+    double       power = 1.; // r^n
+    for (unsigned int k = 0; k < parameters.kernel_exponent; ++k)
+      power *= r;
+    return factor * conductivity_scale * kernel_shape(parameters.kernel, at, delta) * fraction /
+           power;
   }
 
 
@@ -41,23 +43,25 @@ namespace PeriDeal
   {
     std::vector<std::pair<unsigned int, double>> found;
     search->within(own_nodes->position(node), farthest * (1. + 1e-9), found);
+    std::vector<std::pair<Tensor<1, dim>, unsigned int>> around;
+    around.reserve(found.size());
+    for (const auto &[neighbor, square] : found)
+      around.emplace_back(bond_vector(node, neighbor), neighbor);
     // In the order of the relative position; of two nodes at the same place the one on the same side of a crack comes first by its crack point.
-    std::sort(found.begin(), found.end(), [&](const auto &a, const auto &b) {
-      const Tensor<1, dim> xa = bond_vector(node, a.first), xb = bond_vector(node, b.first);
+    std::sort(around.begin(), around.end(), [&](const auto &a, const auto &b) {
       for (unsigned int d = dim; d-- > 0;)
-        if (xa[d] != xb[d])
-          return xa[d] < xb[d];
-      const Point<dim> pa = own_nodes->crack_point(a.first), pb = own_nodes->crack_point(b.first);
+        if (a.first[d] != b.first[d])
+          return a.first[d] < b.first[d];
+      const Point<dim> pa = own_nodes->crack_point(a.second), pb = own_nodes->crack_point(b.second);
       for (unsigned int d = dim; d-- > 0;)
         if (pa[d] != pb[d])
           return pa[d] < pb[d];
-      return a.first < b.first;
+      return a.second < b.second;
     });
     const double tiny = 1e-10 * own_nodes->smallest_spacing();
-    for (const auto &[neighbor, square] : found)
+    for (const auto &[xi, neighbor] : around)
       {
-        const Tensor<1, dim> xi = bond_vector(node, neighbor);
-        const double         r  = xi.norm();
+        const double r = xi.norm();
         if (neighbor == node || r <= tiny)
           continue; // the node itself, or its twin across a crack
         double w = 0.;

@@ -5,6 +5,7 @@
 
 #include <perideal/mesh/cell_geometry.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace PeriDeal
@@ -58,23 +59,54 @@ namespace PeriDeal
   bool unit_point(const CellCorners<dim> &corners, const Point<dim> &p, Point<dim> &unit)
   {
     constexpr unsigned int most_steps = 30;
+    // x = sum over sets of directions of c[set] times their unit coordinates.
+    std::array<Tensor<1, dim>, GeometryInfo<dim>::vertices_per_cell> c;
+    for (unsigned int v = 0; v < c.size(); ++v)
+      c[v] = corners[v] - p;
+    for (unsigned int bit = 1; bit < c.size(); bit *= 2)
+      for (unsigned int v = 0; v < c.size(); ++v)
+        if (v & bit)
+          c[v] -= c[v ^ bit];
     for (unsigned int d = 0; d < dim; ++d)
       unit[d] = 0.5;
     for (unsigned int k = 0; k < most_steps; ++k)
       {
-        Tensor<1, dim> defect = p - Point<dim>();
-        const auto     values = shape_values(unit);
-        for (unsigned int v = 0; v < corners.size(); ++v)
-          for (unsigned int c = 0; c < dim; ++c)
-            defect[c] -= values[v] * corners[v][c];
-        const Tensor<2, dim> jacobian = jacobian_at(corners, unit);
-        if (!(determinant(jacobian) > 0.))
+        Tensor<1, dim> defect, step; // and the columns of the Jacobian
+        double         determinant;
+        if constexpr (dim == 1)
+          {
+            defect      = c[0] + unit[0] * c[1];
+            determinant = c[1][0];
+            step[0]     = defect[0] / determinant;
+          }
+        else if constexpr (dim == 2)
+          {
+            const Tensor<1, dim> a = c[1] + unit[1] * c[3], b = c[2] + unit[0] * c[3];
+            defect      = c[0] + unit[0] * a + unit[1] * c[2];
+            determinant = a[0] * b[1] - a[1] * b[0];
+            step[0]     = (defect[0] * b[1] - defect[1] * b[0]) / determinant;
+            step[1]     = (a[0] * defect[1] - a[1] * defect[0]) / determinant;
+          }
+        else
+          {
+            const Tensor<1, dim> a1 = c[1] + unit[2] * c[5], a3 = c[3] + unit[2] * c[7],
+                                 b = c[2] + unit[0] * a3 + unit[2] * c[6], a = a1 + unit[1] * a3,
+                                 e = c[4] + unit[0] * c[5] + unit[1] * (c[6] + unit[0] * c[7]);
+            defect = c[0] + unit[0] * a + unit[1] * (c[2] + unit[2] * c[6]) + unit[2] * c[4];
+            const Tensor<1, dim> be = cross_product_3d(b, e);
+            determinant             = a * be;
+            step[0]                 = (defect * be) / determinant;
+            const Tensor<1, dim> ad = cross_product_3d(a, defect);
+            step[1]                 = (ad * e) / determinant;
+            step[2]                 = -(ad * b) / determinant;
+          }
+        if (!(determinant > 0.))
           return false;
-        const Tensor<1, dim> step = invert(jacobian) * defect;
-        unit += step;
-        if (step.norm() < 1e-15)
+        unit -= step;
+        const double square = step.norm_square();
+        if (square < 1e-18) // the next one would be below round-off
           break;
-        if (!(unit.norm() < 1e3))
+        if (!(square < 1e6))
           return false;
       }
     return true;
@@ -92,7 +124,11 @@ namespace PeriDeal
 
 
     /** The real roots of c2 x^2 + c1 x + c0 that matter: those within a face. */
-    void add_roots(const double c2, const double c1, const double c0, std::vector<double> &roots)
+    void add_roots(const double  c2,
+                   const double  c1,
+                   const double  c0,
+                   double       *roots,
+                   unsigned int &n_roots)
     {
       const double size = std::abs(c2) + std::abs(c1) + std::abs(c0);
       if (size == 0.)
@@ -100,16 +136,16 @@ namespace PeriDeal
       if (std::abs(c2) < 1e-14 * size)
         {
           if (c1 != 0.)
-            roots.push_back(-c0 / c1);
+            roots[n_roots++] = -c0 / c1;
           return;
         }
       const double radicand = c1 * c1 - 4. * c2 * c0;
       if (radicand < 0.)
         return;
-      const double q = -0.5 * (c1 + std::copysign(std::sqrt(radicand), c1));
-      roots.push_back(q / c2);
+      const double q   = -0.5 * (c1 + std::copysign(std::sqrt(radicand), c1));
+      roots[n_roots++] = q / c2;
       if (q != 0.)
-        roots.push_back(c0 / q);
+        roots[n_roots++] = c0 / q;
     }
 
 
@@ -121,47 +157,85 @@ namespace PeriDeal
     {
       const Tensor<1, 2> edge = q - p, gap = p - a;
       const double       determinant = along[0] * edge[1] - along[1] * edge[0];
-      if (std::abs(determinant) < 1e-12 * along.norm() * edge.norm())
+      if (determinant * determinant < 1e-24 * along.norm_square() * edge.norm_square())
         return;
       if (within_face((along[1] * gap[0] - along[0] * gap[1]) / determinant))
         places.push_back((gap[0] * edge[1] - gap[1] * edge[0]) / determinant);
     }
 
 
-    /** The face (1-u)(1-v) p0 + u (1-v) p1 + (1-u) v p2 + u v p3. */
-    void add_face_crossing(const std::array<Point<3>, 4> &p,
-                           const Point<3>                &a,
-                           const Tensor<1, 3>            &along,
-                           std::vector<double>           &places)
+    /** A corner of a face: where it lies across the line, and along it. */
+    struct AcrossLine
     {
-      // Two directions across the line: there the face passes through a.
+      double first, second, along;
+    };
+
+
+    /** The face (1-u)(1-v) p0 + u (1-v) p1 + (1-u) v p2 + u v p3, and where the line passes it: there the face has the values 0, 0 across. */
+    void add_face_crossing(const std::array<AcrossLine, 4> &p,
+                           const double                     tolerance,
+                           std::vector<double>             &places)
+    {
+      for (double AcrossLine::*const x : {&AcrossLine::first, &AcrossLine::second})
+        {
+          const auto [low, high] = std::minmax({p[0].*x, p[1].*x, p[2].*x, p[3].*x});
+          if (low > tolerance || high < -tolerance)
+            return;
+        }
+      const double a1 = p[0].first, b1 = p[1].first - a1, g1 = p[2].first - a1,
+                   d1 = (p[3].first - p[2].first) - b1;
+      const double a2 = p[0].second, b2 = p[1].second - a2, g2 = p[2].second - a2,
+                   d2 = (p[3].second - p[2].second) - b2;
+      double       roots[2];
+      unsigned int n_roots = 0;
+      // (a1 + b1 u) + v (g1 + d1 u) = 0 and the same with 2, v eliminated.
+      add_roots(b2 * d1 - b1 * d2,
+                a2 * d1 + b2 * g1 - a1 * d2 - b1 * g2,
+                a2 * g1 - a1 * g2,
+                roots,
+                n_roots);
+      for (unsigned int k = 0; k < n_roots; ++k)
+        {
+          const double u = roots[k], under1 = g1 + d1 * u, under2 = g2 + d2 * u;
+          const bool   use1 = std::abs(under1) > std::abs(under2);
+          if ((use1 ? under1 : under2) == 0.)
+            continue;
+          const double v = use1 ? -(a1 + b1 * u) / under1 : -(a2 + b2 * u) / under2;
+          if (within_face(u) && within_face(v))
+            places.push_back((1. - v) * ((1. - u) * p[0].along + u * p[1].along) +
+                             v * ((1. - u) * p[2].along + u * p[3].along));
+        }
+    }
+
+
+    void add_bilinear_crossings(const CellCorners<3> &corners,
+                                const Point<3>       &a,
+                                const Tensor<1, 3>   &along,
+                                std::vector<double>  &places)
+    {
+      // Two directions across the line.
       unsigned int longest = 0;
       for (unsigned int d = 1; d < 3; ++d)
         if (std::abs(along[d]) > std::abs(along[longest]))
           longest = d;
       Tensor<1, 3> helper;
       helper[(longest + 1) % 3] = 1.;
-      Tensor<1, 3> first        = cross_product_3d(along, helper);
-      first /= first.norm();
-      Tensor<1, 3> second = cross_product_3d(along, first);
-      second /= second.norm();
-      const Tensor<1, 3> c = p[0] - a, cu = p[1] - p[0], cv = p[2] - p[0],
-                         cuv = (p[3] - p[2]) - (p[1] - p[0]);
-      const double        a1 = c * first, b1 = cu * first, g1 = cv * first, d1 = cuv * first;
-      const double        a2 = c * second, b2 = cu * second, g2 = cv * second, d2 = cuv * second;
-      std::vector<double> roots;
-      // (a1 + b1 u) + v (g1 + d1 u) = 0 and the same with 2, v eliminated.
-      add_roots(b2 * d1 - b1 * d2, a2 * d1 + b2 * g1 - a1 * d2 - b1 * g2, a2 * g1 - a1 * g2, roots);
-      for (const double u : roots)
+      const Tensor<1, 3> first  = cross_product_3d(along, helper),
+                         second = cross_product_3d(along, first);
+      const double by_first = 1. / first.norm(), by_second = 1. / second.norm(),
+                   by_along = 1. / along.norm_square();
+      std::array<AcrossLine, 8> p;
+      for (unsigned int v = 0; v < 8; ++v)
         {
-          const double under1 = g1 + d1 * u, under2 = g2 + d2 * u;
-          const bool   use1 = std::abs(under1) > std::abs(under2);
-          if ((use1 ? under1 : under2) == 0.)
-            continue;
-          const double v = use1 ? -(a1 + b1 * u) / under1 : -(a2 + b2 * u) / under2;
-          if (within_face(u) && within_face(v))
-            places.push_back((c + u * cu + v * cv + u * v * cuv) * along / along.norm_square());
+          const Tensor<1, 3> x = corners[v] - a;
+          p[v] = {(x * first) * by_first, (x * second) * by_second, (x * along) * by_along};
         }
+      // What is admitted beyond the edges, with some room.
+      const double           tolerance = 10. * slack * (corners[7] - corners[0]).norm();
+      constexpr unsigned int faces[6][4] =
+        {{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5}, {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}};
+      for (const auto &f : faces)
+        add_face_crossing({{p[f[0]], p[f[1]], p[f[2]], p[f[3]]}}, tolerance, places);
     }
   } // namespace
 
@@ -173,24 +247,23 @@ namespace PeriDeal
                           std::vector<double>    &places)
   {
     const Tensor<1, dim> along = b - a;
-    for (unsigned int f = 0; f < GeometryInfo<dim>::faces_per_cell; ++f)
+    if constexpr (dim == 3)
       {
-        const unsigned int normal = f / 2, side = f % 2;
-        if constexpr (dim == 1)
-          places.push_back((corners[side][0] - a[0]) / along[0]);
-        else
-          {
-            std::array<Point<dim>, 1 << (dim - 1)> p;
-            unsigned int                           n = 0;
-            for (unsigned int v = 0; v < corners.size(); ++v)
-              if (((v >> normal) & 1) == side)
-                p[n++] = corners[v];
-            if constexpr (dim == 2)
-              add_edge_crossing(p[0], p[1], a, along, places);
-            else
-              add_face_crossing(p, a, along, places);
-          }
+        add_bilinear_crossings(corners, a, along, places);
+        return;
       }
+    else
+      for (unsigned int f = 0; f < GeometryInfo<dim>::faces_per_cell; ++f)
+        {
+          const unsigned int normal = f / 2, side = f % 2;
+          if constexpr (dim == 1)
+            places.push_back((corners[side][0] - a[0]) / along[0]);
+          else
+            {
+              const unsigned int other = normal == 0 ? 2 : 1, first = side << normal;
+              add_edge_crossing(corners[first], corners[first + other], a, along, places);
+            }
+        }
   }
 
 

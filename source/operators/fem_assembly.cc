@@ -207,13 +207,29 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::find_crack_factors(CellData &data)
+  void FEMOperator<dim>::find_crack_factors()
   {
-    // Crack-side scaling (doc/theory.md): g_i = d kappa V_i / (-(1/2) sum_j K_ij r_ij^2) on the vertices of cut cells.
-    Vector marked, trace, expected;
-    for (Vector *v : {&marked, &trace, &expected})
-      initialize_vector(*v);
+    std::vector<Cell> cells;
     for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        cells.push_back(cell);
+    initialize_vector(crack_factors);
+    std::vector<unsigned int> nodes(crack_factors.locally_owned_size());
+    std::iota(nodes.begin(), nodes.end(), 0);
+    FactorData factors(crack_factors);
+    find_crack_factors(cells, nodes, factors);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::find_crack_factors(const std::vector<Cell>         &cells,
+                                            const std::vector<unsigned int> &nodes,
+                                            FactorData                      &factors)
+  {
+    // Crack-side scaling (doc/theory.md): g_i = d kappa V_i / (-(1/2) sum_j K_ij r_ij^2) on the vertices of cut cells. The cells are all those around the nodes.
+    CellData &data   = *cell_data;
+    Vector   &marked = factors.marked, &trace = factors.trace, &expected = factors.expected;
+    for (const Cell &cell : cells)
       if (cell->is_locally_owned() && cut[cell->active_cell_index()])
         {
           cell->get_dof_indices(data.indices);
@@ -222,9 +238,9 @@ namespace PeriDeal
         }
     marked.compress(VectorOperation::max);
     if (coupling)
-      mark_broken_bonds(marked);
+      mark_broken_bonds(nodes, marked);
     marked.update_ghost_values();
-    for (const auto &cell : dofs.active_cell_iterators())
+    for (const Cell &cell : cells)
       if (cell->is_locally_owned())
         {
           cell->get_dof_indices(data.indices);
@@ -246,14 +262,21 @@ namespace PeriDeal
     trace.compress(VectorOperation::add);
     expected.compress(VectorOperation::add);
     if (coupling)
-      add_bond_traces(marked, trace);
-    initialize_vector(crack_factors);
-    for (unsigned int i = 0; i < crack_factors.locally_owned_size(); ++i)
+      add_bond_traces(nodes, marked, trace);
+    for (const unsigned int i : nodes)
       crack_factors.local_element(i) =
         marked.local_element(i) > 0. && trace.local_element(i) > 0. ?
           std::clamp(expected.local_element(i) / trace.local_element(i), 0.5, 4.) :
           1.;
     crack_factors.update_ghost_values();
+    const std::vector<unsigned int> around = owned_unknowns_of(cells);
+    for (Vector *v : {&marked, &trace, &expected})
+      {
+        v->zero_out_ghost_values();
+        for (const auto *list : {&around, &nodes})
+          for (const unsigned int i : *list)
+            v->local_element(i) = 0.;
+      }
   }
 
 
@@ -296,7 +319,7 @@ namespace PeriDeal
     CellData &data = *cell_data;
     if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling &&
         scene.cracks.mesh == CrackMesh::pairs && !scene.cracks.cracks.empty())
-      find_crack_factors(data);
+      find_crack_factors();
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -448,7 +471,10 @@ namespace PeriDeal
     const typename DoFHandler<dim>::active_cell_iterator &,                                      \
     CellData &,                                                                                  \
     const bool) const;                                                                           \
-  template void FEMOperator<dim>::find_crack_factors(CellData &);                                \
+  template void FEMOperator<dim>::find_crack_factors();                                          \
+  template void FEMOperator<dim>::find_crack_factors(const std::vector<Cell> &,                  \
+                                                     const std::vector<unsigned int> &,          \
+                                                     FactorData &);                              \
   template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                         \
   template void FEMOperator<dim>::check_material() const;                                        \
   template void FEMOperator<dim>::assemble();                                                    \

@@ -124,12 +124,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::change_form(const std::vector<unsigned int> &nodes, Vector &touched)
+  void FEMOperator<dim>::change_form(const std::vector<unsigned int> &nodes)
   {
     set_form_factors();
     form->update_rows(nodes, bond_sums.data());
     for (const unsigned int i : nodes)
-      touched.local_element(i) = 1.;
+      event->touched.insert(i);
     extract_remainder();
   }
 
@@ -168,7 +168,7 @@ namespace PeriDeal
     const;                                                                                    \
   template void FEMOperator<dim>::multiply(Vector &, const Vector &) const;                   \
   template void FEMOperator<dim>::set_form_factors();                                         \
-  template void FEMOperator<dim>::change_form(const std::vector<unsigned int> &, Vector &);   \
+  template void FEMOperator<dim>::change_form(const std::vector<unsigned int> &);             \
   template void FEMOperator<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -8,6 +8,9 @@
 
 #include <perideal/operators/fem_operator.h>
 
+#include "local_bound.h"
+#include "row_set.h"
+
 namespace PeriDeal
 {
   /** Scratch memory of the cell loops. */
@@ -35,5 +38,36 @@ namespace PeriDeal
     dealii::FullMatrix<double>                   stiffness, mass, convection;
     std::vector<dealii::types::global_dof_index> indices;
     std::vector<double>                          temperatures; // at the quadrature points
+  };
+
+
+  /** Memory of find_crack_factors(). Zero outside of it. */
+  template <int dim>
+  struct FEMOperator<dim>::FactorData
+  {
+    explicit FactorData(const Vector &layout)
+      : marked(layout.get_partitioner())
+      , trace(layout.get_partitioner())
+      , expected(layout.get_partitioner())
+    {}
+
+    Vector marked, trace, expected;
+  };
+
+
+  /** Memory of update(), so that an event costs what changes and not what there is. */
+  template <int dim>
+  struct FEMOperator<dim>::EventData
+  {
+    explicit EventData(const Vector &layout)
+      : touched(layout)
+      , held(layout)
+      , factors(layout)
+      , bound(layout)
+    {}
+
+    RowSet     touched, held; // rows of K that the event changes; that are not free
+    FactorData factors;
+    LocalBound bound;
   };
 } // namespace PeriDeal

@@ -98,9 +98,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::change_bonds(const std::vector<unsigned int> &nodes,
-                                      const BondRows                  &old,
-                                      Vector                          &touched)
+  void FEMOperator<dim>::change_bonds(const std::vector<unsigned int> &nodes, const BondRows &old)
   {
     BondRows                       rows = bond_rows(nodes);
     std::map<unsigned int, double> change;
@@ -121,18 +119,19 @@ namespace PeriDeal
           if (conductance != 0.)
             rows[k].emplace_back(neighbor, conductance);
         if (!rows[k].empty())
-          touched.local_element(nodes[k]) = 1.;
+          event->touched.insert(nodes[k]);
       }
     add_bonds(nodes, rows);
   }
 
 
   template <int dim>
-  void FEMOperator<dim>::mark_broken_bonds(Vector &marked) const
+  void FEMOperator<dim>::mark_broken_bonds(const std::vector<unsigned int> &nodes,
+                                           Vector                          &marked) const
   {
     std::vector<typename Coupling<dim>::Bond> bonds;
     const Families<dim>                      &families = coupling->families();
-    for (unsigned int i = 0; i < marked.locally_owned_size(); ++i)
+    for (const unsigned int i : nodes)
       if (coupling->in_zone(i) && families.near_crack(i))
         {
           coupling->bonds_of(i, bonds);
@@ -143,10 +142,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::add_bond_traces(const Vector &marked, Vector &trace) const
+  void FEMOperator<dim>::add_bond_traces(const std::vector<unsigned int> &nodes,
+                                         const Vector                    &marked,
+                                         Vector                          &trace) const
   {
     std::vector<typename Coupling<dim>::Bond> bonds;
-    for (unsigned int i = 0; i < marked.locally_owned_size(); ++i)
+    for (const unsigned int i : nodes)
       if (marked.local_element(i) > 0.)
         {
           coupling->bonds_of(i, bonds);
@@ -308,10 +309,12 @@ namespace PeriDeal
     const std::vector<unsigned int> &) const;                                                     \
   template void FEMOperator<dim>::add_bonds(const std::vector<unsigned int> &, const BondRows &); \
   template void FEMOperator<dim>::change_bonds(const std::vector<unsigned int> &,                 \
-                                               const BondRows &,                                  \
-                                               Vector &);                                         \
-  template void FEMOperator<dim>::mark_broken_bonds(Vector &) const;                              \
-  template void FEMOperator<dim>::add_bond_traces(const Vector &, Vector &) const;                \
+                                               const BondRows &);                                 \
+  template void FEMOperator<dim>::mark_broken_bonds(const std::vector<unsigned int> &, Vector &)  \
+    const;                                                                                        \
+  template void FEMOperator<dim>::add_bond_traces(const std::vector<unsigned int> &,              \
+                                                  const Vector &,                                 \
+                                                  Vector &) const;                                \
   template void FEMOperator<dim>::add_bond_heat(const Vector &, Balance &) const;                 \
   template void FEMOperator<dim>::visit_conductances(                                             \
     const std::function<void(const unsigned int, const unsigned int, const double)> &) const;     \

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fem_cell_data.h"
 
@@ -26,21 +27,89 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /**
+     * One box for all that joins the zone beside each cut, the same on all processes: a cell may feel what happens a little farther away than its own process
+     * knows of. Collective.
+     */
+    template <int dim>
+    std::vector<BoundingBox<dim>> boxes_beside(const std::vector<BoundingBox<dim>> &cuts,
+                                               const std::vector<BoundingBox<dim>> &joins,
+                                               const MPI_Comm                       communicator)
+    {
+      std::vector<double> lowest(2 * dim * cuts.size(), std::numeric_limits<double>::max());
+      for (const BoundingBox<dim> &join : joins)
+        {
+          std::size_t nearest = 0;
+          for (std::size_t k = 1; k < cuts.size(); ++k)
+            if (join.center().distance(cuts[k].center()) <
+                join.center().distance(cuts[nearest].center()))
+              nearest = k;
+          double *const box = lowest.data() + 2 * dim * nearest;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              box[d]       = std::min(box[d], join.lower_bound(d));
+              box[dim + d] = std::min(box[dim + d], -join.upper_bound(d));
+            }
+        }
+      std::vector<double> all(lowest.size());
+      Utilities::MPI::min(lowest, communicator, all);
+      std::vector<BoundingBox<dim>> boxes;
+      for (const double *box = all.data(); box != all.data() + all.size(); box += 2 * dim)
+        if (box[0] < std::numeric_limits<double>::max())
+          {
+            Point<dim> low, high;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                low[d]  = box[d];
+                high[d] = -box[dim + d];
+              }
+            boxes.push_back({{low, high}});
+          }
+      return boxes;
+    }
+  } // namespace
+
+
+  template <int dim>
+  void FEMOperator<dim>::prepare_event()
+  {
+    if (event)
+      return;
+    search = std::make_unique<CellSearch<dim>>(dofs);
+    event  = std::make_shared<EventData>(capacity);
+    for (const Prescribed &entry : prescribed)
+      event->held.insert(entry.dof);
+    for (const HangingNode &node : hanging)
+      event->held.insert(node.dof);
+  }
+
+
   template <int dim>
   bool FEMOperator<dim>::update(const double t)
   {
     const double time = history.representative(t);
     if (time == cracks_of || !history.changes_ever())
       return false;
-    const auto cuts  = history.changes(cracks_of, time);
-    const auto joins = coupling ? coupling->joining_by(time) : std::vector<BoundingBox<dim>>();
-    cracks_of        = time;
+    const auto cuts = history.changes(cracks_of, time);
     if (cuts.empty())
-      return false;
-    CellData                       &data   = *cell_data;
-    const bool                      scaled = crack_factors.size() > 0;
-    const double                    reach  = coupling ? coupling->families().reach() : 0.;
-    const std::vector<Cell>         near   = cells_near(cuts, joins);
+      {
+        cracks_of = time;
+        return false;
+      }
+    prepare_event();
+    const auto joins =
+      boxes_beside(cuts,
+                   coupling ? coupling->joining_by(time) : std::vector<BoundingBox<dim>>(),
+                   dofs.get_communicator());
+    cracks_of           = time;
+    CellData    &data   = *cell_data;
+    const bool   scaled = crack_factors.size() > 0;
+    const double reach  = coupling ? coupling->families().reach() : 0.;
+    // The factors of crack-side scaling change at the vertices of the cells whose own matrix does, and of all cells around these.
+    const double                    wide = scaled ? search->largest_diameter() : 0.;
+    const std::vector<Cell>         near = cells_near(cuts, joins, wide);
     std::vector<FullMatrix<double>> old(near.size());
     for (std::size_t k = 0; k < near.size(); ++k)
       if (near[k]->is_locally_owned())
@@ -53,12 +122,10 @@ namespace PeriDeal
     BondRows                  old_rows;
     if (coupling)
       {
-        const double wide  = scaled ? reach + 3. * coupling->families().nodes().smallest_spacing() *
-                                               std::sqrt(1. * dim) :
-                                      0.;
-        auto         boxes = cuts;
+        const double beyond = scaled ? reach + wide : 0.; // bonds have the factors of both ends
+        auto         boxes  = cuts;
         boxes.insert(boxes.end(), joins.begin(), joins.end());
-        nodes = coupling->families().nodes_near(boxes, reach + wide);
+        nodes = coupling->families().nodes_near(boxes, reach + beyond);
         if (!bonds_apart)
           old_rows = bond_rows(nodes);
         coupling->set_cracks_of(time);
@@ -69,9 +136,8 @@ namespace PeriDeal
     for (const Cell &cell : near)
       cut[cell->active_cell_index()] = is_cut(cell);
     if (scaled)
-      find_crack_factors(data);
-    Vector touched;
-    initialize_vector(touched);
+      find_crack_factors(near, owned_unknowns_of(cells_near(cuts, joins, 0.)), event->factors);
+    const auto &layout = *capacity.get_partitioner();
     for (std::size_t k = 0; k < near.size(); ++k)
       if (near[k]->is_locally_owned())
         {
@@ -84,50 +150,53 @@ namespace PeriDeal
             add_to(stiffness, data.stiffness, data.indices);
           for (const auto i : data.indices)
             {
-              touched(i) = 1.;
+              event->touched.insert(layout.global_to_local(i));
               if (const auto *masters = constraints.get_constraint_entries(i))
                 for (const auto &master : *masters)
-                  touched(master.first) = 1.;
+                  event->touched.insert(layout.global_to_local(master.first));
             }
         }
-    touched.compress(VectorOperation::max);
     if (coupling && !bonds_apart)
-      change_bonds(nodes, old_rows, touched);
+      change_bonds(nodes, old_rows);
     stiffness.compress(VectorOperation::add);
     if (bonds_apart)
-      change_form(nodes, touched);
-    update_rows(touched, Utilities::MPI::max(joins.size(), dofs.get_communicator()) > 0);
+      change_form(nodes);
+    event->touched.compress();
+    event->touched.sort();
+    update_rows(!joins.empty());
+    event->touched.clear();
     return true;
   }
 
 
   template <int dim>
-  void FEMOperator<dim>::update_rows(const Vector &touched, const bool zone_moves)
+  void FEMOperator<dim>::update_rows(const bool zone_moves)
   {
     const auto &partitioner = *stiffness_diagonal.get_partitioner();
     std::string message;
     double      bound = 0.;
-    for (unsigned int i = 0; i < touched.locally_owned_size(); ++i)
-      if (touched.local_element(i) > 0.)
-        {
-          double       sum                    = bonds_apart ? 2. * bond_sums[i] : 0.;
-          const double from_form              = bonds_apart ? bond_sums[i] : 0.;
-          stiffness_diagonal.local_element(i) = from_form;
-          for_each_entry_of_row(stiffness, i, [&](const auto column, const double value) {
-            sum += std::abs(value);
-            if (column == partitioner.local_to_global(i))
-              stiffness_diagonal.local_element(i) = from_form + value;
-          });
-          bound = std::max(bound, sum / capacity.local_element(i));
-          // Cells are taken away by subtraction, which leaves round-off behind.
-          if (!(sum > 1e-13 * gershgorin * capacity.local_element(i)) && message.empty())
-            message =
-              coupling ?
-                "The node at " + place_of(i) +
-                  " becomes isolated: the growing cracks cut all of its bonds and pairs." :
-                "'Mesh' in section 'Cracks': the growing cracks leave the finite element node at " +
-                  place_of(i) + " without any conducting cell. Use 'pairs' or a finer mesh.";
-        }
+    for (const unsigned int i : event->touched.rows())
+      {
+        double       sum                    = bonds_apart ? 2. * bond_sums[i] : 0.;
+        const double from_form              = bonds_apart ? bond_sums[i] : 0.;
+        stiffness_diagonal.local_element(i) = from_form;
+        for_each_entry_of_row(stiffness, i, [&](const auto column, const double value) {
+          sum += std::abs(value);
+          if (column == partitioner.local_to_global(i))
+            stiffness_diagonal.local_element(i) = from_form + value;
+        });
+        bound = std::max(bound, sum / capacity.local_element(i));
+        // Cells are taken away by subtraction, which leaves round-off behind.
+        if (!(sum > 1e-13 * gershgorin * capacity.local_element(i)) && message.empty())
+          message =
+            coupling ?
+              "The node at " + place_of(i) +
+                " becomes isolated: the growing cracks cut all of its bonds and pairs." :
+              "'Mesh' in section 'Cracks': the growing cracks leave the finite element node at " +
+                place_of(i) + " without any conducting cell. Use 'pairs' or a finer mesh.";
+        if (event->held.contains(i))
+          stiffness_diagonal.local_element(i) = 1.;
+      }
     throw_on_all_if_any(dofs.get_communicator(), message);
     // Pairs of a cell with positive entries off the diagonal (of unequal sides) conduct more than it did as a whole.
     const bool stiffer = Utilities::MPI::max(pairs_stiffer ? 1 : 0, dofs.get_communicator()) > 0;
@@ -135,26 +204,32 @@ namespace PeriDeal
       {
         // Rates can have grown. Where cells are only cut, the old bounds still hold.
         gershgorin = std::max(gershgorin, Utilities::MPI::max(bound, dofs.get_communicator()));
-        raise_bounds(touched);
+        raise_bounds();
       }
-    mask(stiffness_diagonal, 1.);
   }
 
 
   template <int dim>
-  void FEMOperator<dim>::raise_bounds(const Vector &touched)
+  void FEMOperator<dim>::raise_bounds()
   {
     if (bounds.safe == 0.) // nobody has asked yet
       return;
     // The fastest field may have changed where the rows have, and only there: iterations that start there see it soon.
-    const double local = sharp_bound(
-      *this,
-      gershgorin,
-      [&](Vector &vector) {
-        vector = noise();
-        vector.scale(touched);
-      },
-      bounds.sharp);
+    const std::vector<unsigned int> &rows  = event->touched.rows();
+    double                           local = -1.;
+    if (!form && symmetric())
+      local = event->bound(stiffness, capacity, event->held, rows, noise(), bounds.sharp);
+    if (local >= 0.)
+      local = std::min(round_up(local), gershgorin);
+    else
+      local = sharp_bound(
+        *this,
+        gershgorin,
+        [&](Vector &vector) {
+          for (const unsigned int i : rows)
+            vector.local_element(i) = noise().local_element(i);
+        },
+        bounds.sharp);
     bounds.sharp = std::max(bounds.sharp, local);
     bounds.safe  = gershgorin;
   }
@@ -163,20 +238,37 @@ namespace PeriDeal
   template <int dim>
   std::vector<typename FEMOperator<dim>::Cell> FEMOperator<dim>::cells_near(
     const std::vector<BoundingBox<dim>> &cuts,
-    const std::vector<BoundingBox<dim>> &joins)
+    const std::vector<BoundingBox<dim>> &joins,
+    const double                         wide) const
   {
-    if (!search)
-      search = std::make_unique<CellSearch<dim>>(dofs);
-    // Bonds change the cells that they pass. The factors of crack-side scaling change as far as the neighbours of cut cells and of nodes with broken bonds.
-    const bool        scaled = crack_factors.size() > 0;
-    const double      reach  = coupling ? coupling->families().reach() : 0.;
-    const double      wide   = scaled ? 2. * search->largest_diameter() : 0.;
+    // Bonds change the cells that they pass.
+    const double      reach = coupling ? coupling->families().reach() : 0.;
     std::vector<Cell> near;
-    search->find(cuts, wide + (scaled ? reach : 0.), near);
+    search->find(cuts, wide + (crack_factors.size() > 0 ? reach : 0.), near);
     search->find(joins, wide + reach, near);
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
     return near;
+  }
+
+
+  template <int dim>
+  std::vector<unsigned int> FEMOperator<dim>::owned_unknowns_of(
+    const std::vector<Cell> &cells) const
+  {
+    const auto                          &layout = *capacity.get_partitioner();
+    std::vector<unsigned int>            list;
+    std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
+    for (const Cell &cell : cells)
+      {
+        cell->get_dof_indices(indices);
+        for (const auto i : indices)
+          if (layout.in_local_range(i))
+            list.push_back(layout.global_to_local(i));
+      }
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
   }
 
 
@@ -212,11 +304,12 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                   \
-  template double FEMOperator<dim>::next_event(const double) const; \
-  template void   FEMOperator<dim>::raise_bounds(const Vector &);   \
-  template bool   FEMOperator<dim>::update(const double);           \
-  template void   FEMOperator<dim>::add_crack_heat(const Vector &, Balance &) const;
+#define PERIDEAL_INSTANTIATE(dim)                                                      \
+  template double                    FEMOperator<dim>::next_event(const double) const; \
+  template std::vector<unsigned int> FEMOperator<dim>::owned_unknowns_of(              \
+    const std::vector<Cell> &) const;                                                  \
+  template bool FEMOperator<dim>::update(const double);                                \
+  template void FEMOperator<dim>::add_crack_heat(const Vector &, Balance &) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

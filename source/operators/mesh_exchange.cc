@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include <perideal/base/user_error.h>
 #include <perideal/operators/mesh_exchange.h>
@@ -22,7 +23,45 @@ namespace PeriDeal
     constexpr double largest_contrast = 1.5; // of conductivity on an active bond's way
     constexpr double part_to_take     = 0.9; // of what a distorted cell has
     constexpr double least_kept       = 0.2; // of all bonds' conductance
-  }                                          // namespace
+
+
+    template <int dim>
+    double volume_of(const CellCorners<dim> &corners)
+    {
+      static const QGauss<dim> points(2); // exact for the determinant of the mapping
+      double                   volume = 0.;
+      for (unsigned int q = 0; q < points.size(); ++q)
+        volume += points.weight(q) * volume_element(corners, points.point(q));
+      return volume;
+    }
+
+
+    /** Whether a point lies in a cell or on its surface. */
+    template <int dim>
+    bool is_inside(const CellCorners<dim> &corners, const Point<dim> &p)
+    {
+      constexpr double slack = 1e-9; // less than the crack points of a bond lie beside its nodes
+      if constexpr (dim == 2)
+        {
+          constexpr unsigned int around[5] = {0, 1, 3, 2, 0}; // a convex quadrilateral
+          for (unsigned int k = 0; k < 4; ++k)
+            {
+              const Tensor<1, dim> side = corners[around[k + 1]] - corners[around[k]],
+                                   to_p = p - corners[around[k]];
+              if (!(side[0] * to_p[1] - side[1] * to_p[0] > -slack * side.norm_square()))
+                return false;
+            }
+          return true;
+        }
+      Point<dim> unit;
+      if (!unit_point(corners, p, unit))
+        return false;
+      for (unsigned int d = 0; d < dim; ++d)
+        if (!(unit[d] > -slack && unit[d] < 1. + slack))
+          return false;
+      return true;
+    }
+  } // namespace
 
 
   template <int dim>
@@ -48,7 +87,21 @@ namespace PeriDeal
     throw_if_zone_empty(n_in_zone, nodes.communicator());
     find_cells(scene);
     send_cells();
-    tree = std::make_unique<Tree>(cells);
+    Point<dim> low, high; // of all nodes that may ever join
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        low[d]  = std::numeric_limits<double>::max();
+        high[d] = -std::numeric_limits<double>::max();
+      }
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      for (unsigned int d = 0; d < dim && may_join[i]; ++d)
+        {
+          low[d]  = std::min(low[d], nodes.position(i)[d]);
+          high[d] = std::max(high[d], nodes.position(i)[d]);
+        }
+    if (low[0] > high[0])
+      high = low; // far away from everything
+    tree = std::make_unique<Tree>(cells, BoundingBox<dim>({low, high}));
     find_bonds();
     const double kept = kept_share();
     AssertThrow(
@@ -65,18 +118,32 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool MeshExchange<dim>::follow(const ZoneBond &bond, std::vector<Passage> &way) const
+  bool MeshExchange<dim>::follow(const ZoneBond &bond, std::vector<Passage> &way)
   {
-    const Nodes<dim>         &nodes = bonds.nodes();
-    const Point<dim>         &a = nodes.position(bond.nodes[0]), &b = nodes.position(bond.nodes[1]);
-    std::vector<unsigned int> near;
+    const Nodes<dim> &nodes = bonds.nodes();
+    const Point<dim> &a = nodes.position(bond.nodes[0]), &b = nodes.position(bond.nodes[1]);
+    std::vector<unsigned int> &near   = memory.near;
+    std::vector<double>       &places = memory.places, &cuts = memory.cuts;
     tree->find(a, b, near);
-    std::vector<double> places{0., 1.};
-    for (const unsigned int c : near)
-      add_face_crossings(cells[c].corners, a, b, places);
+    const Tensor<1, dim> along = (b - a) / a.distance(b);
+    places.clear();
+    // A cell that the bond passes has a face that it crosses, since it begins and ends at vertices.
+    constexpr double apart = 1e-9;
+    near.erase(std::remove_if(
+                 near.begin(),
+                 near.end(),
+                 [&](const unsigned int c) {
+                   if (!tree->is_near_line(c, a, along))
+                     return true;
+                   const std::size_t before = places.size();
+                   add_face_crossings(cells[c].corners, a, b, places);
+                   return std::none_of(places.begin() + before, places.end(), [](const double s) {
+                     return s > -1e-6 && s < 1. + 1e-6;
+                   });
+                 }),
+               near.end());
     std::sort(places.begin(), places.end());
-    constexpr double    apart = 1e-9;
-    std::vector<double> cuts{0.};
+    cuts.assign(1, 0.);
     for (const double s : places)
       if (s > cuts.back() + apart && s < 1. - apart)
         cuts.push_back(s);
@@ -90,17 +157,9 @@ namespace PeriDeal
         const double      middle = 0.5 * (cuts[k] + cuts[k + 1]);
         const Point<dim>  p      = aside_a + middle * (aside_b - aside_a);
         const std::size_t first  = way.size();
-        Point<dim>        unit;
         for (const unsigned int c : near)
           {
-            if (!tree->box_holds(c, p) || !unit_point(cells[c].corners, p, unit))
-              continue;
-            constexpr double slack =
-              1e-9; // less than the crack points of a bond lie beside its nodes
-            bool in = true;
-            for (unsigned int d = 0; d < dim; ++d)
-              in = in && unit[d] > -slack && unit[d] < 1. + slack;
-            if (!in)
+            if (!tree->box_holds(c, p) || !is_inside(cells[c].corners, p))
               continue;
             Point<dim> from, to;
             if (!unit_point(cells[c].corners, a + cuts[k] * (b - a), from) ||
@@ -135,8 +194,9 @@ namespace PeriDeal
     zone_bonds.clear();
     passages.clear();
     bonds_of_node.assign(nodes.n_owned(), {});
-    const unsigned int                     n_own_cells = taken.size();
-    std::vector<std::vector<unsigned int>> ways; // cells of each bond, those of other processes too
+    const unsigned int        n_own_cells = taken.size();
+    std::vector<unsigned int> way_cells; // of each bond in turn, those of other processes too
+    std::vector<std::size_t>  way_ends;
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
         if (!joined[i])
@@ -159,14 +219,14 @@ namespace PeriDeal
               continue;
             zone_bond.intact *= lowest / bonds.bond_conductivity(i, bond.neighbor);
             const unsigned int number = zone_bonds.size();
-            ways.emplace_back();
             for (Passage &passage : way)
               {
                 passage.bond = number;
-                ways.back().push_back(passage.cell);
+                way_cells.push_back(passage.cell);
                 if (passage.cell < n_own_cells)
                   passages.push_back(passage);
               }
+            way_ends.push_back(way_cells.size());
             for (const unsigned int node : zone_bond.nodes)
               if (node < nodes.n_owned())
                 bonds_of_node[node].push_back(number);
@@ -176,10 +236,10 @@ namespace PeriDeal
     sum_up();
     find_strains();
     share_strains();
-    for (std::size_t k = 0; k < zone_bonds.size(); ++k)
-      for (const unsigned int c : ways[k])
-        if (cells[c].strain > part_to_take)
-          zone_bonds[k].scale = std::min(zone_bonds[k].scale, part_to_take / cells[c].strain);
+    for (std::size_t k = 0, w = 0; k < zone_bonds.size(); ++k)
+      for (; w < way_ends[k]; ++w)
+        if (const double strain = cells[way_cells[w]].strain; strain > part_to_take)
+          zone_bonds[k].scale = std::min(zone_bonds[k].scale, part_to_take / strain);
     sum_up();
   }
 
@@ -221,7 +281,7 @@ namespace PeriDeal
           Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>>(linear)
             .eigenvalues()
             .maxCoeff();
-        cells[c].strain = largest / (cells[c].lowest * tree->volume(c));
+        cells[c].strain = largest / (cells[c].lowest * volume_of(cells[c].corners));
       }
   }
 

@@ -22,19 +22,26 @@ namespace PeriDeal
   {
     const DoFHandler<dim> &dofs = bonds.nodes().dof_handler();
     FEValues<dim>          values(dofs.get_fe(), QGauss<dim>(2), update_quadrature_points);
+    const double           constant = scene.material.conductivity.is_constant() ?
+                                        scene.material.conductivity.value(Point<dim>()) :
+                                        0.;
     cell_of_index.assign(dofs.get_triangulation().n_active_cells(), numbers::invalid_unsigned_int);
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
           NearCell near;
-          near.lowest  = std::numeric_limits<double>::max();
-          near.highest = 0.;
-          values.reinit(cell);
-          for (const Point<dim> &q : values.get_quadrature_points())
+          near.lowest = near.highest = constant;
+          if (!scene.material.conductivity.is_constant())
             {
-              const double kappa = scene.material.conductivity.value(q);
-              near.lowest        = std::min(near.lowest, kappa);
-              near.highest       = std::max(near.highest, kappa);
+              near.lowest  = std::numeric_limits<double>::max();
+              near.highest = 0.;
+              values.reinit(cell);
+              for (const Point<dim> &q : values.get_quadrature_points())
+                {
+                  const double kappa = scene.material.conductivity.value(q);
+                  near.lowest        = std::min(near.lowest, kappa);
+                  near.highest       = std::max(near.highest, kappa);
+                }
             }
           for (unsigned int v = 0; v < n_corners; ++v)
             near.corners[v] = cell->vertex(v);

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <deal.II/base/bounding_box.h>
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/numerics/rtree.h>
 
 #include <perideal/operators/mesh_exchange.h>
@@ -21,7 +20,9 @@ namespace PeriDeal
   {
     using Entry = std::pair<dealii::BoundingBox<dim>, unsigned int>;
 
-    explicit Tree(const std::vector<NearCell> &cells)
+    /** Knows the cells that reach into a box. */
+    Tree(const std::vector<NearCell> &cells, const dealii::BoundingBox<dim> &around)
+      : boxes(cells.size())
     {
       std::vector<Entry> list;
       for (unsigned int c = 0; c < cells.size(); ++c)
@@ -31,14 +32,14 @@ namespace PeriDeal
           for (unsigned int d = 0; d < dim; ++d)
             size = std::max(size, box.side_length(d));
           box.extend(1e-6 * size);
-          boxes.push_back(box);
+          bool apart = false;
+          for (unsigned int d = 0; d < dim; ++d)
+            apart = apart || box.lower_bound(d) > around.upper_bound(d) ||
+                    box.upper_bound(d) < around.lower_bound(d);
+          if (apart)
+            continue;
+          boxes[c] = box;
           list.emplace_back(box, c);
-          // Gauss points are exact for the determinant of the mapping.
-          const dealii::QGauss<dim> points(2);
-          double                    volume = 0.;
-          for (unsigned int q = 0; q < points.size(); ++q)
-            volume += points.weight(q) * volume_element(cells[c].corners, points.point(q));
-          volumes.push_back(volume);
         }
       entries = dealii::pack_rtree(list);
     }
@@ -55,19 +56,28 @@ namespace PeriDeal
       std::sort(found.begin(), found.end());
     }
 
-    bool box_holds(const unsigned int c, const dealii::Point<dim> &p) const
+    /** Whether the sphere around a cell's box meets the line through a. @p along has length 1. */
+    bool is_near_line(const unsigned int            c,
+                      const dealii::Point<dim>     &a,
+                      const dealii::Tensor<1, dim> &along) const
     {
-      return boxes[c].point_inside(p);
+      const auto &[low, high]                = boxes[c].get_boundary_points();
+      const dealii::Tensor<1, dim> to_middle = 0.5 * ((low - a) + (high - a));
+      const double                 ahead     = to_middle * along;
+      return to_middle.norm_square() - ahead * ahead < 0.2501 * (high - low).norm_square();
     }
 
-    double volume(const unsigned int c) const
+    bool box_holds(const unsigned int c, const dealii::Point<dim> &p) const
     {
-      return volumes[c];
+      const auto &[low, high] = boxes[c].get_boundary_points();
+      for (unsigned int d = 0; d < dim; ++d)
+        if (p[d] < low[d] || p[d] > high[d])
+          return false;
+      return true;
     }
 
   private:
     dealii::RTree<Entry>                  entries;
     std::vector<dealii::BoundingBox<dim>> boxes;
-    std::vector<double>                   volumes;
   };
 } // namespace PeriDeal

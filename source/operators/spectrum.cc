@@ -3,10 +3,10 @@
 
 #include <perideal/operators/spectrum.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <vector>
+
+#include "ritz_bound.h"
 
 namespace PeriDeal
 {
@@ -18,18 +18,16 @@ namespace PeriDeal
      */
     double lanczos(const Operator &op, Vector &now, const double enough)
     {
-      constexpr unsigned int n_max  = 60;
-      constexpr double       margin = 4e-3;
-      std::vector<double>    alpha, beta;
-      Vector                 inverse_root(op.lumped_capacity()), last(now), x(now), y(now);
+      Vector inverse_root(op.lumped_capacity()), last(now), x(now), y(now);
       for (double &c : inverse_root)
         c = 1. / std::sqrt(c);
       for (unsigned int i = 0; i < now.locally_owned_size(); ++i)
         now.local_element(i) /= inverse_root.local_element(i);
       now /= now.l2_norm();
-      last         = 0.;
-      double bound = 0., norm = 0.;
-      for (unsigned int k = 0; k < n_max; ++k)
+      last           = 0.;
+      double    norm = 0.;
+      RitzBound bound(enough);
+      for (unsigned int k = 0; k < RitzBound::n_max; ++k)
         {
           x = now;
           x.scale(inverse_root);
@@ -38,25 +36,16 @@ namespace PeriDeal
               y.local_element(i) =
                 inverse_root.local_element(i) * y.local_element(i) - norm * last.local_element(i);
           });
-          alpha.push_back(now * y);
-          y.add(-alpha.back(), now);
-          norm                           = y.l2_norm();
-          const Eigen::VectorXd diagonal = Eigen::Map<Eigen::VectorXd>(alpha.data(), alpha.size());
-          const Eigen::VectorXd side     = Eigen::Map<Eigen::VectorXd>(beta.data(), beta.size());
-          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
-          ritz.computeFromTridiagonal(diagonal, side);
-          const Eigen::Index end      = diagonal.size() - 1;
-          const double       residual = norm * std::abs(ritz.eigenvectors()(end, end));
-          // Some eigenvalue is as near as the residual; where several lie close together the largest may be a little above it.
-          bound = ritz.eigenvalues()[end] + std::max(residual, margin * ritz.eigenvalues()[end]);
-          if (residual < margin * bound || norm <= 1e-12 * bound || bound <= enough)
+          const double alpha = now * y;
+          y.add(-alpha, now);
+          norm = y.l2_norm();
+          if (bound.take(alpha, norm))
             break;
-          beta.push_back(norm);
           y /= norm;
           last.swap(now);
           now.swap(y);
         }
-      return bound;
+      return bound.value();
     }
 
 

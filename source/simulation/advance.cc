@@ -96,13 +96,17 @@ namespace PeriDeal
                                                const double   t_begin,
                                                const double   t_end)
   {
-    Timings::Scope scope(model.timings, "time stepping");
     with_formulas([&] {
       for (double from = t_begin; from < t_end;)
         {
-          if (model.update(from))
-            model.stepper->restart();
-          const double to = std::min(t_end, model.op().next_event(from));
+          if (scene.cracks.change())
+            {
+              Timings::Scope scope(model.timings, "changing cracks");
+              if (model.update(from))
+                model.stepper->restart();
+            }
+          Timings::Scope scope(model.timings, "time stepping");
+          const double   to = std::min(t_end, model.op().next_event(from));
           model.stepper->advance(model.solution, from, to);
           from = to;
         }

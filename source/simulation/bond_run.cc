@@ -55,6 +55,11 @@ namespace PeriDeal
         return node_set.get();
       }
 
+      double volume_of(const unsigned int node) const override
+      {
+        return node_set->volume(node);
+      }
+
       Operator &op() const override
       {
         return *bonds;

@@ -54,6 +54,12 @@ namespace PeriDeal
         return model == Model::peridynamics ? node_set.get() : nullptr;
       }
 
+      double volume_of(const unsigned int node) const override
+      {
+        Assert(node_set, ExcMessage("Finite elements alone have no peridynamic nodes."));
+        return node_set->volume(node);
+      }
+
       Operator &op() const override
       {
         return *fem;
@@ -68,36 +74,20 @@ namespace PeriDeal
       {
         // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for higher degrees, which it would spoil, and for
         // peridynamics, whose values are those of points.
-        const bool    project = element.degree == 1 && model != Model::peridynamics;
-        FEValues<dim> values(element,
-                             project ? Quadrature<dim>(QGauss<dim>(2)) :
-                                       Quadrature<dim>(element.get_unit_support_points()),
-                             update_values | update_quadrature_points | update_JxW_values);
-        Vector        weight(u);
-        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
-        u      = 0.;
-        weight = 0.;
-        for (const auto &cell : handler.active_cell_iterators())
-          if (cell->is_locally_owned())
-            {
-              values.reinit(cell);
-              cell->get_dof_indices(indices);
-              for (const unsigned int q : values.quadrature_point_indices())
-                for (unsigned int i = 0; i < indices.size(); ++i)
-                  {
-                    const double share = project ? values.shape_value(i, q) * values.JxW(q) :
-                                                   (i == q ? 1. : 0.);
-                    if (share == 0.)
-                      continue;
-                    weight(indices[i]) += share;
-                    u(indices[i]) += share * scene.initial_and_source.initial_value.value(
-                                               values.quadrature_point(q));
-                  }
-            }
-        u.compress(VectorOperation::add);
-        weight.compress(VectorOperation::add);
-        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-          u.local_element(i) /= weight.local_element(i);
+        const auto initial = [&](const Point<dim> &p) {
+          return scene.initial_and_source.initial_value.value(p);
+        };
+        if (element.degree == 1 && model != Model::peridynamics)
+          {
+            Vector volumes(u);
+            integrate(initial, u);
+            integrate([](const Point<dim> &) { return 1.; }, volumes);
+            for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+              u.local_element(i) /= volumes.local_element(i);
+          }
+        else
+          for_each_node(
+            [&](const unsigned int i, const Point<dim> &p) { u.local_element(i) = initial(p); });
       }
 
       RecoveryIndicators indicators(const Vector &u) const override
@@ -190,24 +180,12 @@ namespace PeriDeal
             element.degree > 1)
           return element_difference(handler, u, exact);
         // Inside a cut cell the interpolant runs across the crack: only the values at the nodes are the model's.
-        Vector expected(u), weights(u);
+        Vector expected(u), volumes(u);
         for_each_node(
           [&](const unsigned int i, const Point<dim> &p) { expected.local_element(i) = exact(p); });
-        weights = 0.;
-        FEValues<dim> values(element, QGauss<dim>(2), update_values | update_JxW_values);
-        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
-        for (const auto &cell : handler.active_cell_iterators())
-          if (cell->is_locally_owned())
-            {
-              values.reinit(cell);
-              cell->get_dof_indices(indices);
-              for (const unsigned int q : values.quadrature_point_indices())
-                for (unsigned int i = 0; i < indices.size(); ++i)
-                  weights(indices[i]) += values.shape_value(i, q) * values.JxW(q);
-            }
-        weights.compress(VectorOperation::add);
+        integrate([](const Point<dim> &) { return 1.; }, volumes);
         return nodal_difference(u, expected, [&](const unsigned int i) {
-          return weights.local_element(i);
+          return volumes.local_element(i);
         });
       }
 
@@ -354,6 +332,30 @@ namespace PeriDeal
           fields.push_back(vector_field<1>("zone", zone));
         fields.push_back(vector_field<1>("node_volume", volume));
         fields.push_back(vector_field<1>("cut_fraction", cut));
+      }
+
+
+      /** Integral of f times the shape function of each owned unknown, with two Gauss points along each direction. Collective. */
+      void integrate(const std::function<double(const Point<dim> &)> &f, Vector &integrals) const
+      {
+        FEValues<dim>                        values(element,
+                             QGauss<dim>(2),
+                             update_values | update_quadrature_points | update_JxW_values);
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        integrals = 0.;
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              values.reinit(cell);
+              cell->get_dof_indices(indices);
+              for (const unsigned int q : values.quadrature_point_indices())
+                {
+                  const double weight = f(values.quadrature_point(q)) * values.JxW(q);
+                  for (unsigned int i = 0; i < indices.size(); ++i)
+                    integrals(indices[i]) += values.shape_value(i, q) * weight;
+                }
+            }
+        integrals.compress(VectorOperation::add);
       }
 
 

@@ -42,7 +42,8 @@ namespace PeriDeal
     json                     fields     = json::array();
     json                     errors     = json::object(); // model -> norm -> [[t, value], ...]
     json                     comparison = json::object();
-    json        balances = json::object(); // model -> flux and balance at the last time
-    std::string totals   = "time,model,quantity,value\n";
+    json comparisons = json::object(); // "coupled minus (other model)" -> norm -> [[t, value], ...]
+    json balances    = json::object(); // model -> flux and balance at the last time
+    std::string totals = "time,model,quantity,value\n";
   };
 } // namespace PeriDeal

@@ -308,46 +308,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::add_errors(const double t)
-  {
-    if (!exact)
-      return;
-    for (const auto &model : models)
-      {
-        const Difference error = model->error(model->solution, [&](const Point<dim> &p) {
-          double x[dim];
-          for (unsigned int d = 0; d < dim; ++d)
-            x[d] = p[d];
-          return exact->value(x, t);
-        });
-        record->errors[model->name()]["relative l2"].push_back({t, error.relative_l2});
-        record->errors[model->name()]["maximum"].push_back({t, error.maximum});
-      }
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::compare_models(const double t)
-  {
-    const ModelRun<dim> *fem = nullptr, *pd = nullptr;
-    for (const auto &model : models)
-      if (model->name() != to_string(Model::coupled))
-        (model->name() == to_string(Model::finite_elements) ? fem : pd) = model.get();
-    if (fem == nullptr || pd == nullptr)
-      return;
-    pd->op().initialize_vector(difference);
-    interpolate_to(fem->dofs(), fem->solution, pd->dofs(), difference);
-    const Difference size = nodal_difference(pd->solution, difference, [&](const unsigned int i) {
-      return pd->nodes()->volume(i);
-    });
-    record->comparison["relative l2"].push_back({t, size.relative_l2});
-    record->comparison["maximum"].push_back({t, size.maximum});
-    difference.sadd(-1., 1., pd->solution);
-    difference.update_ghost_values();
-  }
-
-
-  template <int dim>
   void Simulation<dim>::write_fields(const double t)
   {
     if (!scene.output.vtu && !scene.output.hdf5)

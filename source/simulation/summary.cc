@@ -122,9 +122,10 @@ namespace PeriDeal
       entry["lowest eigenvalue"] = c.lowest_eigenvalue;
       if (std::isfinite(c.lowest_remainder))
         entry["lowest eigenvalue of a cell"] = c.lowest_remainder;
-      entry["share of the body"] = c.zone_share;
-      entry["full peridynamics"] = {{"bonds", c.n_bonds_of_full},
-                                    {"nonzeros", c.n_nonzeros_of_full}};
+      entry["share of the body"]             = c.zone_share;
+      entry["share of the conductance kept"] = c.kept_share;
+      entry["full peridynamics"]             = {{"bonds", c.n_bonds_of_full},
+                                                {"nonzeros", c.n_nonzeros_of_full}};
       return entry;
     }
 
@@ -228,6 +229,8 @@ namespace PeriDeal
       summary["models"][model->name()] = describe_model(*model, *record, communicator);
     if (!record->comparison.empty())
       summary["comparison"] = record->comparison;
+    if (!record->comparisons.empty())
+      summary["comparisons"] = record->comparisons;
 
     std::string message;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)

@@ -145,6 +145,24 @@ def crack():
     print_table("Insulated crack, 121 x 121 cells, steady", ("case", "model", "relative L2", "heat", "bonds", "nonzeros", "iterations"), rows)
 
 
+def compared():
+    """The summary compares the coupled model with both others, over the nodes."""
+    n, times = 41, (0.1, 0.5)
+    run = run_quietly("insulated_crack", {"Domain/Cells": f"{n}, {n}", "Output/Line": "", "Coupling/Certificate": "false"}, probes=nodes(n))
+    found = run.summary["comparisons"]
+    check(sorted(found) == ["coupled minus finite elements", "coupled minus peridynamics"], f"comparisons: {sorted(found)}")
+    for other in (FEM, PD):
+        entry = found[f"coupled minus {other}"]
+        for k, t in enumerate(times):
+            here, there = nodal_values(run, BOTH, t), nodal_values(run, other, t)
+            what = f"coupled minus {other}, t = {t}"
+            check(entry["relative l2"][k][0] == t == entry["maximum"][k][0], f"{what}: time {entry['relative l2'][k][0]}")
+            check_close(entry["relative l2"][k][1], distance(n, here, there), relative=1e-9, what=f"{what}: relative L2")
+            check_close(entry["maximum"][k][1], max(abs(a - b) for a, b in zip(here, there)), relative=1e-9, what=f"{what}: maximum")
+    pd, fem = nodal_values(run, PD, 0.5), nodal_values(run, FEM, 0.5)
+    check_close(run.summary["comparison"]["relative l2"][-1][1], distance(n, pd, fem), relative=1e-9, what="peridynamics minus finite elements")
+
+
 def oblique_scene(angle, offset, cells):
     """An insulated crack of half length 0.5 in an infinite plate: T = Im sqrt(z^2 - 1/4)."""
     c, s = math.cos(angle), math.sin(angle)
@@ -214,7 +232,11 @@ def others():
         print(f"{name}: heat {heats[0]:.6g} and {heats[1]:.6g}, largest difference along the line {gap:.2e}")
         balance = run.model(BOTH)["heat balance"]
         check_less(abs(balance["imbalance"]) / balance["throughput"], 1e-9, f"{name}: imbalance of heat")
-        check_less(run.model(BOTH)["certificate"]["patch error"]["linear"], 1e-12, f"{name}: linear patch error")
+        found = run.model(BOTH)["certificate"]
+        check_less(found["patch error"]["linear"], 1e-12, f"{name}: linear patch error")
+        kept = found["share of the conductance kept"]
+        check(0.5 < kept < 1 if name == "distorted_mesh" else kept == 1, f"{name}: share of the conductance kept {kept}")
+        print(f"{name}: share of the conductance kept {kept:.3f}")
 
 
 def graded():
@@ -252,7 +274,7 @@ def graded():
 
 
 def main():
-    parts = {f.__name__: f for f in (patches, smooth, crack, oblique, growing, others, graded)}
+    parts = {f.__name__: f for f in (patches, smooth, crack, compared, oblique, growing, others, graded)}
     for name in sys.argv[1:] or parts:
         parts[name]()
     finish()

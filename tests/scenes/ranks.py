@@ -268,6 +268,9 @@ def coupled():
     compare("plate, splice, steady", PLATE, {**ADAPTIVE["steady"], "Coupling/Scheme": "splice"}, {"coupled": 1e-8})
     compare("plate, graded, steady", PLATE, {**ADAPTIVE["steady"], **graded}, {"coupled": 1e-8})
     compare("3D, coupled, steady", BODY, {**ADAPTIVE["steady"], **exchange}, solved)
+    compare("square crack in a block", "prm/coupling/square_crack_3d.prm",
+            {"Domain/Cells": "20, 20, 20", "Output/Fields": "none", "Solver/Tolerance": "1e-13", "Coupling/Certificate": "false"},
+            {"coupled": 1e-10}, ranks=(2,))
 
 
 def work():

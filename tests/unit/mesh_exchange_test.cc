@@ -11,7 +11,7 @@
 #include <fstream>
 #include <random>
 
-#include "operator_test_tools.h"
+#include "growth_test_tools.h"
 
 using namespace PeriDeal;
 using namespace PeriDeal::OperatorTests;
@@ -188,4 +188,29 @@ TEST(MeshExchange, same_on_all_processes)
   alone.fem->apply(b, alone.values(bumpy<2>));
   EXPECT_LT(difference(all, a, alone, b), 1e-13 * alone.op().diagonal().linfty_norm());
   EXPECT_EQ(all.op().size().bonds, alone.op().size().bonds);
+}
+
+
+/** A crack that grows through a distorted mesh, and the zone with it. */
+TEST(MeshExchange, moving_zone_ends_where_a_new_operator_starts)
+{
+  const std::string mesh = distorted_mesh<2>(20, 0.25);
+  const Settings    growing{{"Cracks/Segments", "0.2,0.43 ; 0.4,0.48"},
+                         {"Cracks/Growth", "2: 0, 0.4,0.1, 0.9"},
+                         {"Cracks/Growth step", "0.0125"},
+                         {"Time/End time", "1"}},
+    at_end{{"Cracks/Segments", "0.2,0.43 ; 0.76,0.57"}};
+  for (const std::string zone : {"cracks: 1", "cracks: 0.4", "everywhere"})
+    for (const std::string correction : {"none", "crack scaling"})
+      {
+        const Settings base =
+          on<2>(mesh, "0.15", zone) + Settings{{"Peridynamics/Surface correction", correction},
+                                               {"Boundary conditions/Convection", "0: 2, 1"}};
+        expect_grown<2>(zone + ", " + correction, base, growing, at_end, Model::coupled);
+      }
+  for (const std::string zone : {"cracks: 1", "cracks: 0.4"})
+    {
+      const Problem<2> problem(on<2>(mesh, "0.15", zone) + growing, Model::coupled);
+      EXPECT_GT(expect_history_kept(problem, zone), 0u) << zone;
+    }
 }

@@ -22,7 +22,8 @@ namespace PeriDeal
     double lowest_eigenvalue = 0.; // of C^{-1} K, the rate of the slowest decay
     double lowest_remainder =
       0.; // eigenvalue of what is left of a cell, in units of its conductivity; infinite if all cells are whole
-    double             zone_share      = 0.;                        // of the body's volume
+    double             zone_share      = 0.; // of the body's volume
+    double             kept_share      = 1.; // of the bonds' conductance that distorted cells leave
     unsigned long long n_bonds_of_full = 0, n_nonzeros_of_full = 0; // peridynamics everywhere
 
     /** What is wrong, or nothing: a linear field that is not exact to 1e-10, a negative eigenvalue. */

@@ -53,7 +53,7 @@ namespace PeriDeal
                   std::vector<Bond> &bonds,
                   const bool         with_self_term = true) const;
 
-        /** The same for any node known here: the bonds whose other ends are known here, too. Without self term. */
+    /** The same for any node known here: the bonds whose other ends are known here, too. Without self term. */
     void known_bonds_of(const unsigned int node, std::vector<Bond> &bonds) const;
 
     /** A crack that is cut into the mesh lies between two nodes. */
@@ -184,15 +184,16 @@ namespace PeriDeal
     void   sites_in(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &found) const;
     dealii::Point<dim> position(const unsigned int node) const;
 
-    Nodes<dim>                      *own_nodes;
-    const Material                  &material;
-    const Peridynamics              &parameters;
-    const CrackHistory<dim>          history;
-    double                           cracks_of; // the representative time
-    bool                             cut_at_tips;
-    std::vector<CrackGeometry<dim>>  cracks;
-    double                           transmission, contact_conductance;
-    double                           delta, farthest = 0., factor = 1.;
+    Nodes<dim>                     *own_nodes;
+    const Material                 &material;
+    const Peridynamics             &parameters;
+    const CrackHistory<dim>         history;
+    double                          cracks_of; // the representative time
+    bool                            cut_at_tips;
+    std::vector<CrackGeometry<dim>> cracks;
+    double                          transmission, contact_conductance;
+    double                          delta, farthest = 0., factor = 1.,
+                  conductivity_scale; // of the kernel, before calibration by the factor
     bool                             on_lattice = false, uniform = true, complete_families = true;
     std::vector<FamilyMember<dim>>   members, nearest, self_additions;
     std::vector<double>              conductivities, factors;

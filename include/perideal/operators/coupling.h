@@ -80,6 +80,12 @@ namespace PeriDeal
      */
     virtual void set_cracks_of(const double time) = 0;
 
+    /** Part of the bonds' conductance that distorted cells leave them. Collective. */
+    virtual double kept_share() const
+    {
+      return 1.;
+    }
+
     /** Share of the body's volume whose nodes are in the zone. Collective. */
     double zone_share() const;
 

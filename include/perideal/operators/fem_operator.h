@@ -128,6 +128,8 @@ namespace PeriDeal
     };
 
     struct CellData;
+    struct FactorData;
+    struct EventData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
     /** Some rows of bonds: numbers of neighbours (local) and conductances. */
@@ -158,36 +160,44 @@ namespace PeriDeal
     void     add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
     BondRows bond_rows(const std::vector<unsigned int> &nodes) const;
     void     add_bonds(const std::vector<unsigned int> &nodes, const BondRows &rows);
-    void change_bonds(const std::vector<unsigned int> &nodes, const BondRows &old, Vector &touched);
-    void change_form(const std::vector<unsigned int> &nodes, Vector &touched);
-    void mark_broken_bonds(Vector &marked) const;
-    void add_bond_traces(const Vector &marked, Vector &trace) const;
-    void add_bond_heat(const Vector &u, Balance &balance) const;
-    void count_bonds() const;
-    void find_cut_cells();
-    bool is_cut(const Cell &cell) const;
-    double kept_fraction(const Cell                                &cell,
-                         const unsigned int                         a,
-                         const unsigned int                         b,
-                         std::vector<std::pair<unsigned int, int>> *crossed) const;
-    void   scale_beside_cracks(CellData &data) const;
-    void   update_rows(const Vector &touched, const bool zone_moves);
-    void   add_crack_heat(const Vector &u, Balance &balance) const;
-    void   check_material() const;
-    void   assemble();
-    void   fill();
-    void   find_temperatures(CellData &data) const;
-    double center_conductivity(const Cell &cell) const;
-    double heat_of(const Vector &u) const;
+    void     change_bonds(const std::vector<unsigned int> &nodes, const BondRows &old);
+    void     change_form(const std::vector<unsigned int> &nodes);
+    void     mark_broken_bonds(const std::vector<unsigned int> &nodes, Vector &marked) const;
+    void     add_bond_traces(const std::vector<unsigned int> &nodes,
+                             const Vector                    &marked,
+                             Vector                          &trace) const;
+    void     add_bond_heat(const Vector &u, Balance &balance) const;
+    void     count_bonds() const;
+    void     find_cut_cells();
+    bool     is_cut(const Cell &cell) const;
+    double   kept_fraction(const Cell                                &cell,
+                           const unsigned int                         a,
+                           const unsigned int                         b,
+                           std::vector<std::pair<unsigned int, int>> *crossed) const;
+    void     scale_beside_cracks(CellData &data) const;
+    void     update_rows(const bool zone_moves);
+    void     add_crack_heat(const Vector &u, Balance &balance) const;
+    void     check_material() const;
+    void     assemble();
+    void     fill();
+    void     find_temperatures(CellData &data) const;
+    double   center_conductivity(const Cell &cell) const;
+    double   heat_of(const Vector &u) const;
     bool assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
     void assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
-    void raise_bounds(const Vector &touched);
-    std::vector<Cell> cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
-                                 const std::vector<dealii::BoundingBox<dim>> &joins);
-    void              keep_unseparated_pairs(const Cell &cell, CellData &data) const;
-    void              assemble_loads(Vector &loads, const double t) const;
+    void raise_bounds();
+    std::vector<Cell>         cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
+                                         const std::vector<dealii::BoundingBox<dim>> &joins,
+                                         const double                                 wide) const;
+    std::vector<unsigned int> owned_unknowns_of(const std::vector<Cell> &cells) const;
+    void                      prepare_event();
+    void                      keep_unseparated_pairs(const Cell &cell, CellData &data) const;
+    void                      assemble_loads(Vector &loads, const double t) const;
     void add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
-    void find_crack_factors(CellData &data);
+    void find_crack_factors();
+    void find_crack_factors(const std::vector<Cell>         &cells,
+                            const std::vector<unsigned int> &nodes,
+                            FactorData                      &factors);
     void find_gershgorin();
     void mask(Vector &y, const double value = 0.) const;
     void mask(Vector            &y,
@@ -213,6 +223,7 @@ namespace PeriDeal
     mutable unsigned long long        n_bonds       = 0;
     mutable bool                      recount_bonds = true;
     std::shared_ptr<CellData>         cell_data;           // memory of the cell loops
+    std::shared_ptr<EventData>        event;               // of update(), made for the first event
     std::vector<Prescribed>           prescribed;          // in the order of unknowns
     std::vector<HangingNode>          hanging;             // likewise
     bool                              any_hanging = false; // on any process

@@ -45,8 +45,8 @@ namespace PeriDeal
     const Families<dim>                  &families() const override;
     std::size_t                           memory_consumption() const override;
 
-    /** Part of the bonds' conductance that distorted cells leave: sum s_b W_b over sum W_b. Collective. */
-    double kept_share() const;
+    /** sum s_b W_b over sum W_b. */
+    double kept_share() const override;
 
   private:
     static constexpr unsigned int n_corners = dealii::GeometryInfo<dim>::vertices_per_cell;
@@ -77,11 +77,18 @@ namespace PeriDeal
 
     struct Tree;
 
+    /** Of follow(). */
+    struct Memory
+    {
+      std::vector<unsigned int> near;
+      std::vector<double>       places, cuts;
+    };
+
     void find_cells(const Scene<dim> &scene);
     void send_cells();
     void share_strains();
     void find_bonds();
-    bool follow(const ZoneBond &bond, std::vector<Passage> &way) const;
+    bool follow(const ZoneBond &bond, std::vector<Passage> &way);
     void find_strains();
     void sum_up();
 
@@ -93,6 +100,7 @@ namespace PeriDeal
     std::vector<unsigned int>                         cell_of_index;    // by active cell index
     std::map<unsigned int, std::vector<unsigned int>> sent, received;   // cells, by process
     std::unique_ptr<Tree>                             tree;
+    Memory                                            memory;
     std::vector<ZoneBond>                             zone_bonds;
     std::vector<Passage>                   passages; // of zone_bonds in own cells, in their order
     std::vector<std::vector<unsigned int>> bonds_of_node; // owned

@@ -42,6 +42,9 @@ namespace PeriDeal
     /** Nodes on a lattice, for reading values at points without a mesh search; nullptr for finite elements. */
     virtual const Nodes<dim> *nodes() const = 0;
 
+    /** Volume of an owned peridynamic node. Not for finite elements alone. */
+    virtual double volume_of(const unsigned int node) const = 0;
+
     virtual Operator &op() const = 0;
 
     /** As Operator::update(). */

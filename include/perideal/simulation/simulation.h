@@ -60,6 +60,7 @@ namespace PeriDeal
     void add_totals(const double t, ModelRun<dim> &model);
     void add_errors(const double t);
     void compare_models(const double t);
+    void compare_with_others(const double t, const ModelRun<dim> &coupled);
     void write_fields(const double t);
     void write_summary();
     void describe(const ModelRun<dim> &model) const;
