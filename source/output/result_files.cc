@@ -27,7 +27,7 @@ namespace PeriDeal
     bool is_result(const fs::path &path, const bool field)
     {
       static const std::vector<std::string> names =
-        {"summary.json", "report.html", "probes.csv", "line.csv", "totals.csv", "scene.prm"};
+        {"summary.json", "report.html", "probes.csv", "line.csv", "grid.csv", "totals.csv", "scene.prm"};
       const std::string name = path.filename().string();
       const bool series = begins_with(name, "finite_elements") || begins_with(name, "peridynamics");
       const std::string kind = path.extension().string();

@@ -220,6 +220,7 @@ namespace PeriDeal
     options.tolerance        = scene.time.tolerance;
     options.solver_tolerance = scene.solver.tolerance;
     options.max_iterations   = scene.solver.max_iterations;
+    options.direct_up_to     = scene.solver.direct_up_to;
     for (auto &model : models)
       {
         Timings::Scope scope(model->timings, "stepper");
@@ -252,8 +253,10 @@ namespace PeriDeal
       };
     make(scene.output.probes, "Probes", probe_readers);
     make(scene.output.line, "Line", line_readers);
+    make(scene.output.grid, "Grid", grid_readers);
     probes = std::make_unique<PointTable>(scene.output.probes, dim);
     line   = std::make_unique<PointTable>(scene.output.line, dim);
+    grid   = std::make_unique<PointTable>(scene.output.grid, dim);
   }
 
 
@@ -283,7 +286,8 @@ namespace PeriDeal
                                                     model->solution,
                                                     0.,
                                                     scene.solver.tolerance,
-                                                    scene.solver.max_iterations);
+                                                    scene.solver.max_iterations,
+                                                    scene.solver.direct_up_to);
           else
             advance_through_events(*model, t);
         });
@@ -370,6 +374,7 @@ namespace PeriDeal
       };
     add(scene.output.probes, probe_readers, *probes);
     add(scene.output.line, line_readers, *line);
+    add(scene.output.grid, grid_readers, *grid);
   }
 
 

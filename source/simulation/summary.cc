@@ -234,6 +234,8 @@ namespace PeriDeal
             write_file(directory + "probes.csv", probes->text());
           if (!scene.output.line.empty())
             write_file(directory + "line.csv", line->text());
+          if (!scene.output.grid.empty())
+            write_file(directory + "grid.csv", grid->text());
           write_file(directory + "totals.csv", record->totals);
           write_file(directory + "scene.prm", scene_with_defaults());
           write_file(directory + "summary.json",

@@ -7,6 +7,9 @@
 #include <perideal/base/matrix_rows.h>
 #include <perideal/solvers/preconditioner.h>
 
+#include <Epetra_MultiVector.h>
+#include <Teuchos_ParameterList.hpp>
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -31,8 +34,10 @@ namespace PeriDeal
   };
 
 
-  MultigridPreconditioner::MultigridPreconditioner(const Operator &op)
+  MultigridPreconditioner::MultigridPreconditioner(const Operator    &op,
+                                                   const unsigned int direct_up_to)
     : op(op)
+    , direct_up_to(direct_up_to)
     , data(std::make_unique<Data>())
   {
     op.surrogate(data->surrogate);
@@ -71,7 +76,11 @@ namespace PeriDeal
     // Smoothing is for what varies fast: there the inverse diagonal does the work unless the surrogate is the operator itself.
     options.smoother_sweeps       = op.surrogate_is_exact() ? 2 : 1;
     options.aggregation_threshold = 1e-4;
-    data->multigrid.initialize(data->shifted, options);
+    Teuchos::ParameterList              list;
+    std::unique_ptr<Epetra_MultiVector> constant_modes; // of a scalar operator none of their own
+    options.set_parameters(list, constant_modes, data->shifted);
+    list.set("coarse: max size", static_cast<int>(direct_up_to));
+    data->multigrid.initialize(data->shifted, list);
   }
 
 
