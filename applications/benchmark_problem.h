@@ -73,7 +73,7 @@ namespace PeriDeal
         scene.domain.upper[d] = size;
       memory_before = resident_memory();
       std::vector<std::string> notes;
-      mesh        = build_mesh(scene.domain, scene.cracks, MPI_COMM_WORLD, notes);
+      mesh        = build_mesh(scene, MPI_COMM_WORLD, notes);
       memory_mesh = resident_memory();
       handler     = std::make_unique<dealii::DoFHandler<dim>>(*mesh);
       handler->distribute_dofs(dealii::FE_Q<dim>(1));

@@ -41,13 +41,14 @@ namespace PeriDeal
         op.initialize_vector(held);
         for (const BoundaryShare &share : op.bonds().families().nodes().boundary_shares())
           held.local_element(share.node) = 1.;
-        held.update_ghost_values();
+        op.set_hanging(held, 1.);
         inner.copy_from(matrix);
+        const Vector known = with_columns_as_ghosts(held, matrix);
         for_each_entry(inner, [&](const unsigned int i, const auto column, double &value) {
           const bool row_held = held.local_element(i) > 0.;
           if (column == held.get_partitioner()->local_to_global(i))
             value = row_held ? 1. : value;
-          else if (row_held || held(column) > 0.)
+          else if (row_held || known(column) > 0.)
             value = 0.;
         });
         TrilinosWrappers::PreconditionAMG::AdditionalData options;

@@ -43,6 +43,39 @@ namespace PeriDeal
   }
 
 
+    namespace
+  {
+    /** On a graded mesh beside larger cells, where rows of K are not those of a lattice, the flux is that of the elements. */
+    template <int dim>
+    void take_element_flux_beside_large_cells(const FEMOperator<dim> &op,
+                                              const Vector           &u,
+                                              VectorField<dim>       &two_sided,
+                                              VectorField<dim>       &one_sided)
+    {
+      const Nodes<dim>      &nodes   = op.bonds().families().nodes();
+      const DoFHandler<dim> &dofs    = op.dof_handler();
+      VectorField<dim>       element = two_sided;
+      element_heat_flux<dim>(dofs, op.material(), op.cut_cells(), u, element);
+      std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (!cell->is_artificial() &&
+            cell->extent_in_direction(0) > 1.5 * nodes.lattice()->spacing[0])
+          {
+            cell->get_dof_indices(indices);
+            for (const auto i : indices)
+              if (u.in_local_range(i))
+                for (unsigned int d = 0; d < dim; ++d)
+                  two_sided[d](i) = one_sided[d](i) = element[d](i);
+          }
+      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        if (nodes.is_hanging(i))
+          for (unsigned int d = 0; d < dim; ++d)
+            two_sided[d].local_element(i) = one_sided[d].local_element(i) =
+              element[d].local_element(i);
+    }
+  } // namespace
+
+
   template <int dim>
   void coupled_heat_flux(const FEMOperator<dim> &op,
                          const Vector           &u,
@@ -67,6 +100,8 @@ namespace PeriDeal
               one_sided[d].local_element(i) -= q[d];
           }
       });
+    if (nodes.is_graded())
+      take_element_flux_beside_large_cells<dim>(op, u, two_sided, one_sided);
   }
 
 

@@ -8,6 +8,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/crack_faces.h>
+#include <perideal/mesh/grading.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/scene/boundary_conditions.h>
 
@@ -203,23 +204,36 @@ namespace PeriDeal
 
     /** An empty triangulation, distributed by p4est or with all cells on every process. */
     template <int dim>
-    std::unique_ptr<Triangulation<dim>> empty_triangulation(const bool     every_cell,
-                                                            const MPI_Comm communicator)
+    std::unique_ptr<Triangulation<dim>> empty_triangulation(const bool           every_cell,
+                                                            const CellWork<dim> &work,
+                                                            const MPI_Comm       communicator)
     {
       if constexpr (dim > 1)
         if (!every_cell)
-          return std::make_unique<parallel::distributed::Triangulation<dim>>(communicator);
+          {
+            auto mesh = std::make_unique<parallel::distributed::Triangulation<dim>>(communicator);
+            if (work)
+              mesh->signals.weight.connect(
+                [work](const auto &cell, const auto) { return work(cell); });
+            return mesh;
+          }
       using Shared            = parallel::shared::Triangulation<dim>;
       auto          mesh      = std::make_unique<Shared>(communicator,
                                            Triangulation<dim>::none,
                                            dim > 1,
                                            Shared::partition_custom_signal);
       Shared *const pointer   = mesh.get();
-      const auto    partition = [pointer, communicator]() {
+      const auto    partition = [pointer, work, communicator]() {
         const std::size_t n_proc = Utilities::MPI::n_mpi_processes(communicator);
-        std::size_t       n      = 0;
+        const auto  of  = [&](const auto &cell) -> std::size_t { return work ? work(cell) : 1; };
+        std::size_t all = 0, before = 0;
         for (const auto &cell : pointer->active_cell_iterators())
-          cell->set_subdomain_id(n++ * n_proc / pointer->n_active_cells());
+          all += of(cell);
+        for (const auto &cell : pointer->active_cell_iterators())
+          {
+            cell->set_subdomain_id(before * n_proc / all);
+            before += of(cell);
+          }
       };
       mesh->signals.create.connect(partition);
       mesh->signals.post_refinement.connect(partition);
@@ -229,11 +243,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<Triangulation<dim>> build_mesh(const Domain<dim>        &domain,
-                                                 const Cracks<dim>        &cracks,
+  std::unique_ptr<Triangulation<dim>> build_mesh(const Scene<dim>         &scene,
                                                  const MPI_Comm            communicator,
                                                  std::vector<std::string> &notes)
   {
+    const Domain<dim>              &domain = scene.domain;
+    const Cracks<dim>              &cracks = scene.cracks;
     std::vector<CrackGeometry<dim>> cut;
     if (cracks.mesh == CrackMesh::faces)
       cut = make_crack_geometries(cracks.pieces(0.));
@@ -256,6 +271,12 @@ namespace PeriDeal
       std::tie(coarse, n_refinements) = box_mesh(domain, cut);
     if (domain.shape != Shape::box)
       require_resolved(coarse, cut);
+    AssertThrow(n_refinements >= domain.coarsening,
+                UserError("'Coarsening' in section 'Domain' is " +
+                          std::to_string(domain.coarsening) +
+                          ", but with 'Mesh = faces' (section 'Cracks') cells can be merged " +
+                          std::to_string(n_refinements) +
+                          " times only, since the crack has to lie on faces of the largest ones."));
     // p4est sorts its coarse cells in a time that grows with the square of their number.
     const bool every_cell = dim == 1 || coarse.cells.size() > most_coarse_cells;
     if (dim > 1 && every_cell && Utilities::MPI::n_mpi_processes(communicator) > 1)
@@ -265,7 +286,9 @@ namespace PeriDeal
                       "need less memory.");
     cut_along_faces(coarse, cut);
 
-    std::unique_ptr<Triangulation<dim>> mesh = empty_triangulation<dim>(every_cell, communicator);
+    const CellWork<dim>                 work = work_of_cells(scene);
+    std::unique_ptr<Triangulation<dim>> mesh =
+      empty_triangulation<dim>(every_cell, work, communicator);
     mesh->create_triangulation(coarse.vertices, coarse.cells, SubCellData());
     for (const auto &cell : mesh->cell_iterators_on_level(0))
       for (const unsigned int f : cell->face_indices())
@@ -278,22 +301,25 @@ namespace PeriDeal
                                            found != ids.end() ? found->second :
                                                                 crack_boundary_id);
           }
-    if (n_refinements > 0)
-      mesh->refine_global(n_refinements);
+    if (n_refinements > domain.coarsening)
+      mesh->refine_global(n_refinements - domain.coarsening);
+    if (domain.coarsening > 0)
+      refine_towards(*mesh, fine_part(scene), domain, n_refinements);
+    if constexpr (dim > 1)
+      if (auto *distributed = dynamic_cast<parallel::distributed::Triangulation<dim> *>(mesh.get());
+          distributed != nullptr && work)
+        distributed->repartition();
     return mesh;
   }
 
 
-  template std::unique_ptr<Triangulation<1>> build_mesh(const Domain<1> &,
-                                                        const Cracks<1> &,
+  template std::unique_ptr<Triangulation<1>> build_mesh(const Scene<1> &,
                                                         const MPI_Comm,
                                                         std::vector<std::string> &);
-  template std::unique_ptr<Triangulation<2>> build_mesh(const Domain<2> &,
-                                                        const Cracks<2> &,
+  template std::unique_ptr<Triangulation<2>> build_mesh(const Scene<2> &,
                                                         const MPI_Comm,
                                                         std::vector<std::string> &);
-  template std::unique_ptr<Triangulation<3>> build_mesh(const Domain<3> &,
-                                                        const Cracks<3> &,
+  template std::unique_ptr<Triangulation<3>> build_mesh(const Scene<3> &,
                                                         const MPI_Comm,
                                                         std::vector<std::string> &);
 } // namespace PeriDeal

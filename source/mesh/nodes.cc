@@ -3,7 +3,9 @@
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/affine_constraints.h>
 
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/mesh_builder.h>
@@ -11,6 +13,7 @@
 #include <perideal/scene/crack_geometry.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <sstream>
@@ -64,6 +67,15 @@ namespace PeriDeal
     }
 
 
+    /** How many cells of the lattice a cell spans in each direction. */
+    template <int dim>
+    int merged_sites(const typename DoFHandler<dim>::active_cell_iterator &cell,
+                     const Lattice<dim>                                   &lattice)
+    {
+      return static_cast<int>(std::lround(cell->extent_in_direction(0) / lattice.spacing[0]));
+    }
+
+
     template <int dim>
     std::array<double, dim> to_array(const Point<dim> &p)
     {
@@ -101,12 +113,34 @@ namespace PeriDeal
                   fe.n_dofs_per_cell() == (fe.n_dofs_per_vertex() > 0 ? 1u << dim : 1u),
                 ExcMessage("Peridynamic nodes are the dofs of FE_Q(1) or FE_DGQ(0), found " +
                            fe.get_name() + "."));
+    find_hanging();
     find_positions();
     find_volumes(nodal_volume);
     find_boundary_shares();
     if (cracks.mesh == CrackMesh::faces)
       find_crack_points(cracks);
     doubled = Utilities::MPI::max(crack_points.empty() ? 0 : 1, communicator()) > 0;
+  }
+
+
+  template <int dim>
+  void Nodes<dim>::find_hanging()
+  {
+    if (is_vertex_element(*dofs) && dofs->get_triangulation().has_hanging_nodes())
+      {
+        IndexSet relevant;
+        DoFTools::extract_locally_relevant_dofs(*dofs, relevant);
+        AffineConstraints<double> constraints(relevant);
+        DoFTools::make_hanging_node_constraints(*dofs, constraints);
+        hanging.resize(owned_count);
+        for (unsigned int i = 0; i < owned_count; ++i)
+          hanging[i] = constraints.is_constrained(first + i);
+      }
+    if (!regular)
+      return;
+    for (const auto &cell : dofs->active_cell_iterators())
+      graded = graded || (cell->is_locally_owned() && merged_sites(cell, *regular) > 1);
+    graded = Utilities::MPI::max(graded ? 1 : 0, communicator()) > 0;
   }
 
 
@@ -146,9 +180,11 @@ namespace PeriDeal
     if (regular)
       {
         const double share = regular->cell_volume() / n_corners;
-        for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &, const unsigned int) {
-          volumes[node] += share;
-        });
+        for_each_owned_dof(*dofs,
+                           [&](const unsigned int node, const auto &cell, const unsigned int) {
+                             volumes[node] +=
+                               graded ? share * std::pow(merged_sites(cell, *regular), dim) : share;
+                           });
         if (nodal_volume == NodalVolume::full)
           std::fill(volumes.begin(), volumes.end(), regular->cell_volume());
         return;
@@ -291,6 +327,19 @@ namespace PeriDeal
   bool Nodes<dim>::has_doubled_nodes() const
   {
     return doubled;
+  }
+
+  template <int dim>
+  bool Nodes<dim>::is_graded() const
+  {
+    return graded;
+  }
+
+  template <int dim>
+  bool Nodes<dim>::is_hanging(const unsigned int node) const
+  {
+    AssertIndexRange(node, owned_count);
+    return !hanging.empty() && hanging[node];
   }
 
   template <int dim>

@@ -35,6 +35,20 @@ namespace PeriDeal
   }
 
 
+    template <int dim>
+  std::vector<bool> hanging_nodes(const Nodes<dim> &nodes)
+  {
+    Vector marks(nodes.partitioner());
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      marks.local_element(i) = nodes.is_hanging(i) ? 1. : 0.;
+    marks.update_ghost_values();
+    std::vector<bool> hanging(nodes.n_local());
+    for (unsigned int i = 0; i < hanging.size(); ++i)
+      hanging[i] = marks.local_element(i) > 0.;
+    return hanging;
+  }
+
+
   template <int dim>
   std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>          &nodes,
                                                const Scene<dim>    &scene,
@@ -46,11 +60,14 @@ namespace PeriDeal
     if (scheme == CouplingScheme::blending)
       return std::make_unique<Blending<dim>>(nodes, scene, zone);
     if (nodes.lattice() && !nodes.has_doubled_nodes())
-      return std::make_unique<LatticeExchange<dim>>(nodes, scene, zone, std::vector<bool>());
+      return std::make_unique<LatticeExchange<dim>>(nodes, scene, zone);
     return std::make_unique<MeshExchange<dim>>(nodes, scene, zone);
   }
 
 
+  template std::vector<bool>            hanging_nodes(const Nodes<1> &);
+  template std::vector<bool>            hanging_nodes(const Nodes<2> &);
+  template std::vector<bool>            hanging_nodes(const Nodes<3> &);
   template double                       Coupling<1>::zone_share() const;
   template double                       Coupling<2>::zone_share() const;
   template double                       Coupling<3>::zone_share() const;

@@ -277,7 +277,7 @@ namespace PeriDeal
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
     if (!bonds_apart)
-      DoFTools::make_sparsity_pattern(dofs, pattern);
+            DoFTools::make_sparsity_pattern(dofs, pattern, constraints, false);
     if (coupling)
       add_bond_pattern(pattern);
     pattern.compress();
@@ -305,9 +305,9 @@ namespace PeriDeal
           scale_beside_cracks(data);
           data.stiffness.add(1., data.convection);
           if (!empty)
-            stiffness.add(data.indices, data.stiffness);
+            add_to(stiffness, data.stiffness, data.indices);
           if (!capacity_is_diagonal())
-            mass.add(data.indices, data.mass);
+            add_to(mass, data.mass, data.indices);
           for (unsigned int a = 0; a < data.indices.size(); ++a)
             for (unsigned int b = 0; b < data.indices.size(); ++b)
               capacity(data.indices[a]) += data.mass(a, b);
@@ -324,6 +324,9 @@ namespace PeriDeal
     if (!capacity_is_diagonal())
       mass.compress(VectorOperation::add);
     capacity.compress(VectorOperation::add);
+    condense(capacity);
+    if (any_hanging) // any value that is positive
+      set_hanging(capacity, capacity.l2_norm() / std::sqrt(capacity.size()));
   }
 
 
@@ -371,6 +374,7 @@ namespace PeriDeal
           }
       }
     loads.compress(VectorOperation::add);
+    condense(loads);
   }
 
 

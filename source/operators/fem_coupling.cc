@@ -191,6 +191,9 @@ namespace PeriDeal
   {
     const auto &layout = *coupling->families().nodes().partitioner();
     for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
+      // The neighbours of a hanging node's neighbours may be unknown here.
+      if (!layout.in_local_range(column) && !layout.is_ghost_entry(column))
+        return;
       const unsigned int j = layout.global_to_local(column);
       if (i != j && value != 0.)
         visit(i, j, -value);
@@ -259,8 +262,8 @@ namespace PeriDeal
     IndexSet        relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
-    DoFTools::make_sparsity_pattern(dofs, pattern);
-    const auto                               &layout = *coupling->families().nodes().partitioner();
+        DoFTools::make_sparsity_pattern(dofs, pattern, constraints, false);
+    const auto                                  &layout = *coupling->families().nodes().partitioner();
     std::vector<typename Coupling<dim>::Bond> bonds;
     std::vector<types::global_dof_index>      columns;
     std::vector<double>                       values;
@@ -293,7 +296,7 @@ namespace PeriDeal
           if (with_bonds)
             coupling->finish_cell(cell, data.stiffness);
           cell->get_dof_indices(data.indices);
-          matrix.add(data.indices, data.stiffness);
+          add_to(matrix, data.stiffness, data.indices);
         }
     matrix.compress(VectorOperation::add);
   }

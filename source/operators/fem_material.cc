@@ -88,6 +88,8 @@ namespace PeriDeal
       {
         for (unsigned int i = 0; i < capacity.locally_owned_size(); ++i)
           heat += capacity.local_element(i) * u.local_element(i);
+        for (const HangingNode &node : hanging)
+          heat -= capacity.local_element(node.dof) * u.local_element(node.dof);
         return heat;
       }
     CellData           &data = *cell_data;

@@ -32,6 +32,7 @@ namespace PeriDeal
   {
     check_material();
     find_cut_cells();
+    find_hanging();
     find_prescribed();
     bonds_apart = this->coupling && this->coupling->has_form();
     assemble();
@@ -65,7 +66,8 @@ namespace PeriDeal
           for (unsigned int k = 0; k < dirichlet.size(); ++k)
             if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() == dirichlet[k].id)
               for (unsigned int i = 0; i < indices.size(); ++i)
-                if (fe.has_support_on_face(i, f) && layout.in_local_range(indices[i]))
+                if (fe.has_support_on_face(i, f) && layout.in_local_range(indices[i]) &&
+                    !(any_hanging && constraints.is_constrained(indices[i])))
                   {
                     const Point<dim> p =
                       MappingQ1<dim>().transform_unit_to_real_cell(cell, fe.unit_support_point(i));
@@ -93,6 +95,8 @@ namespace PeriDeal
     for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
       row_sums[row] += std::abs(value);
     });
+        for (const HangingNode &node : hanging)
+      row_sums[node.dof] = 0.;
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
       {
         if (!(stiffness_diagonal.local_element(i) > 0.))
@@ -145,6 +149,14 @@ namespace PeriDeal
          entry != prescribed.end() && entry->dof < end;
          ++entry)
       y.local_element(entry->dof) = value;
+    for (auto node =
+           std::lower_bound(hanging.begin(),
+                            hanging.end(),
+                            begin,
+                            [](const HangingNode &a, const unsigned int b) { return a.dof < b; });
+         node != hanging.end() && node->dof < end;
+         ++node)
+      y.local_element(node->dof) = value;
   }
 
 
@@ -186,6 +198,7 @@ namespace PeriDeal
   {
     for (const Prescribed &entry : prescribed)
       u.local_element(entry.dof) = entry.condition->value.value(entry.position, t);
+    interpolate_hanging(u);
   }
 
   template <int dim>
@@ -290,10 +303,10 @@ namespace PeriDeal
       assemble_surrogate(matrix);
     else
       matrix.copy_from(stiffness);
-    Vector held;
-    initialize_vector(held);
-    mask(held, 1.);
-    held.update_ghost_values();
+        Vector marked;
+    initialize_vector(marked);
+    mask(marked, 1.);
+    const Vector held = with_columns_as_ghosts(marked, matrix);
     for_each_entry(matrix, [&](const unsigned int i, const auto column, double &value) {
       const bool is_held = held.local_element(i) > 0.;
       if (column == held.get_partitioner()->local_to_global(i))
@@ -371,7 +384,14 @@ namespace PeriDeal
     size.unknowns = dofs.n_dofs();
     size.nonzeros = form ? Utilities::MPI::sum(remainder.values.size() + form->n_stored(),
                                                dofs.get_communicator()) :
-                           stiffness.n_nonzero_elements();
+                                                      stiffness.n_nonzero_elements();
+    if (!form)
+      {
+        const Utilities::MPI::MinMaxAvg work =
+          Utilities::MPI::min_max_avg(stiffness.trilinos_matrix().NumMyNonzeros(),
+                                      dofs.get_communicator());
+        size.busiest = work.max / work.avg;
+      }
     size.memory   = stiffness.memory_consumption() + mass.memory_consumption() +
                   capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
                   constant_loads.memory_consumption() + scratch.memory_consumption();
@@ -391,6 +411,12 @@ namespace PeriDeal
   const DoFHandler<dim> &FEMOperator<dim>::dof_handler() const
   {
     return dofs;
+  }
+
+  template <int dim>
+  const Material &FEMOperator<dim>::material() const
+  {
+    return scene.material;
   }
 
   template <int dim>

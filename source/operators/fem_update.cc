@@ -81,9 +81,14 @@ namespace PeriDeal
           if (data.stiffness.linfty_norm() == 0.)
             continue;
           if (!(bonds_apart && coupling->leaves_nothing(near[k])))
-            stiffness.add(data.indices, data.stiffness);
+            add_to(stiffness, data.stiffness, data.indices);
           for (const auto i : data.indices)
-            touched(i) = 1.;
+            {
+              touched(i) = 1.;
+              if (const auto *masters = constraints.get_constraint_entries(i))
+                for (const auto &master : *masters)
+                  touched(master.first) = 1.;
+            }
         }
     touched.compress(VectorOperation::max);
     if (coupling && !bonds_apart)

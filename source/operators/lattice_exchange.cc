@@ -78,8 +78,8 @@ namespace PeriDeal
   {
     list.clear();
     const Site      site = site_of(node);
-    const SiteData &data = *at(site);
-    if (!data.in_zone)
+    const SiteData *own  = at(site);
+    if (own == nullptr || !own->in_zone)
       return;
     for (const bool forward : {false, true})
       for (const Offset &offset : offsets)
@@ -93,7 +93,7 @@ namespace PeriDeal
           Bond bond;
           bond.neighbor = neighbor->node;
           bond.intact =
-            conductivity_on(offset, start) * offset.weight * data.volume * neighbor->volume;
+            conductivity_on(offset, start) * offset.weight * own->volume * neighbor->volume;
           if (bond.intact == 0.)
             continue;
           bond.weight = bond.intact * bonds.kept_fraction(node, bond.neighbor, bond.cut);
@@ -107,8 +107,9 @@ namespace PeriDeal
                                                    std::vector<unsigned int> &neighbors) const
   {
     neighbors.clear();
-    const Site site = site_of(node);
-    if (!at(site)->may_join)
+    const Site      site = site_of(node);
+    const SiteData *own  = at(site);
+    if (own == nullptr || !own->may_join)
       return;
     for (const FamilyMember<dim> &member : bonds.lattice_members())
       if (const SiteData *other = at(site + member.offset); other != nullptr && other->may_join)
@@ -249,7 +250,8 @@ namespace PeriDeal
   template <int dim>
   bool LatticeExchange<dim>::in_zone(const unsigned int node) const
   {
-    return at(site_of(node))->in_zone;
+    const SiteData *data = at(site_of(node));
+    return data != nullptr && data->in_zone;
   }
 
   template <int dim>

@@ -47,15 +47,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  LatticeExchange<dim>::LatticeExchange(Nodes<dim>              &nodes,
-                                        const Scene<dim>        &scene,
-                                        const Zone<dim>         &zone,
-                                        const std::vector<bool> &constrained)
+  LatticeExchange<dim>::LatticeExchange(Nodes<dim>       &nodes,
+                                        const Scene<dim> &scene,
+                                        const Zone<dim>  &zone)
     : bonds(nodes, scene, HaloAround::cells)
     , zone(zone)
     , last(scene.cracks.end_time)
   {
-    plain = bonds.uniform_conductivity() && scene.domain.shape == Shape::box;
+    plain = bonds.uniform_conductivity() && scene.domain.shape == Shape::box && !nodes.is_graded();
     form  = scene.peridynamics.form;
     AssertThrow(
       plain || form != OperatorForm::lattice || !zone.is_everywhere(),
@@ -63,7 +62,7 @@ namespace PeriDeal
         "'Operator form = lattice' in section 'Peridynamics' is not possible here: the conductivity varies or "
         "the body has voids. Use 'auto'."));
     find_offsets();
-    find_sites(constrained);
+    find_sites();
     find_cells(scene);
     find_full_matrix();
   }
@@ -101,52 +100,65 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeExchange<dim>::find_sites(const std::vector<bool> &constrained)
+  void LatticeExchange<dim>::set_table_around(const std::vector<bool> &candidates)
   {
-    const Nodes<dim>   &nodes   = bonds.nodes();
-    const Lattice<dim> &lattice = *nodes.lattice();
-    Vector              free(nodes.partitioner());
-    free = 1.;
-    for (unsigned int i = 0; i < constrained.size(); ++i)
-      if (constrained[i])
-        free.local_element(i) = 0.;
-    free.update_ghost_values();
     Site low{}, high{};
-    for (unsigned int i = 0; i < nodes.n_local(); ++i)
-      {
-        const Site site = site_of(i);
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            low[d]  = i == 0 ? site[d] : std::min(low[d], site[d]);
-            high[d] = i == 0 ? site[d] : std::max(high[d], site[d]);
-          }
-      }
+    bool any = false;
+    for (unsigned int i = 0; i < candidates.size(); ++i)
+      if (candidates[i])
+        {
+          const Site site = site_of(i);
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              low[d]  = any ? std::min(low[d], site[d]) : site[d];
+              high[d] = any ? std::max(high[d], site[d]) : site[d];
+            }
+          any = true;
+        }
+    if (!any)
+      return;
+    // One more site on each side: cells around the outermost bonds.
     std::size_t n_sites = 1;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        corner[d] = low[d];
-        extent[d] = high[d] - low[d] + 1;
+        corner[d] = low[d] - 1;
+        extent[d] = high[d] - low[d] + 3;
         n_sites *= extent[d];
       }
-    sites.resize(nodes.n_local() > 0 ? n_sites : 0);
+    sites.resize(n_sites);
+  }
+
+
+  template <int dim>
+  void LatticeExchange<dim>::find_sites()
+  {
+    const Nodes<dim>        &nodes   = bonds.nodes();
+    const Lattice<dim>      &lattice = *nodes.lattice();
     const CrackHistory<dim> &history = bonds.crack_history();
     Zone<dim>                at_end  = zone;
     at_end.set_cracks(history.pieces(last));
     zone.set_cracks(history.pieces(history.representative(0.)));
-    double n_in_zone = 0.;
+    const std::vector<bool> hanging = hanging_nodes(nodes);
+    std::vector<bool>       candidates(nodes.n_local());
+    double                  n_in_zone = 0.;
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
-        SiteData &site = own(site_of(i));
-        site.node      = i;
-        site.volume    = nodes.volume(i);
         // Beside larger cells a node has more volume than a cell of the lattice.
-        site.may_join = free.local_element(i) > 0. &&
-                        site.volume < lattice.cell_volume() * (1. + 1e-9) &&
+        candidates[i] = !hanging[i] && nodes.volume(i) < lattice.cell_volume() * (1. + 1e-9) &&
                         at_end.contains(nodes.position(i));
-        site.in_zone = site.may_join && zone.contains(nodes.position(i));
-        n_in_zone += i < nodes.n_owned() && site.may_join;
+        n_in_zone += i < nodes.n_owned() && candidates[i];
       }
     throw_if_zone_empty(n_in_zone, nodes.communicator());
+    set_table_around(candidates);
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      if (at(site_of(i)) != nullptr)
+        {
+          SiteData &site = own(site_of(i));
+          site.node      = i;
+          site.volume    = nodes.volume(i);
+          site.may_join  = candidates[i];
+          site.in_zone   = site.may_join && zone.contains(nodes.position(i));
+        }
   }
 
 
@@ -219,14 +231,14 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                            \
-  template LatticeExchange<dim>::LatticeExchange(Nodes<dim> &,               \
-                                                 const Scene<dim> &,         \
-                                                 const Zone<dim> &,          \
-                                                 const std::vector<bool> &); \
-  template void LatticeExchange<dim>::find_offsets();                        \
-  template void LatticeExchange<dim>::find_sites(const std::vector<bool> &); \
-  template void LatticeExchange<dim>::find_cells(const Scene<dim> &);        \
+#define PERIDEAL_INSTANTIATE(dim)                                                  \
+  template LatticeExchange<dim>::LatticeExchange(Nodes<dim> &,                     \
+                                                 const Scene<dim> &,               \
+                                                 const Zone<dim> &);               \
+  template void LatticeExchange<dim>::find_offsets();                              \
+  template void LatticeExchange<dim>::find_sites();                                \
+  template void LatticeExchange<dim>::set_table_around(const std::vector<bool> &); \
+  template void LatticeExchange<dim>::find_cells(const Scene<dim> &);              \
   template void LatticeExchange<dim>::find_full_matrix();
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

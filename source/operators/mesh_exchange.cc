@@ -35,12 +35,13 @@ namespace PeriDeal
     Zone<dim>                at_end  = zone;
     at_end.set_cracks(history.pieces(last));
     this->zone.set_cracks(history.pieces(history.representative(0.)));
-    double n_in_zone = 0.;
+    const std::vector<bool> hanging   = hanging_nodes(nodes);
+    double                  n_in_zone = 0.;
     joined.resize(nodes.n_local());
     may_join.resize(nodes.n_local());
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
-        may_join[i] = at_end.contains(nodes.position(i));
+        may_join[i] = !hanging[i] && at_end.contains(nodes.position(i));
         joined[i]   = may_join[i] && this->zone.contains(nodes.position(i));
         n_in_zone += i < nodes.n_owned() && may_join[i];
       }

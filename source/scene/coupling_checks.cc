@@ -113,6 +113,34 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void Scene<dim>::check_coarsening() const
+  {
+    if (domain.coarsening == 0)
+      return;
+    const std::string entry = domain.where("Coarsening"),
+                      found = "found " + std::to_string(domain.coarsening) + ", but ";
+    if (runs(*this, Model::peridynamics))
+      entry_error(
+        entry,
+        found +
+          "'Models' has peridynamics, whose bonds need fine cells everywhere. Use 'coupled', or 0 here.");
+    if (runs(*this, Model::coupled) && coupling.scheme != CouplingScheme::exchange)
+      entry_error(entry,
+                  found +
+                    "'Scheme' in section 'Coupling' is not 'exchange', the only one for graded meshes.");
+    const bool near_cracks =
+      coupling.zone == ZoneKind::near_cracks || coupling.zone == ZoneKind::adaptive;
+    if (!domain.fine_by_formula && near_cracks && cracks.cracks.empty())
+      entry_error(entry,
+                  found +
+                    "section 'Cracks' has none for which cells would stay fine. Give a formula in 'Fine where'.");
+  }
+
+
+  template void Scene<1>::check_coarsening() const;
+  template void Scene<2>::check_coarsening() const;
+  template void Scene<3>::check_coarsening() const;
   template void Scene<1>::resolve_boundary_treatment();
   template void Scene<2>::resolve_boundary_treatment();
   template void Scene<3>::resolve_boundary_treatment();

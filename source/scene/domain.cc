@@ -81,6 +81,18 @@ namespace PeriDeal
             "",
             "length",
             "Edge length of the cells, instead of Cells. It must divide every edge of the box.");
+    declare("Coarsening",
+            EntryType::whole_number,
+            "0",
+            "1",
+            "How often cells may be merged, two in each direction, away from where they have to stay as fine as `Cells` says: a graded mesh "
+            "with hanging nodes. `Cells` must allow as many halvings. Only for a box, and not for peridynamics alone.");
+    declare("Fine where",
+            EntryType::text,
+            "auto",
+            "",
+            "With `Coarsening`: cells stay fine where this formula of x, y, z is greater than 0. `auto`: in the zone of section "
+            "`Coupling`, thus around cracks. Beyond, there are at least two cells of each size.");
     declare("Nodes",
             EntryType::choice,
             "vertices",
@@ -205,6 +217,39 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Domain<dim>::parse_fine_part()
+  {
+    fine_by_formula = text("Fine where") != "auto";
+    if (fine_by_formula && coarsening == 0)
+      error("Fine where", "has no effect: 'Coarsening' is 0, so all cells are fine.");
+    if (coarsening == 0)
+      return;
+    if (shape != Shape::box)
+      error("Coarsening",
+            "found " + text("Coarsening") + ", but 'Shape' is '" + text("Shape") +
+              "': only the lattice of a box has cells to merge. Use 0.");
+    for (unsigned int d = 0; d < dim; ++d)
+      if (coarsening > 20 || cells[d] % (1u << coarsening) != 0)
+        {
+          unsigned int possible = 0;
+          while (possible < 20 && cells[d] % (2u << possible) == 0)
+            ++possible;
+          error("Coarsening",
+                "found " + text("Coarsening") + ", but " + std::to_string(cells[d]) +
+                  " cells in a row can be halved " + std::to_string(possible) +
+                  (possible == 1 ? " time" : " times") +
+                  " only. Choose 'Cells' divisible by a higher power of two, or at most " +
+                  std::to_string(possible) + " here.");
+        }
+    if (!fine_by_formula)
+      return;
+    fine = Expression(text("Fine where"), where("Fine where"));
+    if (fine.depends_on_time())
+      error("Fine where", "found '" + text("Fine where") + "'; the formula may not depend on t.");
+  }
+
+
+  template <int dim>
   void Domain<dim>::parse_hole()
   {
     hole_center = parse_point<dim>(text("Hole center"), where("Hole center"));
@@ -243,6 +288,8 @@ namespace PeriDeal
                 ") must be greater than that of 'Lower corner' (" + number_text(lower[d]) + ").");
     parse_cells();
     parse_hole();
+    coarsening = whole_number("Coarsening");
+    parse_fine_part();
     mesh_file = text("Mesh file");
     if (shape == Shape::mesh_file && mesh_file.empty() && !own_mesh)
       error("Mesh file", "is empty, but 'Shape' is 'mesh file'.");

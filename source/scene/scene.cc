@@ -323,6 +323,7 @@ namespace PeriDeal
                     "; cracks with 'Mesh' in section 'Cracks' = pairs need degree 1.");
     resolve_boundary_treatment();
     check_coupling();
+    check_coarsening();
     if (runs(*this, Model::peridynamics) || runs(*this, Model::coupled))
       {
         check_shape_for_peridynamics(*this);

@@ -83,7 +83,7 @@ namespace PeriDeal
                   (n_proc == 1 ? " process)" : " processes)"));
     {
       Timings::Scope scope(timings, "mesh");
-      mesh = build_mesh(scene.domain, scene.cracks, communicator, record->notes);
+      mesh = build_mesh(scene, communicator, record->notes);
       set_material_ids(*mesh, scene.material.phases.all());
     }
     if (!scene.cracks.tips.empty())

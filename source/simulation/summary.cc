@@ -140,6 +140,8 @@ namespace PeriDeal
       if (size.bonds > 0)
         entry["bonds"] = size.bonds;
       entry["nonzeros"] = size.nonzeros;
+      if (size.busiest > 0.)
+        entry["work of the busiest process"] = size.busiest;
       if (model.stepper)
         {
           entry["stepper"]        = model.stepper->name();

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/bonds/bond_pieces.h>
-#include <perideal/bonds/zone.h>
+#include <perideal/scene/zone.h>
 
 #include <gtest/gtest.h>
 

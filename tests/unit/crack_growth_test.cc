@@ -229,10 +229,12 @@ namespace PeriDeal
 
   TEST(CrackGrowth, heat_stays_through_every_cut)
   {
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    const Settings graded{{"Domain/Cells", "48, 40"}, {"Domain/Coarsening", "2"}};
+    for (const Model model : {Model::peridynamics, Model::finite_elements, Model::coupled})
       for (const std::string stepper : {"euler", "chebyshev", "rkc2", "sdirk2"})
         {
-          const Problem<2> problem(square + growing, model);
+          const bool       merged = model == Model::coupled;
+          const Problem<2> problem(square + growing + (merged ? graded : Settings()), model);
           Vector           start = problem.values(bumpy<2>);
           const double     heat  = problem.op().balance(start, 0., false).content;
           const Vector     u     = advanced(problem, stepper, 0.9);

@@ -4,6 +4,7 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <perideal/analysis/coupling_certificate.h>
+#include <perideal/operators/mesh_exchange.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include "operator_test_tools.h"
@@ -71,7 +72,8 @@ namespace
           EXPECT_LT(examine_coupling(*problem.fem, true).asymmetry, 1e-14) << name << ", m = " << m;
           EXPECT_GT(problem.fem->lowest_remainder(), -1e-13) << name << ", m = " << m;
           Vector one = problem.values([](const dealii::Point<dim> &) { return 1.; }), image = one;
-          problem.fem->multiply(image, one);
+                    problem.fem->multiply(image, one);
+          problem.fem->set_hanging(image, 0.);
           EXPECT_LT(image.linfty_norm() / problem.fem->diagonal().linfty_norm(), 1e-13) << name;
         }
   }
@@ -109,6 +111,43 @@ TEST(Exchange, linear_patch_around_holes)
   check_linear<2>(cells("16, 16", "1, 1") + Settings{{"Domain/Shape", "plate with hole"},
                                                      {"Domain/Hole center", "0.5, 0.5"},
                                                      {"Domain/Hole radius", "0.23"}});
+}
+
+
+TEST(Exchange, linear_patch_with_hanging_nodes)
+{
+  const auto graded = [](const std::string &levels) {
+    return Settings{{"Domain/Coarsening", levels}, {"Domain/Fine where", "0.45 - x + 0.3*y - z"}};
+  };
+  check_linear<1>(cells("32", "1") + graded("1"));
+  for (const std::string levels : {"1", "2"})
+    check_linear<2>(cells("24, 24", "1, 1") + graded(levels));
+  check_linear<2>(cells("16, 24", "1, 0.5") + graded("1"), {"6"}); // rectangles 1:3
+  check_linear<3>(cells("8, 8, 8", "1, 1, 1") + graded("1"), {"2", "2.4"});
+}
+
+
+TEST(Exchange, linear_patch_with_bonds_across_levels)
+{
+  // Followed through the cells as on any mesh.
+  for (const std::string m : {"2", "3.2"})
+    {
+      Problem<2> problem(cells("24, 24", "1, 1") + patch<2>("1 + 2*x + 3*y", "0", "everywhere") +
+                           Settings{{"Domain/Coarsening", "1"},
+                                    {"Domain/Fine where", "0.45 - x + 0.3*y"},
+                                    {"Peridynamics/Horizon ratio", m}},
+                         Model::finite_elements);
+      Nodes<2>   nodes(problem.handler,
+                     problem.scene.domain,
+                     problem.scene.cracks,
+                     NodalVolume::partial);
+      auto       bonds = std::make_unique<MeshExchange<2>>(nodes, problem.scene, Zone<2>());
+      problem.fem =
+        std::make_unique<FEMOperator<2>>(problem.handler, problem.scene, std::move(bonds));
+      EXPECT_LT(patch_error(problem), 1e-13) << m;
+      EXPECT_LT(examine_coupling(*problem.fem, true).asymmetry, 1e-14) << m;
+      EXPECT_GT(problem.fem->lowest_remainder(), -1e-13) << m;
+    }
 }
 
 

@@ -25,7 +25,7 @@ namespace PeriDeal
       Scene<dim> scene;
       set(scene, settings);
       std::vector<std::string> notes;
-      return build_mesh(scene.domain, scene.cracks, communicator, notes);
+      return build_mesh(scene, communicator, notes);
     }
 
 

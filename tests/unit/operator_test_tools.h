@@ -70,7 +70,7 @@ namespace PeriDeal
       {
         scene.general.set("Models", to_string(model));
         set(scene, settings);
-        mesh = build_mesh(scene.domain, scene.cracks, communicator, notes);
+        mesh = build_mesh(scene, communicator, notes);
         set_material_ids(*mesh, scene.material.phases.all());
         handler.reinit(*mesh);
         if (model == Model::peridynamics && scene.domain.nodes == NodePlacement::cell_centers)

@@ -206,6 +206,38 @@ namespace PeriDeal
   }
 
 
+  TEST(RankIndependence, graded_meshes)
+  {
+    const Settings conditions{{"Domain/Cells", "80, 72"},
+                              {"Domain/Coarsening", "2"},
+                              {"Boundary conditions/Dirichlet", "left: y ; top: 2*t"},
+                              {"Boundary conditions/Flux", "right: 1"},
+                              {"Boundary conditions/Convection", "bottom: 3, x"},
+                              {"Initial and source/Source", "x*y"},
+                              {"Peridynamics/Surface correction", "crack scaling"}};
+    for (const Model model : {Model::coupled, Model::finite_elements})
+      {
+        expect_same<2>("plate", cracked + conditions, 1e-13, model);
+        expect_same<3>("brick",
+                       {{"Domain/Cells", "16, 16, 16"},
+                        {"Domain/Coarsening", "2"},
+                        {"Peridynamics/Horizon ratio", "2"},
+                        {"Cracks/Polygons", "0.1,0.1,0.1 ; 0.2,0.1,0.1 ; 0.2,0.2,0.15"},
+                        {"Coupling/Zone", "cracks: 0.5"},
+                        {"Boundary conditions/Dirichlet", "left: y ; front: 1"}},
+                       1e-13,
+                       model);
+        expect_same<1>("bar",
+                       {{"Domain/Cells", "64"},
+                        {"Domain/Coarsening", "2"},
+                        {"Domain/Fine where", "0.2 - x"},
+                        {"Coupling/Zone", "0.1 - x"}},
+                       1e-13,
+                       model);
+      }
+  }
+
+
   TEST(RankIndependence, finite_elements)
   {
     const Settings conditions{{"Boundary conditions/Dirichlet", "left: y ; top: 2*t"},

@@ -34,7 +34,7 @@ namespace PeriDeal
 
   /**
    * The same where bonds stand beside finite elements: with all conductances of a node's row of K in the place of w V_i V_j k_ij. -kappa grad T for a linear field inside the
-   * body and on its straight sides.
+   * body and on its straight sides. Beside the larger cells of a graded mesh it is that of the elements.
    */
   template <int dim>
   void coupled_heat_flux(const FEMOperator<dim> &op,

@@ -5,6 +5,8 @@
 
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <perideal/base/types.h>
+
 #include <Epetra_CrsMatrix.h>
 
 namespace PeriDeal
@@ -39,4 +41,9 @@ namespace PeriDeal
         visit(row, column, value);
       });
   }
+
+
+  /** The owned values of a vector with all columns of a matrix as ghosts, which hanging nodes carry beyond the halo. Collective. */
+  Vector with_columns_as_ghosts(const Vector                                 &v,
+                                const dealii::TrilinosWrappers::SparseMatrix &matrix);
 } // namespace PeriDeal

@@ -5,8 +5,7 @@
 
 #include <deal.II/grid/tria.h>
 
-#include <perideal/scene/cracks.h>
-#include <perideal/scene/domain.h>
+#include <perideal/scene/scene.h>
 
 #include <mpi.h>
 
@@ -23,13 +22,13 @@ namespace PeriDeal
   /**
    * The mesh of a scene, distributed over the processes (in 1D, and with more than 100000 coarse cells, every process knows all cells). Boxes are few coarse cells refined globally where the
    * cell counts allow, because every process keeps the coarse mesh; `Cracks / Mesh = faces` keeps the crack on coarse faces and
-   * doubles its vertices. Boundary ids as in BoundaryConditions. Notes for the user are appended to @p notes.
+   * doubles its vertices. With `Coarsening` the mesh is graded: as fine as the lattice only where refine_towards() says. Cells are dealt out to processes
+   * so that all have the same work, bonds of a zone included. Boundary ids as in BoundaryConditions. Notes for the user are appended to @p notes.
    *
    * Throws UserError: crack not on faces, mesh file unreadable, broken or of other cells than quads and hexes. Collective.
    */
   template <int dim>
-  std::unique_ptr<dealii::Triangulation<dim>> build_mesh(const Domain<dim>        &domain,
-                                                         const Cracks<dim>        &cracks,
+  std::unique_ptr<dealii::Triangulation<dim>> build_mesh(const Scene<dim>         &scene,
                                                          const MPI_Comm            communicator,
                                                          std::vector<std::string> &notes);
 } // namespace PeriDeal

@@ -81,6 +81,12 @@ namespace PeriDeal
     /** Some lattice sites carry two nodes, because a crack was cut into the mesh. */
     bool has_doubled_nodes() const;
 
+        /** Some cells of the lattice are merged (`Coarsening`), so that sites in them have no node. */
+    bool is_graded() const;
+
+    /** A node whose value follows from its neighbours', because it lies on the side of a larger cell. For owned nodes. */
+    bool is_hanging(const unsigned int node) const;
+
     /** Smallest edge of the lattice, or of the mesh's cells. */
     double smallest_spacing() const;
 
@@ -101,6 +107,7 @@ namespace PeriDeal
   private:
     void find_positions();
     void find_volumes(const NodalVolume nodal_volume);
+    void find_hanging();
     void find_boundary_shares();
     void find_crack_points(const Cracks<dim> &cracks);
 
@@ -112,7 +119,8 @@ namespace PeriDeal
     std::unordered_map<unsigned int, dealii::Point<dim>>       crack_points;
     std::vector<BoundaryShare>                                 shares;
     std::optional<Lattice<dim>>                                regular;
-    bool                                                       doubled       = false;
+    bool                                                       doubled = false, graded = false;
+    std::vector<bool>                                          hanging; // empty: none
     double                                                     shortest_edge = 0.;
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout;
   };

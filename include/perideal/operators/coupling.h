@@ -7,7 +7,7 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <perideal/bonds/families.h>
-#include <perideal/bonds/zone.h>
+#include <perideal/scene/zone.h>
 #include <perideal/operators/bond_form.h>
 
 #include <memory>
@@ -91,6 +91,10 @@ namespace PeriDeal
     virtual std::size_t memory_consumption() const = 0;
   };
 
+
+    /** Of all nodes known here, ghosts included: which are hanging and have no bonds. Collective. */
+  template <int dim>
+  std::vector<bool> hanging_nodes(const Nodes<dim> &nodes);
 
   /** Throws the UserError of a zone that has no node on any process. Collective. */
   void throw_if_zone_empty(const double n_nodes, const MPI_Comm communicator);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
@@ -28,7 +29,9 @@ namespace PeriDeal
    * `removed`: cut cells conduct nothing.
    *
       * With a coupling the cells keep what it leaves of them, and its bonds are added: the model `coupled`. Then the elements are Q1, and vectors
-   * have the horizon-wide halo of the nodes. Otherwise vectors have the locally relevant dofs as ghosts.
+      * have the horizon-wide halo of the nodes. Otherwise vectors have the locally relevant dofs as ghosts.
+   *
+   * Hanging nodes of a graded mesh follow from their neighbours: K is C^T K C, and their rows are those of unknowns that are not free.
    */
   template <int dim>
   class FEMOperator : public Operator
@@ -65,6 +68,7 @@ namespace PeriDeal
     OperatorSize  size() const override;
 
     const dealii::DoFHandler<dim> &dof_handler() const;
+    const Material                &material() const;
 
     /** Cells of this process that a crack cuts, by active cell index. */
     const std::vector<bool> &cut_cells() const;
@@ -89,6 +93,12 @@ namespace PeriDeal
     /** Numbers in [-1, 1] that look random but depend on the unknowns' positions alone. Collective. */
     const Vector &noise() const;
 
+    /** Set the owned hanging nodes of v to what follows from their neighbours. Collective. */
+    void interpolate_hanging(Vector &v) const;
+
+    /** Set the entries of v for owned hanging nodes. Not collective. */
+    void set_hanging(Vector &v, const double value) const;
+
     /**
      * Lowest eigenvalue of what the coupling leaves of any cell before cracks cut it, in units of the conductivity times h^(dim-2); infinite if it
      * leaves all cells as they are. Collective.
@@ -101,6 +111,13 @@ namespace PeriDeal
       unsigned int         dof; // local index
       dealii::Point<dim>   position;
       const SideCondition *condition;
+    };
+
+    /** An owned node on the side of a larger cell, and the nodes whose weighted mean it has (local numbers). */
+    struct HangingNode
+    {
+      unsigned int                                 dof;
+      std::vector<std::pair<unsigned int, double>> masters;
     };
 
     struct CellData;
@@ -117,6 +134,11 @@ namespace PeriDeal
     };
 
     void     find_prescribed();
+    void     find_hanging();
+    void     add_to(dealii::TrilinosWrappers::SparseMatrix             &matrix,
+                    const dealii::FullMatrix<double>                   &of_cell,
+                    const std::vector<dealii::types::global_dof_index> &indices) const;
+    void     condense(Vector &loads) const;
     void     find_diagonal();
     void     extract_remainder();
     void     add_remainder(Vector            &y,
@@ -178,20 +200,23 @@ namespace PeriDeal
     mutable Vector                         scratch;
     Vector temperatures;        // that K and C are those of, with ghosts; empty: initial values
     bool   bonds_apart = false; // in the form; else in the matrix
-    std::unique_ptr<BondForm>        form;
-    RemainderRows                    remainder;
-    std::vector<double>              bond_sums; // of each owned node, from the form
-    mutable unsigned long long       n_bonds       = 0;
-    mutable bool                     recount_bonds = true;
-    std::shared_ptr<CellData>        cell_data;  // memory of the cell loops
-    std::vector<Prescribed>          prescribed; // in the order of unknowns
-    std::vector<bool>                cut;        // by active cell index
-    Vector                           crack_factors;
-    bool                             loads_vary = false, any_prescribed = false;
-    double                           gershgorin = 0.;
-    mutable Spectrum                 bounds;
-    mutable Vector                   noise_values; // of noise()
-    std::unique_ptr<CellSearch<dim>> search;       // made for the first event
+    std::unique_ptr<BondForm>         form;
+    RemainderRows                     remainder;
+    std::vector<double>               bond_sums; // of each owned node, from the form
+    mutable unsigned long long        n_bonds       = 0;
+    mutable bool                      recount_bonds = true;
+    std::shared_ptr<CellData>         cell_data;           // memory of the cell loops
+    std::vector<Prescribed>           prescribed;          // in the order of unknowns
+    std::vector<HangingNode>          hanging;             // likewise
+    bool                              any_hanging = false; // on any process
+    dealii::AffineConstraints<double> constraints;         // of hanging nodes
+    std::vector<bool>                 cut;                 // by active cell index
+    Vector                            crack_factors;
+    bool                              loads_vary = false, any_prescribed = false;
+    double                            gershgorin = 0.;
+    mutable Spectrum                  bounds;
+    mutable Vector                    noise_values; // of noise()
+    std::unique_ptr<CellSearch<dim>>  search;       // made for the first event
     mutable bool pairs_stiffer = false; // some cut cell's pairs conduct more than the cell
   };
 } // namespace PeriDeal

@@ -23,8 +23,8 @@ namespace PeriDeal
    * positive semidefinite.
    *
    * W_b = w(xi) V_i V_j kappa, kappa the smallest conductivity of the cells on the bond's way. A bond is active if both nodes are in the zone, its way
-   * lies within the body's cells of lattice size, and the conductivity on it varies by less than the factor 1.5. Nodes held by hanging-node constraints have no
-   * bonds.
+   * lies within the body's cells of lattice size, and the conductivity on it varies by less than the factor 1.5. On a graded mesh hanging nodes and others on
+   * the side of a larger cell have no bonds.
    */
   template <int dim>
   class LatticeExchange : public Coupling<dim>
@@ -33,14 +33,8 @@ namespace PeriDeal
     using typename Coupling<dim>::Bond;
     using typename Coupling<dim>::Cell;
 
-    /**
-     * @param constrained owned nodes without bonds, by local number; may be empty
-     * Collective. Throws UserError for a zone without nodes.
-     */
-    LatticeExchange(Nodes<dim>              &nodes,
-                    const Scene<dim>        &scene,
-                    const Zone<dim>         &zone,
-                    const std::vector<bool> &constrained);
+    /** Collective. Throws UserError for a zone without nodes. */
+    LatticeExchange(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone);
 
     void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
     void possible_neighbors_of(const unsigned int         node,
@@ -88,7 +82,8 @@ namespace PeriDeal
     };
 
     void            find_offsets();
-    void            find_sites(const std::vector<bool> &constrained);
+    void            find_sites();
+    void            set_table_around(const std::vector<bool> &candidates);
     void            find_cells(const Scene<dim> &scene);
     void            find_full_matrix();
     const SiteData *at(const Site &site) const;
@@ -103,7 +98,7 @@ namespace PeriDeal
     bool                       plain      = true; // no void, one conductivity, one cell size
     bool                       calibrated = true; // A is the unit matrix
     Site                       corner{}, extent{};
-    std::vector<SiteData>      sites;
+    std::vector<SiteData>      sites; // of the box around all nodes that may ever be in the zone
     std::vector<Offset>        offsets;
     std::vector<Passage>       passages;
     dealii::FullMatrix<double> surplus; // M - Q[A], for unit conductivity

@@ -48,6 +48,7 @@ namespace PeriDeal
   struct OperatorSize
   {
     unsigned long long unknowns = 0, bonds = 0, nonzeros = 0;
+    double             busiest  = 0.; // most nonzeros of a process over the mean of all; 0: not known
     std::size_t        memory =
       0; // bytes of this process's nodes, bonds and matrices, without mesh and DoFHandler
     std::string form; // lattice | stored | matrix

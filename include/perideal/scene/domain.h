@@ -5,7 +5,9 @@
 
 #include <deal.II/base/point.h>
 
+#include <perideal/scene/expression.h>
 #include <perideal/scene/section.h>
+
 
 #include <array>
 #include <string>
@@ -53,6 +55,10 @@ namespace PeriDeal
     HoleShape                     hole_shape  = HoleShape::circle;
     double                        hole_angle  = 0.; // degrees
     std::string                   mesh_file;
+    unsigned int                  coarsening = 0; // times that cells are merged away from where they stay fine
+    Expression                    fine;           // they stay fine where greater than 0
+    bool                          fine_by_formula = false; // else in the zone of section `Coupling`
+
 
     /** Box and plate with a hole: edge length of a lattice cell in each direction. */
     dealii::Tensor<1, dim> spacing() const;
@@ -84,6 +90,8 @@ namespace PeriDeal
     /** Cells or Node spacing. */
     void parse_cells();
     void require_countable(const std::string &entry) const;
+
+    void parse_fine_part();
 
     void parse_hole();
 

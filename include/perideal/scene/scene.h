@@ -99,6 +99,7 @@ namespace PeriDeal
     void resolve_boundary_treatment();
 
     void check_coupling() const;
+    void check_coarsening() const;
   };
 
 

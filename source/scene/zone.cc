@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/bonds/zone.h>
+#include <perideal/scene/zone.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,6 +94,14 @@ namespace PeriDeal
     : kind(control.zone)
     , reach(control.width * horizon)
     , formula(control.formula)
+    , directions(some_directions<dim>())
+  {}
+
+
+    template <int dim>
+  Zone<dim>::Zone(const Expression &formula)
+    : kind(ZoneKind::formula)
+    , formula(formula)
     , directions(some_directions<dim>())
   {}
 

@@ -27,6 +27,9 @@ namespace PeriDeal
 
     Zone(const CouplingControl &control, const double horizon);
 
+    /** Where a formula is greater than 0. */
+    explicit Zone(const Expression &formula);
+
     /** The cracks from whose pieces the distance counts. */
     void set_cracks(std::vector<CrackPiece<dim>> pieces);
 
