@@ -4,12 +4,15 @@
 """Make the pictures of the README and of doc/ from real runs, and the README's table of scenes.
 
     python3 doc/make_figures.py [--program PERIDEAL] [--all] [SCENE.prm ...]
+    python3 doc/make_figures.py --work-precision
 
 Runs each scene (all below prm/ but those of prm/failures and those as published, if none is named), draws its report, and keeps of it
 doc/figures/NAME.png: the last temperature, scaled to a thumbnail. For prm/quick_start.prm the
 figure is kept in full width too, as doc/figures/quick_start_wide.png. A picture that is newer
 than its scene is left as it is, unless --all is given. The table names every scene below prm/ with
 its title and the first sentence of its comment, up to a colon or bracket; --table writes the table only.
+--work-precision makes the charts of accuracy against cost of doc/coupling.md instead, and prints what
+`perideal study work_precision` says.
 """
 
 import argparse
@@ -25,6 +28,12 @@ from PIL import Image, ImageChops
 ROOT = Path(__file__).resolve().parent.parent
 FIGURES = ROOT / "doc" / "figures"
 THUMBNAIL_HEIGHT, WIDE_WIDTH = 200, 1300
+CHART_WIDTH = 1400
+LADDER = "21, 21 | 41, 41 | 81, 81 | 161, 161"
+# Name of the chart, scene, options of `perideal study work_precision`.
+CHARTS = (("insulated_crack", "prm/coupling/insulated_crack.prm", ["-s", "Time/Steady=true", "--cells", LADDER]),
+          ("insulated_crack_transient", "prm/coupling/insulated_crack.prm", ["--cells", LADDER]),
+          ("oblique_crack", "prm/coupling/oblique_crack.prm", ["--cells", LADDER]))
 BEGIN, END = "<!-- scenes: written by doc/make_figures.py -->\n", "<!-- end of scenes -->\n"
 
 
@@ -119,6 +128,16 @@ def write_table():
     page.write_text(text[:begin] + "\n" + "".join(rows) + "\n" + text[end:], encoding="utf-8")
 
 
+def make_charts(program):
+    """Accuracy against cost: doc/figures/work_precision_NAME.png, and .._time.png over wall time."""
+    for name, scene, options in CHARTS:
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([program, "study", "work_precision", scene, "--output", folder, "--repeat", "3", *options], check=True, cwd=ROOT)
+            subprocess.run([sys.executable, str(ROOT / "applications" / "report" / "study.py"), folder], check=True, stdout=subprocess.DEVNULL)
+            for kind, end in (("work", ""), ("wall_time", "_time")):
+                save(cropped(Image.open(Path(folder) / f"error_over_{kind}.png")), f"work_precision_{name}{end}", width=CHART_WIDTH)
+
+
 def main():
     """Command line."""
     parser = argparse.ArgumentParser(description="Make doc/figures from runs of the scenes.")
@@ -126,7 +145,11 @@ def main():
     parser.add_argument("--program", default=str(ROOT / "build/release/applications/perideal"))
     parser.add_argument("--all", action="store_true", help="also those that are up to date")
     parser.add_argument("--table", action="store_true", help="only the table in the README")
+    parser.add_argument("--work-precision", action="store_true", help="only the charts of accuracy against cost")
     options = parser.parse_args()
+    if options.work_precision:
+        make_charts(options.program)
+        return 0
     if options.table:
         write_table()
         return 0

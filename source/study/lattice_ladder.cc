@@ -151,7 +151,8 @@ namespace PeriDeal
       {
         const unsigned int n = cells[d], farthest = std::max({2u, n / 5, multiple});
         const auto         fits = [&](const unsigned int count) {
-          return count > 0 && count % multiple == 0 && (!on_faces || on_planes(box, d, count));
+          return count > 0 && count % multiple == 0 &&
+                 (!on_faces || on_planes(box, d, count / multiple));
         };
         unsigned int found = 0;
         for (unsigned int k = 0; k <= farthest && found == 0; ++k)

@@ -29,7 +29,9 @@ namespace PeriDeal
                          {"Cracks/Mesh", mesh},
                          {"Peridynamics/Surface correction", correction},
                          {"Peridynamics/Boundary treatment", "auto"},
-                         {"Peridynamics/Horizon", ""}};
+                         {"Peridynamics/Horizon", ""},
+                         {"Domain/Coarsening", "0"},
+                         {"Domain/Fine where", "auto"}};
       result.on_faces = mesh == "faces";
       return result;
     }
@@ -73,6 +75,19 @@ namespace PeriDeal
     }
 
 
+    /** The same on meshes whose cells are merged up to k times away from cracks: where they are fine does not depend on the family. */
+    WorkFamily graded(WorkFamily family, const unsigned int k)
+    {
+      family.name += ", graded " + std::to_string(k);
+      family.multiple = 1u << k;
+      set(family, "Domain/Coarsening", std::to_string(k));
+      set(family, "Domain/Fine where", "auto");
+      set(family, "Peridynamics/Horizon ratio", "3");
+      set(family, "Coupling/Zone", "cracks: 1");
+      return family;
+    }
+
+
     std::vector<WorkFamily> make_families()
     {
       std::vector<WorkFamily> all = {
@@ -91,6 +106,12 @@ namespace PeriDeal
         for (const char *const c : {"0.5", "1", "2"})
           for (const bool scaled : {false, true})
             all.push_back(zone(m, c, scaled));
+      for (const unsigned int k : {2u, 3u})
+        for (const WorkFamily &uniform :
+             {family("FEM, crack on faces", elements, "faces", "none"),
+              family("FEM, pairs, scaled", elements, "pairs", "crack scaling"),
+              zone("3", "1", true)})
+          all.push_back(graded(uniform, k));
       return all;
     }
 
@@ -143,7 +164,9 @@ namespace PeriDeal
                   const double      budget)
     {
       const std::string needs =
-        (family.on_faces ? "on whose cell faces all cracks lie" : "") +
+        (!family.on_faces     ? "" :
+         family.multiple == 1 ? "on whose cell faces all cracks lie" :
+                                "on whose largest cells' faces all cracks lie") +
         std::string(family.on_faces && family.multiple > 1 ? " and " : "") +
         (family.multiple > 1 ? "with cells divisible by " + std::to_string(family.multiple) : "");
       const CellCounts *last = nullptr;

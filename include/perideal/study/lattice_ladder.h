@@ -50,9 +50,9 @@ namespace PeriDeal
   bool along_axes(const CrackedBox &box);
 
   /**
-   * The counts nearest to @p cells, the smaller of two, that are divisible by @p multiple and, with @p on_faces, put all
-   * corners of all cracks on vertices of the lattice; those outside the box have to be on its continuation no more than at its sides. None if
-   * there is none within a fifth (and at least two) of a count.
+   * The counts nearest to @p cells, the smaller of two, that are divisible by @p multiple and, with @p on_faces, put all corners of all cracks on
+   * vertices of the lattice of cells so many times as large; beyond the box a crack may end anywhere. None if there is none within a
+   * fifth of a count, or @p multiple, or two.
    */
   std::optional<CellCounts> nearest_fitting(const CrackedBox  &box,
                                             const CellCounts  &cells,
