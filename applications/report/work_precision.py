@@ -21,10 +21,10 @@ SHOWN = {
     "PD raw, m = 2": ("v", "-"), "PD raw, m = 6.5": ("X", "-"), "PD energy-corrected, m = 2": ("P", "-"), "PD exchange, m = 3": ("s", "-"),
     "PD exchange, scaled, m = 2": ("^", "-"),
     "coupled, m = 3, c = 1": ("v", "-"), "coupled, m = 3, c = 1, scaled": ("D", "-"), "coupled, m = 2, c = 1, scaled": ("^", "-"),
-    "FEM, crack on faces, graded 2": ("o", "--"), "FEM, pairs, scaled, graded 2": ("^", "--"),
-    "coupled, m = 3, c = 1, scaled, graded 2": ("D", "--"),
+    "FEM, crack on faces, graded 3": ("o", "--"), "FEM, pairs, scaled, graded 3": ("^", "--"),
+    "coupled, m = 3, c = 1, scaled, graded 3": ("D", "--"), "coupled on faces, m = 3, c = 1": ("o", "-"),
 }
-INK, FRONT = style.INK, "#9aa5b1"
+FRONT = "#9aa5b1"
 AXES = {"work": "nonzeros × {}", "wall time": "wall time of the model, s"}
 
 

@@ -75,15 +75,17 @@ namespace PeriDeal
     }
 
 
-    /** The same on meshes whose cells are merged up to k times away from cracks: where they are fine does not depend on the family. */
+    /** The same on meshes whose cells are merged up to k times away from cracks; those of finite elements alone are as for m = 3, c = 1. */
     WorkFamily graded(WorkFamily family, const unsigned int k)
     {
       family.name += ", graded " + std::to_string(k);
       family.multiple = 1u << k;
       set(family, "Domain/Coarsening", std::to_string(k));
-      set(family, "Domain/Fine where", "auto");
-      set(family, "Peridynamics/Horizon ratio", "3");
-      set(family, "Coupling/Zone", "cracks: 1");
+      if (family.model == elements)
+        {
+          set(family, "Peridynamics/Horizon ratio", "3");
+          set(family, "Coupling/Zone", "cracks: 1");
+        }
       return family;
     }
 
@@ -106,10 +108,16 @@ namespace PeriDeal
         for (const char *const c : {"0.5", "1", "2"})
           for (const bool scaled : {false, true})
             all.push_back(zone(m, c, scaled));
+      // The crack is part of the surface: no bond is broken and nothing to be scaled.
+      WorkFamily on_faces = family("coupled on faces, m = 3, c = 1", coupled, "faces", "none");
+      set(on_faces, "Peridynamics/Horizon ratio", "3");
+      set(on_faces, "Coupling/Zone", "cracks: 1");
+      all.push_back(on_faces);
       for (const unsigned int k : {2u, 3u})
         for (const WorkFamily &uniform :
              {family("FEM, crack on faces", elements, "faces", "none"),
               family("FEM, pairs, scaled", elements, "pairs", "crack scaling"),
+              zone("2", "1", true),
               zone("3", "1", true)})
           all.push_back(graded(uniform, k));
       return all;
@@ -163,22 +171,21 @@ namespace PeriDeal
                   const bool        moving_cracks,
                   const double      budget)
     {
-      const std::string needs =
-        (!family.on_faces     ? "" :
-         family.multiple == 1 ? "on whose cell faces all cracks lie" :
-                                "on whose largest cells' faces all cracks lie") +
-        std::string(family.on_faces && family.multiple > 1 ? " and " : "") +
-        (family.multiple > 1 ? "with cells divisible by " + std::to_string(family.multiple) : "");
+      const std::string why =
+        ": no similar lattice" +
+        (family.multiple > 1 ? " divisible by " + std::to_string(family.multiple) : std::string()) +
+        (!family.on_faces     ? "." :
+         family.multiple == 1 ? " has all cracks on cell faces." :
+                                " has all cracks on faces of the largest cells.");
       const CellCounts *last = nullptr;
       for (const CellCounts &rung : plan.ladder)
         {
           const auto cells = nearest_fitting(box, rung, family.on_faces, family.multiple);
           if (!cells || (family.on_faces && moving_cracks))
             {
-              plan.left_out.push_back(family.name + ", near " + lattice_name(rung) +
-                                      (moving_cracks && family.on_faces ?
-                                         ": the cracks grow." :
-                                         ": there is no lattice " + needs + "."));
+              plan.left_out.push_back(
+                family.name + ", near " + lattice_name(rung) +
+                (moving_cracks && family.on_faces ? ": the cracks grow." : why));
               continue;
             }
           if (last != nullptr && *cells == *last)

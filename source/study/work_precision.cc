@@ -81,7 +81,7 @@ namespace PeriDeal
         {"Peridynamics/Flux treatment", "natural"},
         {"Finite elements/Degree", "1"},
         {"Coupling/Certificate", "false"},
-        {"Solver/Direct solver up to", "400"}, // so that iterations compare on coarse lattices, too
+        {"Solver/Direct solver up to", "100"}, // so that iterations compare on coarse lattices, too
         {"Output/Fields", "none"},
         {"Output/Write at", ""},
         {"Output/Write every", ""},

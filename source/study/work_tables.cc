@@ -218,13 +218,14 @@ namespace PeriDeal
           const auto mark = [](const CostAtError &cost) {
             return cost.kind == Kind::extrapolated ? '*' : cost.kind == Kind::at_most ? '<' : ' ';
           };
-          text += formatted("  %c%9.3g %9.3g  %c%7.3g s  %s",
+          text += formatted("  %c%9.3g %9.3g  ",
                             mark(line.work),
                             line.work.cost,
-                            line.work.cost / lines.front().work.cost,
-                            line.time.kind == Kind::none ? '-' : mark(line.time),
-                            line.time.cost,
-                            line.family->name.c_str());
+                            line.work.cost / lines.front().work.cost);
+          text += (line.time.kind == Kind::none ?
+                     std::string("        -  ") :
+                     formatted("%c%7.3g s ", mark(line.time), line.time.cost)) +
+                  " " + line.family->name;
           if (line.work.kind == Kind::extrapolated)
             text += " (" + percent(std::round(line.work.beyond * error * 1e5) / 1e5) + ")";
           text += "\n";
