@@ -7,8 +7,7 @@
 #include <perideal/output/result_files.h>
 #include <perideal/study/work_precision.h>
 
-#include <filesystem>
-#include <iostream>
+#include <set>
 
 #include "work_tables.h"
 
@@ -90,6 +89,19 @@ namespace PeriDeal
     }
 
 
+    /** The entries that no override may touch. */
+    std::set<std::string> decided_entries()
+    {
+      std::set<std::string> entries = {"Domain/Cells", "Output/Grid"};
+      for (const Setting &setting : common_settings())
+        entries.insert(setting.first);
+      for (const WorkFamily &family : work_families())
+        for (const Setting &setting : family.settings)
+          entries.insert(setting.first);
+      return entries;
+    }
+
+
     /** Of the reference: as the finite elements it is compared with, but with the error in time out of sight. */
     std::vector<Setting> reference_settings(const WorkPlan &plan)
     {
@@ -119,9 +131,6 @@ namespace PeriDeal
           if (planned.family != nullptr)
             own.emplace_back("Output/Grid", to_text(planned.cells));
           row.settings.insert(row.settings.end(), own.begin(), own.end());
-          for (const Setting &setting : row.settings)
-            if (setting.first != "Time/Tolerance")
-              study.varied.insert(setting.first);
           study.rows.push_back(row);
         }
       study.columns = {"Domain/Cells",
@@ -163,6 +172,7 @@ namespace PeriDeal
   {
     Study             study = sweep_of_scenes({options.scene}, {}, communicator);
     const std::string scene = study.rows.front().scene;
+    study.varied            = decided_entries();
     override_rows(study, options.overrides); // for its errors
     std::vector<std::string> overrides = options.overrides;
     for (const auto &[entry, value] : common_settings())
