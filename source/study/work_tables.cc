@@ -286,6 +286,13 @@ namespace PeriDeal
   std::string work_report(const WorkPlan &plan, const WorkResults &results)
   {
     std::string text = "\n" + reference_line(plan, results.reference) + "\n";
+    const auto  n_uncertain =
+      std::count_if(results.rows.begin(), results.rows.end(), [&](const WorkRow &row) {
+        return row.error < 3. * results.reference.own_error;
+      });
+    if (n_uncertain > 0)
+      text += "Less than three times that are the errors of " + std::to_string(n_uncertain) +
+              " settings, which are uncertain: --reference takes finer lattices.\n";
     for (const std::string &sentence : plan.left_out)
       text += "Left out: " + sentence + "\n";
     const std::string work = results.steady ? "nonzeros x iterations" :
