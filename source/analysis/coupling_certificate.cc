@@ -15,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 namespace PeriDeal
 {
@@ -152,9 +153,9 @@ namespace PeriDeal
     };
 
 
-    /** Bonds that the body would have with peridynamics everywhere. */
+    /** Nodes and bonds that the body would have with peridynamics everywhere; a graded mesh would have to be uniform. */
     template <int dim>
-    unsigned long long count_all_bonds(const Families<dim> &families)
+    std::pair<unsigned long long, unsigned long long> count_all_bonds(const Families<dim> &families)
     {
       const Nodes<dim>                         &nodes = families.nodes();
       std::vector<typename Families<dim>::Bond> bonds;
@@ -162,7 +163,7 @@ namespace PeriDeal
       unsigned long long n_sites = nodes.lattice() && families.has_unique_sites() ? 1 : 0;
       for (unsigned int d = 0; d < dim && n_sites > 0; ++d)
         n_sites *= nodes.lattice()->n_sites[d];
-      if (nodes.n_global() == n_sites) // no void
+      if (nodes.n_global() == n_sites || nodes.is_graded()) // no void
         {
           for (const FamilyMember<dim> &member : families.lattice_members())
             {
@@ -171,14 +172,14 @@ namespace PeriDeal
                 n_pairs *= std::max(0, nodes.lattice()->n_sites[d] - std::abs(member.offset[d]));
               n_ends += n_pairs;
             }
-          return n_ends / 2;
+          return {n_sites, n_ends / 2};
         }
       for (unsigned int i = 0; i < nodes.n_owned(); ++i)
         {
           families.bonds_of(i, bonds);
           n_ends += bonds.size();
         }
-      return Utilities::MPI::sum(n_ends, nodes.communicator()) / 2;
+      return {nodes.n_global(), Utilities::MPI::sum(n_ends, nodes.communicator()) / 2};
     }
   } // namespace
 
@@ -238,11 +239,12 @@ namespace PeriDeal
       return std::pow(along(p, first), 2) * along(p, second) + std::pow(along(p, second), 3);
     });
     result.asymmetry = system.asymmetry();
-    result.lowest_eigenvalue  = system.lowest_eigenvalue();
-    result.lowest_remainder   = op.lowest_remainder();
-    result.zone_share         = op.bonds().zone_share();
-    result.n_bonds_of_full    = count_all_bonds(families);
-    result.n_nonzeros_of_full = 2 * result.n_bonds_of_full + nodes.n_global();
+    result.lowest_eigenvalue      = system.lowest_eigenvalue();
+    result.lowest_remainder       = op.lowest_remainder();
+    result.zone_share             = op.bonds().zone_share();
+    const auto [n_nodes, n_bonds] = count_all_bonds(families);
+    result.n_bonds_of_full        = n_bonds;
+    result.n_nonzeros_of_full     = 2 * n_bonds + n_nodes;
     return result;
   }
 

@@ -1,64 +1,148 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/mpi.h>
+#include <deal.II/distributed/tria_base.h>
+
 #include <perideal/mesh/grading.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 namespace PeriDeal
 {
   using namespace dealii;
 
-  template <int dim>
-  Zone<dim> fine_part(const Scene<dim> &scene)
+  namespace
   {
-    if (scene.domain.fine_by_formula)
-      return Zone<dim>(scene.domain.fine);
-    Zone<dim> zone(scene.coupling, scene.horizon());
-    zone.set_cracks(scene.crack_history().pieces(scene.cracks.end_time));
-    return zone;
+    /**
+     * Times at which a mesh follows cracks and solution: so often that no tip advances more than a horizon in between, and at the start more often than later,
+     * since fields that begin with a jump change fast at first.
+     */
+    template <int dim>
+    std::vector<double> adaptation_times(const Scene<dim> &scene, const CrackHistory<dim> &history)
+    {
+      std::vector<double> times;
+      const double        end = scene.time.end_time;
+      if (scene.coupling.zone != ZoneKind::adaptive || scene.time.steady)
+        return times;
+      constexpr unsigned int n_even = 16, n_early = 6;
+      for (unsigned int k = 1; k < n_even; ++k)
+        times.push_back(end * k / n_even);
+      for (unsigned int k = 1; k <= n_early; ++k)
+        times.push_back(end / n_even / (1u << k));
+      const double       advance = history.longest_advance();
+      const unsigned int stride =
+        advance > 0. ? static_cast<unsigned int>(std::max(1., scene.horizon() / advance)) : 1;
+      for (std::size_t k = 0; k < history.events().size(); k += stride)
+        times.push_back(history.events()[k]);
+      if (scene.time.time_step > 0.) // steps of fixed size are not divided
+        for (double &t : times)
+          t = scene.time.time_step * std::ceil(t / scene.time.time_step * (1. - 1e-12));
+      std::sort(times.begin(), times.end());
+      times.erase(std::unique(times.begin(),
+                              times.end(),
+                              [&](const double a, const double b) { return b - a < 1e-9 * end; }),
+                  times.end());
+      return times;
+    }
+  } // namespace
+
+
+  template <int dim>
+  Grading<dim>::Grading(const Scene<dim> &scene, const unsigned int finest)
+    : zone(scene.domain.fine_by_formula ? Zone<dim>(scene.domain.fine) :
+                                          Zone<dim>(scene.coupling, scene.horizon()))
+    , history(scene.crack_history())
+    , adaptations(adaptation_times(scene, history))
+    , finest(finest)
+    , coarsest(finest - scene.domain.coarsening)
+    , end(scene.cracks.end_time)
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      spacing = std::max(spacing, scene.domain.spacing()[d]);
+    set_time(0.);
   }
 
 
   template <int dim>
-  bool is_too_coarse(const typename Triangulation<dim>::cell_iterator &cell,
-                     const Zone<dim>                                  &fine,
-                     const Domain<dim>                                &domain,
-                     const unsigned int                                finest)
+  double Grading<dim>::next_adaptation(const double t) const
+  {
+    const auto next = std::upper_bound(adaptations.begin(), adaptations.end(), t);
+    return next == adaptations.end() ? std::numeric_limits<double>::infinity() : *next;
+  }
+
+
+  template <int dim>
+  void Grading<dim>::set_time(const double t)
+  {
+    zone.set_cracks(history.pieces(adaptations.empty() ? end : std::min(end, next_adaptation(t))));
+  }
+
+
+  template <int dim>
+  bool Grading<dim>::is_too_coarse(const Cell &cell) const
   {
     const unsigned int level = cell->level();
     if (level >= finest)
       return false;
     // Two cells of each finer size lie between this one and the fine part.
-    double spacing = 0.;
-    for (unsigned int d = 0; d < dim; ++d)
-      spacing = std::max(spacing, domain.spacing()[d]);
     constexpr double slack = 1e-6;
     const double     rim   = 2. * spacing * ((1u << (finest - level)) - 1. + slack),
                  half      = 0.5 * cell->diameter();
-    return fine.distance(cell->center(), half + 2. * rim) < half + rim;
+    return zone.distance(cell->center(), half + 2. * rim) < half + rim;
+  }
+
+
+  namespace
+  {
+    /** Where every process has all cells, each marks them all. */
+    template <int dim>
+    bool may_mark(const Triangulation<dim>                                &mesh,
+                  const typename Triangulation<dim>::active_cell_iterator &cell)
+    {
+      return cell->is_locally_owned() ||
+             dynamic_cast<const parallel::DistributedTriangulationBase<dim> *>(&mesh) == nullptr;
+    }
+  } // namespace
+
+
+  template <int dim>
+  void Grading<dim>::refine(Triangulation<dim> &mesh) const
+  {
+    for (unsigned int pass = coarsest; pass < finest; ++pass)
+      {
+        for (const auto &cell : mesh.active_cell_iterators())
+          if (may_mark(mesh, cell) && is_too_coarse(cell))
+            cell->set_refine_flag();
+        mesh.execute_coarsening_and_refinement();
+      }
   }
 
 
   template <int dim>
-  void refine_towards(Triangulation<dim> &mesh,
-                      const Zone<dim>    &fine,
-                      const Domain<dim>  &domain,
-                      const unsigned int  finest)
+  bool Grading<dim>::mark(Triangulation<dim>        &mesh,
+                          const std::vector<double> &indicators,
+                          const double               target) const
   {
-    // Where every process has all cells, each marks them all.
-    const bool distributed =
-      dynamic_cast<const parallel::DistributedTriangulationBase<dim> *>(&mesh) != nullptr;
-    for (unsigned int pass = 0; pass < finest; ++pass)
+    // Squared indicators of a smooth field grow by 4 x 2^dim where cells are merged.
+    const double low = target / (8. * (1u << dim));
+    bool         any = false;
+    for (const auto &cell : mesh.active_cell_iterators())
       {
-        for (const auto &cell : mesh.active_cell_iterators())
-          if ((!distributed || cell->is_locally_owned()) &&
-              is_too_coarse<dim>(cell, fine, domain, finest))
-            cell->set_refine_flag();
-        mesh.execute_coarsening_and_refinement();
+        if (!may_mark(mesh, cell))
+          continue;
+        const unsigned int level = cell->level();
+        const double       own   = indicators[cell->active_cell_index()];
+        if (level < finest && (own > target || is_too_coarse(cell)))
+          cell->set_refine_flag();
+        else if (level > coarsest && own < low && !is_too_coarse(cell->parent()))
+          cell->set_coarsen_flag();
+        any = any || cell->refine_flag_set() || cell->coarsen_flag_set();
       }
+    return Utilities::MPI::max(any ? 1 : 0, mesh.get_communicator()) > 0;
   }
 
 
@@ -85,16 +169,8 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                               \
-  template Zone<dim>     fine_part(const Scene<dim> &);                                         \
-  template bool          is_too_coarse<dim>(const typename Triangulation<dim>::cell_iterator &, \
-                                   const Zone<dim> &,                                  \
-                                   const Domain<dim> &,                                \
-                                   const unsigned int);                                \
-  template void          refine_towards(Triangulation<dim> &,                                   \
-                                        const Zone<dim> &,                                      \
-                                        const Domain<dim> &,                                    \
-                                        const unsigned int);                                    \
+#define PERIDEAL_INSTANTIATE(dim) \
+  template class Grading<dim>;    \
   template CellWork<dim> work_of_cells(const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -81,6 +81,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  double FEMOperator<dim>::heat(const Vector &u) const
+  {
+    return Utilities::MPI::sum(heat_of(u), dofs.get_communicator());
+  }
+
+
+  template <int dim>
   double FEMOperator<dim>::heat_of(const Vector &u) const
   {
     double heat = 0.;
@@ -114,6 +121,7 @@ namespace PeriDeal
   template void   FEMOperator<dim>::find_temperatures(CellData &) const;     \
   template double FEMOperator<dim>::center_conductivity(const Cell &) const; \
   template void   FEMOperator<dim>::take_material_at(const Vector &);        \
+  template double FEMOperator<dim>::heat(const Vector &) const;              \
   template double FEMOperator<dim>::heat_of(const Vector &) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -21,15 +21,18 @@ namespace PeriDeal
   template <int dim>
   FEMOperator<dim>::FEMOperator(const DoFHandler<dim>         &dof_handler,
                                 const Scene<dim>              &scene,
-                                std::unique_ptr<Coupling<dim>> coupling)
+                                std::unique_ptr<Coupling<dim>> coupling,
+                                const double                   start)
     : dofs(dof_handler)
     , scene(scene)
     , coupling(std::move(coupling))
     , history(scene.crack_history())
-    , cracks_of(history.representative(0.))
+    , cracks_of(history.representative(start))
     , cracks(make_crack_geometries(history.pieces(cracks_of)))
     , transmission(history.transmission(cracks_of))
   {
+    if (this->coupling && start > 0.)
+      this->coupling->set_cracks_of(cracks_of);
     check_material();
     find_cut_cells();
     find_hanging();
@@ -95,7 +98,7 @@ namespace PeriDeal
     for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
       row_sums[row] += std::abs(value);
     });
-        for (const HangingNode &node : hanging)
+    for (const HangingNode &node : hanging)
       row_sums[node.dof] = 0.;
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
       {
@@ -303,7 +306,7 @@ namespace PeriDeal
       assemble_surrogate(matrix);
     else
       matrix.copy_from(stiffness);
-        Vector marked;
+    Vector marked;
     initialize_vector(marked);
     mask(marked, 1.);
     const Vector held = with_columns_as_ghosts(marked, matrix);
@@ -384,7 +387,7 @@ namespace PeriDeal
     size.unknowns = dofs.n_dofs();
     size.nonzeros = form ? Utilities::MPI::sum(remainder.values.size() + form->n_stored(),
                                                dofs.get_communicator()) :
-                                                      stiffness.n_nonzero_elements();
+                           stiffness.n_nonzero_elements();
     if (!form)
       {
         const Utilities::MPI::MinMaxAvg work =
@@ -392,7 +395,7 @@ namespace PeriDeal
                                       dofs.get_communicator());
         size.busiest = work.max / work.avg;
       }
-    size.memory   = stiffness.memory_consumption() + mass.memory_consumption() +
+    size.memory = stiffness.memory_consumption() + mass.memory_consumption() +
                   capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
                   constant_loads.memory_consumption() + scratch.memory_consumption();
     if (coupling)

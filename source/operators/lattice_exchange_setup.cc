@@ -62,7 +62,7 @@ namespace PeriDeal
         "'Operator form = lattice' in section 'Peridynamics' is not possible here: the conductivity varies or "
         "the body has voids. Use 'auto'."));
     find_offsets();
-    find_sites();
+    find_sites(scene);
     find_cells(scene);
     find_full_matrix();
   }
@@ -130,7 +130,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeExchange<dim>::find_sites()
+  void LatticeExchange<dim>::find_sites(const Scene<dim> &scene)
   {
     const Nodes<dim>        &nodes   = bonds.nodes();
     const Lattice<dim>      &lattice = *nodes.lattice();
@@ -148,7 +148,9 @@ namespace PeriDeal
                         at_end.contains(nodes.position(i));
         n_in_zone += i < nodes.n_owned() && candidates[i];
       }
-    throw_if_zone_empty(n_in_zone, nodes.communicator());
+    // A mesh that follows the cracks may have no fine cell before the first of them.
+    if (scene.coupling.zone != ZoneKind::adaptive)
+      throw_if_zone_empty(n_in_zone, nodes.communicator());
     set_table_around(candidates);
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       if (at(site_of(i)) != nullptr)
@@ -236,7 +238,7 @@ namespace PeriDeal
                                                  const Scene<dim> &,               \
                                                  const Zone<dim> &);               \
   template void LatticeExchange<dim>::find_offsets();                              \
-  template void LatticeExchange<dim>::find_sites();                                \
+  template void LatticeExchange<dim>::find_sites(const Scene<dim> &);              \
   template void LatticeExchange<dim>::set_table_around(const std::vector<bool> &); \
   template void LatticeExchange<dim>::find_cells(const Scene<dim> &);              \
   template void LatticeExchange<dim>::find_full_matrix();

@@ -82,10 +82,15 @@ namespace PeriDeal
     const auto list = obstacles_to_bonds_on_elements(*this);
     if (!list.empty())
       entry_error(list.front().where, list.front().reason + ", for 'Models = coupled'.");
-    if (coupling.zone == ZoneKind::adaptive)
+    if (coupling.zone == ZoneKind::adaptive && domain.coarsening == 0)
       entry_error(
         coupling.where("Zone"),
-        "'adaptive' needs a mesh that is refined while the run goes on, which this version does not have. Use 'cracks: 1' on a finer mesh.");
+        "'adaptive' changes the mesh, but 'Coarsening' in section 'Domain' is 0: no cell may be "
+        "larger than those of 'Cells'. Give it at least 1.");
+    if (coupling.zone == ZoneKind::adaptive && cracks.mesh == CrackMesh::faces)
+      entry_error(
+        coupling.where("Zone"),
+        "'adaptive' is for cracks that lie across cells; 'Mesh' in section 'Cracks' is 'faces'.");
     if (dim == 1 && coupling.zone == ZoneKind::near_cracks)
       entry_error(
         coupling.where("Zone"),
@@ -126,15 +131,20 @@ namespace PeriDeal
         found +
           "'Models' has peridynamics, whose bonds need fine cells everywhere. Use 'coupled', or 0 here.");
     if (runs(*this, Model::coupled) && coupling.scheme != CouplingScheme::exchange)
-      entry_error(entry,
-                  found +
-                    "'Scheme' in section 'Coupling' is not 'exchange', the only one for graded meshes.");
-    const bool near_cracks =
-      coupling.zone == ZoneKind::near_cracks || coupling.zone == ZoneKind::adaptive;
+      entry_error(
+        entry,
+        found +
+          "'Scheme' in section 'Coupling' is not 'exchange', the only one for graded meshes.");
+    if (coupling.zone == ZoneKind::adaptive && !runs(*this, Model::coupled))
+      entry_error(coupling.where("Zone"),
+                  "is 'adaptive', but 'Models' has no 'coupled', which the mesh would follow.");
+    const bool near_cracks = coupling.zone == ZoneKind::near_cracks ||
+                             coupling.zone == ZoneKind::adaptive;
     if (!domain.fine_by_formula && near_cracks && cracks.cracks.empty())
-      entry_error(entry,
-                  found +
-                    "section 'Cracks' has none for which cells would stay fine. Give a formula in 'Fine where'.");
+      entry_error(
+        entry,
+        found +
+          "section 'Cracks' has none for which cells would stay fine. Give a formula in 'Fine where'.");
   }
 
 

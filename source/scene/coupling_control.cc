@@ -24,7 +24,15 @@ namespace PeriDeal
       "cracks: 1",
       "",
       "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; or a formula of "
-      "x, y, z, in the zone where it is greater than 0. (`adaptive`, near cracks on a mesh that is refined there, is not there yet.)");
+      "x, y, z, in the zone where it is greater than 0. `adaptive`: as `cracks: 1`, on a mesh that follows the cracks and the solution as the run goes "
+      "on (`Coarsening` in section `Domain` says how large its cells may be).");
+    declare(
+      "Adaptive tolerance",
+      EntryType::number,
+      "0.02",
+      "1",
+      "With `Zone = adaptive`: cells are refined and merged until the recovered flux shows this relative error in the energy norm, as far as "
+      "cells of lattice size reach it.");
     declare(
       "Overlap",
       EntryType::number,
@@ -44,9 +52,10 @@ namespace PeriDeal
 
   void CouplingControl::parse()
   {
-    scheme      = choice<CouplingScheme>("Scheme");
-    overlap     = number("Overlap");
-    certificate = boolean("Certificate");
+    scheme             = choice<CouplingScheme>("Scheme");
+    overlap            = number("Overlap");
+    certificate        = boolean("Certificate");
+    adaptive_tolerance = positive_number("Adaptive tolerance");
     if (overlap < 0.)
       error("Overlap", "found " + text("Overlap") + ", needs 0 or more horizons.");
     parse_zone();

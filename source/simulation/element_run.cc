@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/distributed/solution_transfer.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 
@@ -32,12 +33,7 @@ namespace PeriDeal
         , element(model == Model::finite_elements ? scene.finite_elements.degree : 1)
         , handler(mesh)
       {
-        {
-          Timings::Scope scope(this->timings, "unknowns");
-          handler.distribute_dofs(element);
-          if (scene.domain.shape != Shape::mesh_file && element.degree == 1)
-            number_along_lattice(handler, scene.domain);
-        }
+        number_unknowns();
         build_operator();
         if (model == Model::coupled && scene.coupling.certificate)
           examine();
@@ -102,6 +98,36 @@ namespace PeriDeal
         weight.compress(VectorOperation::add);
         for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
           u.local_element(i) /= weight.local_element(i);
+      }
+
+      RecoveryIndicators indicators(const Vector &u) const override
+      {
+        return recovery_indicators<dim>(handler, scene.material, fem->cut_cells(), u);
+      }
+
+      void before_remesh() override
+      {
+        heat_before = fem->heat(this->solution);
+        this->solution.update_ghost_values();
+        transfer = std::make_unique<Transfer>(handler);
+        transfer->prepare_for_coarsening_and_refinement(this->solution);
+      }
+
+      void after_remesh(const double t, const bool steady) override
+      {
+        const unsigned long long applications = fem->n_applications();
+        fem.reset();
+        node_set.reset();
+        number_unknowns();
+        build_operator(t);
+        fem->carry_over_applications(applications);
+        Vector &u = this->solution;
+        fem->initialize_vector(u);
+        transfer->interpolate(u);
+        transfer.reset();
+        fem->distribute(u, t);
+        if (!steady)
+          keep_heat(t);
       }
 
       std::vector<OutputField> derived_fields(const Vector &u, const double) const override
@@ -224,7 +250,47 @@ namespace PeriDeal
       }
 
     private:
-      void build_operator()
+      using Transfer = parallel::distributed::SolutionTransfer<dim, Vector>;
+
+      void number_unknowns()
+      {
+        Timings::Scope scope(this->timings, "unknowns");
+        handler.distribute_dofs(element);
+        if (scene.domain.shape != Shape::mesh_file && element.degree == 1)
+          number_along_lattice(handler, scene.domain);
+      }
+
+
+      /**
+       * Where cells have been merged the interpolant holds a little more or less heat than the finer field did. The difference goes to the nodes of merged cells,
+       * each by the same temperature.
+       */
+      void keep_heat(const double t)
+      {
+        Vector      &u    = this->solution;
+        const double lost = heat_before - fem->heat(u);
+        Vector       share(u);
+        share                                        = 0.;
+        const double                         spacing = scene.domain.spacing()[0];
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned() && cell->extent_in_direction(0) > 1.5 * spacing)
+            {
+              cell->get_dof_indices(indices);
+              for (const auto i : indices)
+                share(i) = 1.;
+            }
+        share.compress(VectorOperation::max);
+        fem->clear_constrained(share);
+        fem->interpolate_hanging(share);
+        const double capacity = fem->heat(share);
+        if (capacity > 0.)
+          u.add(lost / capacity, share);
+        fem->distribute(u, t);
+      }
+
+
+      void build_operator(const double start = 0.)
       {
         Timings::Scope                 scope(this->timings, "operator");
         std::unique_ptr<Coupling<dim>> coupling;
@@ -240,7 +306,7 @@ namespace PeriDeal
               model == Model::coupled ? Zone<dim>(scene.coupling, scene.horizon()) : Zone<dim>(),
               scheme());
           }
-        fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling));
+        fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling), start);
       }
 
 
@@ -318,6 +384,8 @@ namespace PeriDeal
       std::unique_ptr<Nodes<dim>>        node_set; // null for finite elements alone
       std::unique_ptr<FEMOperator<dim>>  fem;
       std::optional<CouplingCertificate> certificate;
+      std::unique_ptr<Transfer>          transfer; // while the mesh changes
+      double                             heat_before = 0.;
     };
   } // namespace
 

@@ -8,6 +8,17 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
+  void set_start(ModelRun<dim> &run)
+  {
+    run.op().initialize_vector(run.solution);
+    run.set_initial_value(run.solution);
+    run.op().distribute(run.solution, 0.);
+    run.op().take_material_at(run.solution); // with the prescribed values
+    run.op().distribute(run.solution, 0.);
+  }
+
+
+  template <int dim>
   std::unique_ptr<ModelRun<dim>> make_model_run(const Model               model,
                                                 const Triangulation<dim> &mesh,
                                                 const Scene<dim>         &scene)
@@ -17,14 +28,13 @@ namespace PeriDeal
       run = make_bond_run(mesh, scene);
     else
       run = make_element_run(model, mesh, scene);
-    run->op().initialize_vector(run->solution);
-    run->set_initial_value(run->solution);
-    run->op().distribute(run->solution, 0.);
-    run->op().take_material_at(run->solution); // with the prescribed values
-    run->op().distribute(run->solution, 0.);
+    set_start(*run);
     return run;
   }
 
+  template void                         set_start(ModelRun<1> &);
+  template void                         set_start(ModelRun<2> &);
+  template void                         set_start(ModelRun<3> &);
   template std::unique_ptr<ModelRun<1>> make_model_run(const Model,
                                                        const Triangulation<1> &,
                                                        const Scene<1> &);

@@ -23,28 +23,6 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  namespace
-  {
-    /** Refuse what a stepper would never finish. @p stiffness is the end time times the largest eigenvalue. */
-    void check_stepper(const std::string &name, const TimeControl &time, const double stiffness)
-    {
-      constexpr double   longest = 1e12, finest = 1e-11;
-      const bool         implicit = name == "sdirk2" || name == "bdf2" || name == "crank nicolson";
-      std::ostringstream message;
-      if (!implicit && stiffness > longest)
-        message
-          << "'End time' in section 'Time' is " << time.end_time << ", " << stiffness
-          << " times the shortest decay time of this mesh: too long for the explicit stepper '"
-          << name << "'. Choose 'Steady = true' or 'Stepper = sdirk2'.";
-      if (name == "rkc2" && time.time_step < 0. && time.tolerance < finest)
-        message << "'Tolerance' in section 'Time' is " << time.tolerance
-                << ", which round-off does not allow 'rkc2' to reach; it needs " << finest
-                << " or more. 'chebyshev' and a fixed 'Time step' reach more.";
-      AssertThrow(message.str().empty(), UserError(message.str()));
-    }
-  } // namespace
-
-
   template <int dim>
   Simulation<dim>::Simulation(const Scene<dim> &scene,
                               const SceneText  &text,
@@ -118,6 +96,7 @@ namespace PeriDeal
         for (const std::string &note : models.back()->notes())
           record->notes.push_back(models.back()->name() + ": " + note);
       }
+    prepare_adaptation();
     make_reference();
   }
 
@@ -211,36 +190,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::make_steppers()
+  void Simulation<dim>::make_readers()
   {
-    if (scene.time.steady)
-      return;
-    StepperOptions options;
-    options.time_step        = scene.time.time_step;
-    options.tolerance        = scene.time.tolerance;
-    options.solver_tolerance = scene.solver.tolerance;
-    options.max_iterations   = scene.solver.max_iterations;
-    options.direct_up_to     = scene.solver.direct_up_to;
-    for (auto &model : models)
-      {
-        Timings::Scope scope(model->timings, "stepper");
-        with_formulas(
-          [&] { model->stepper = make_stepper(scene.time.stepper, model->op(), options); });
-        check_stepper(model->stepper->name(),
-                      scene.time,
-                      model->op().spectrum().sharp * scene.time.end_time);
-        std::ostringstream line;
-        line << model->name() << ": stepper " << model->stepper->name();
-        if (model->stepper->current_step() > 0.)
-          line << ", step " << model->stepper->current_step();
-        progress.line(line.str());
-      }
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::make_evaluators()
-  {
+    probe_readers.clear();
+    line_readers.clear();
+    grid_readers.clear();
     const auto make =
       [&](const std::vector<std::vector<double>> &points, const std::string &entry, auto &readers) {
         if (!points.empty())
@@ -254,6 +208,14 @@ namespace PeriDeal
     make(scene.output.probes, "Probes", probe_readers);
     make(scene.output.line, "Line", line_readers);
     make(scene.output.grid, "Grid", grid_readers);
+    readers_fit = true;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::make_evaluators()
+  {
+    make_readers();
     probes = std::make_unique<PointTable>(scene.output.probes, dim);
     line   = std::make_unique<PointTable>(scene.output.line, dim);
     grid   = std::make_unique<PointTable>(scene.output.grid, dim);
@@ -270,42 +232,6 @@ namespace PeriDeal
         writers.push_back(std::make_unique<FieldWriter<dim>>(model->dofs(),
                                                              scene.general.output_directory,
                                                              series));
-      }
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::advance_to(const double t)
-  {
-    for (auto &model : models)
-      {
-        Timings::Scope scope(model->timings, scene.time.steady ? "solve" : "time stepping");
-        with_formulas([&] {
-          if (scene.time.steady)
-            model->steady_iterations = solve_steady(model->op(),
-                                                    model->solution,
-                                                    0.,
-                                                    scene.solver.tolerance,
-                                                    scene.solver.max_iterations,
-                                                    scene.solver.direct_up_to);
-          else
-            advance_through_events(*model, t);
-        });
-      }
-    now = t;
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::advance_through_events(ModelRun<dim> &model, const double t)
-  {
-    for (double from = now; from < t;)
-      {
-        if (model.update(from))
-          model.stepper->restart();
-        const double to = std::min(t, model.op().next_event(from));
-        model.stepper->advance(model.solution, from, to);
-        from = to;
       }
   }
 
@@ -333,6 +259,11 @@ namespace PeriDeal
         with_formulas([&] { write_output(t); });
       }
     progress.end();
+    if (n_adaptations > 0)
+      record->notes.push_back("the mesh was adapted " + std::to_string(n_adaptations) +
+                              (n_adaptations == 1 ? " time" : " times") + "; it has " +
+                              readable_count(mesh->n_global_active_cells()) +
+                              " cells at the end ('Zone = adaptive' in section 'Coupling').");
     for (const std::string &note : record->notes)
       progress.note(note);
     write_summary();
@@ -343,6 +274,8 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::write_output(const double t)
   {
+    if (!readers_fit)
+      make_readers();
     for (auto &model : models)
       model->solution.update_ghost_values();
     add_points(t);
@@ -486,7 +419,6 @@ namespace PeriDeal
                                        const bool);                   \
   template Simulation<dim>::~Simulation();                            \
   template void                Simulation<dim>::build();              \
-  template void                Simulation<dim>::make_steppers();      \
   template void                Simulation<dim>::make_evaluators();    \
   template std::vector<double> Simulation<dim>::output_times() const; \
   template void                Simulation<dim>::run();

@@ -259,9 +259,14 @@ def coupled():
         compare(f"plate, {scheme}, euler", PLATE,
                 {**FIXED["euler"], "Coupling/Scheme": scheme, "Coupling/Overlap": "1"}, {"coupled": 1e-12})
     compare("3D, coupled, chebyshev", BODY, {**FIXED["chebyshev"], **exchange}, explicit)
+    graded = {"Domain/Cells": "48, 40", "Domain/Coarsening": "3"}
+    compare("plate, graded, chebyshev", PLATE, {**FIXED["chebyshev"], **graded}, {"coupled": 1e-12})
+    compare("plate, adaptive, growing", PLATE,
+            {**FIXED["chebyshev"], **graded, **growing, "Coupling/Zone": "adaptive"}, {"coupled": 1e-12})
     solved = {"coupled": 1e-8, "peridynamics": 1e-8}
     compare("plate, coupled, steady", PLATE, {**ADAPTIVE["steady"], **exchange}, solved)
     compare("plate, splice, steady", PLATE, {**ADAPTIVE["steady"], "Coupling/Scheme": "splice"}, {"coupled": 1e-8})
+    compare("plate, graded, steady", PLATE, {**ADAPTIVE["steady"], **graded}, {"coupled": 1e-8})
     compare("3D, coupled, steady", BODY, {**ADAPTIVE["steady"], **exchange}, solved)
 
 

@@ -9,38 +9,57 @@
 #include <perideal/scene/zone.h>
 
 #include <functional>
+#include <vector>
 
 namespace PeriDeal
 {
-  /** The part of the body in which cells stay as fine as the lattice, for the cracks at the end of the run. */
-  template <int dim>
-  Zone<dim> fine_part(const Scene<dim> &scene);
-
-
   /**
-   * Refine the cells of a box until those in the fine part, and at least two cells of each size beyond it, are of lattice size. The level of the
-   * cells of lattice size is @p finest. Collective.
+   * Which cells of a box have to be as fine as its lattice, and how large the others may be: at least two cells of each size lie between the fine part and
+   * cells twice as large. The fine part is that of `Fine where`, or the zone of section `Coupling` around the cracks as they will be: at the end of the run, or, with
+   * `Zone = adaptive`, at the time when the mesh is adapted next. The same on every process; nothing is collective unless stated.
    */
   template <int dim>
-  void refine_towards(dealii::Triangulation<dim> &mesh,
-                      const Zone<dim>            &fine,
-                      const Domain<dim>          &domain,
-                      const unsigned int          finest);
+  class Grading
+  {
+  public:
+    using Cell = typename dealii::Triangulation<dim>::cell_iterator;
 
-  /**
-   * Whether a cell has to be refined for that: the same on every process.
-   */
-  template <int dim>
-  bool is_too_coarse(const typename dealii::Triangulation<dim>::cell_iterator &cell,
-                     const Zone<dim>                                          &fine,
-                     const Domain<dim>                                        &domain,
-                     const unsigned int                                        finest);
+    /** @param finest level of the cells that have lattice size */
+    Grading(const Scene<dim> &scene, const unsigned int finest);
+
+    /** `Zone = adaptive`: the time after t at which the mesh has to follow the cracks or the solution; infinity if it never has to. */
+    double next_adaptation(const double t) const;
+
+    /** Make the fine part that of time t. */
+    void set_time(const double t);
+
+    /** A cell that is larger than the fine part allows. */
+    bool is_too_coarse(const Cell &cell) const;
+
+    /** Refine until no cell is too coarse. Collective. */
+    void refine(dealii::Triangulation<dim> &mesh) const;
+
+    /**
+     * Mark cells to be refined and coarsened: those too coarse are refined, and those with an indicator above @p target; those with a far smaller one are
+     * merged where the fine part allows it. @p indicators are squares, by active cell index. Returns whether any mark was set. Collective.
+     */
+    bool mark(dealii::Triangulation<dim> &mesh,
+              const std::vector<double>  &indicators,
+              const double                target) const;
+
+  private:
+    Zone<dim>           zone;
+    CrackHistory<dim>   history;
+    std::vector<double> adaptations; // times, ascending
+    unsigned int        finest, coarsest;
+    double              spacing = 0., end;
+  };
 
 
   /** The work that an active cell makes. */
   template <int dim>
-  using CellWork =
-    std::function<unsigned int(const typename dealii::Triangulation<dim>::cell_iterator &cell)>;
+  using CellWork = std::function<unsigned int(
+    const typename dealii::Triangulation<dim>::cell_iterator &cell)>;
 
   /**
    * The nonzeros of a node's row in all models of a scene, by the place of the cell: in a zone also those of its bonds. With a zone that follows

@@ -22,7 +22,7 @@ namespace PeriDeal
   /**
    * The mesh of a scene, distributed over the processes (in 1D, and with more than 100000 coarse cells, every process knows all cells). Boxes are few coarse cells refined globally where the
    * cell counts allow, because every process keeps the coarse mesh; `Cracks / Mesh = faces` keeps the crack on coarse faces and
-   * doubles its vertices. With `Coarsening` the mesh is graded: as fine as the lattice only where refine_towards() says. Cells are dealt out to processes
+   * doubles its vertices. With `Coarsening` the mesh is graded: as fine as the lattice only where Grading says. Cells are dealt out to processes
    * so that all have the same work, bonds of a zone included. Boundary ids as in BoundaryConditions. Notes for the user are appended to @p notes.
    *
    * Throws UserError: crack not on faces, mesh file unreadable, broken or of other cells than quads and hexes. Collective.

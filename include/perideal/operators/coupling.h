@@ -7,8 +7,8 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <perideal/bonds/families.h>
-#include <perideal/scene/zone.h>
 #include <perideal/operators/bond_form.h>
+#include <perideal/scene/zone.h>
 
 #include <memory>
 #include <vector>
@@ -92,7 +92,7 @@ namespace PeriDeal
   };
 
 
-    /** Of all nodes known here, ghosts included: which are hanging and have no bonds. Collective. */
+  /** Of all nodes known here, ghosts included: which are hanging and have no bonds. Collective. */
   template <int dim>
   std::vector<bool> hanging_nodes(const Nodes<dim> &nodes);
 

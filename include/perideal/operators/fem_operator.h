@@ -37,10 +37,14 @@ namespace PeriDeal
   class FEMOperator : public Operator
   {
   public:
-    /** Collective. Throws UserError for material values that are not positive and for nodes that `removed` isolates. */
+    /**
+     * With the cracks of time @p start, whatever the coupling has had before. Collective. Throws UserError for material values that are not positive and
+     * for nodes that `removed` isolates.
+     */
     FEMOperator(const dealii::DoFHandler<dim> &dof_handler,
                 const Scene<dim>              &scene,
-                std::unique_ptr<Coupling<dim>> coupling = nullptr);
+                std::unique_ptr<Coupling<dim>> coupling = nullptr,
+                const double                   start    = 0.);
 
     void          initialize_vector(Vector &vector) const override;
     void          apply(Vector &y, const Vector &x) const override;
@@ -92,6 +96,9 @@ namespace PeriDeal
 
     /** Numbers in [-1, 1] that look random but depend on the unknowns' positions alone. Collective. */
     const Vector &noise() const;
+
+    /** Heat in the body, which must have constant capacities; u has been through distribute(). Collective. */
+    double heat(const Vector &u) const;
 
     /** Set the owned hanging nodes of v to what follows from their neighbours. Collective. */
     void interpolate_hanging(Vector &v) const;

@@ -82,7 +82,7 @@ namespace PeriDeal
     };
 
     void            find_offsets();
-    void            find_sites();
+    void            find_sites(const Scene<dim> &scene);
     void            set_table_around(const std::vector<bool> &candidates);
     void            find_cells(const Scene<dim> &scene);
     void            find_full_matrix();

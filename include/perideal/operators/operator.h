@@ -48,8 +48,8 @@ namespace PeriDeal
   struct OperatorSize
   {
     unsigned long long unknowns = 0, bonds = 0, nonzeros = 0;
-    double             busiest  = 0.; // most nonzeros of a process over the mean of all; 0: not known
-    std::size_t        memory =
+    double      busiest = 0.; // most nonzeros of a process over the mean of all; 0: not known
+    std::size_t memory =
       0; // bytes of this process's nodes, bonds and matrices, without mesh and DoFHandler
     std::string form; // lattice | stored | matrix
   };
@@ -183,6 +183,12 @@ namespace PeriDeal
     unsigned long long n_applications() const
     {
       return applications;
+    }
+
+    /** Go on counting from what an operator of the same model has had. */
+    void carry_over_applications(const unsigned long long before)
+    {
+      applications += before;
     }
 
   protected:

@@ -38,6 +38,8 @@ namespace PeriDeal
     Expression     formula;          // in the zone where greater than 0
     double         overlap     = 0.; // in horizons
     bool           certificate = true;
+    double         adaptive_tolerance =
+      0.02; // of the zone `adaptive`: relative error of the flux, by recovery
 
     /** Throws UserError for a zone that is none, a width or an overlap below 0, contradicting entries. */
     void parse();

@@ -6,6 +6,7 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <perideal/analysis/comparison.h>
+#include <perideal/analysis/recovery.h>
 #include <perideal/base/timing.h>
 #include <perideal/mesh/nodes.h>
 #include <perideal/operators/operator.h>
@@ -49,6 +50,28 @@ namespace PeriDeal
     /** Initial value on the unknowns. */
     virtual void set_initial_value(Vector &u) const = 0;
 
+    /** Square of the error that the recovered flux shows in each cell (recovery_indicators()); u has up-to-date ghosts. */
+    virtual RecoveryIndicators indicators(const Vector &) const
+    {
+      Assert(false, dealii::ExcNotImplemented());
+      return {};
+    }
+
+    /** The mesh is about to be adapted: what the solution needs to move on. */
+    virtual void before_remesh()
+    {
+      Assert(false, dealii::ExcNotImplemented());
+    }
+
+    /**
+     * Unknowns, operator and solution on the mesh as it is now, with the cracks of time t. The heat in the body stays what it was, unless steady. Steppers
+     * of the old operator must not be used any more.
+     */
+    virtual void after_remesh(const double, const bool)
+    {
+      Assert(false, dealii::ExcNotImplemented());
+    }
+
     /** Fields for output besides the temperature; u has up-to-date ghosts. */
     virtual std::vector<OutputField> derived_fields(const Vector &u, const double t) const = 0;
 
@@ -80,6 +103,10 @@ namespace PeriDeal
     Timings                  timings;
   };
 
+
+  /** Give the solution the initial value of the scene, with the prescribed values of time 0. */
+  template <int dim>
+  void set_start(ModelRun<dim> &run);
 
   /** Builds a model's unknowns and operator. The time goes into the run's timings. */
   template <int dim>

@@ -8,6 +8,7 @@
 #include <perideal/analysis/exact_solution.h>
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/progress.h>
+#include <perideal/mesh/grading.h>
 #include <perideal/output/result_files.h>
 #include <perideal/simulation/model_run.h>
 
@@ -41,23 +42,28 @@ namespace PeriDeal
     void dry_run();
 
   private:
-    void                build();
-    void                with_formulas(const std::function<void()> &action) const;
-    void                make_steppers();
-    void                make_evaluators();
-    void                make_writers();
-    void                make_reference();
-    void                advance_to(const double t);
-    void                advance_through_events(ModelRun<dim> &model, const double t);
-    void                write_output(const double t);
-    void                add_points(const double t);
-    void                add_totals(const double t, ModelRun<dim> &model);
-    void                add_errors(const double t);
-    void                compare_models(const double t);
-    void                write_fields(const double t);
-    void                write_summary();
-    void                describe(const ModelRun<dim> &model) const;
-    void                check_sides() const;
+    void build();
+    void with_formulas(const std::function<void()> &action) const;
+    void make_steppers();
+    void make_stepper_of(ModelRun<dim> &model);
+    void make_readers();
+    void solve_models();
+    void prepare_adaptation();
+    bool adapt(const double t);
+    void make_evaluators();
+    void make_writers();
+    void make_reference();
+    void advance_to(const double t);
+    void advance_through_events(ModelRun<dim> &model, const double t_begin, const double t_end);
+    void write_output(const double t);
+    void add_points(const double t);
+    void add_totals(const double t, ModelRun<dim> &model);
+    void add_errors(const double t);
+    void compare_models(const double t);
+    void write_fields(const double t);
+    void write_summary();
+    void describe(const ModelRun<dim> &model) const;
+    void check_sides() const;
     std::vector<double> output_times() const;
     double              expected_applications(const ModelRun<dim> &model) const;
     double              time_of_application(const ModelRun<dim> &model) const;
@@ -74,7 +80,10 @@ namespace PeriDeal
     std::unique_ptr<ExactSolution>                    exact;
     std::unique_ptr<PointTable>                       probes, line, grid;
     std::unique_ptr<ResultRecord>                     record;
-    Vector difference; // peridynamics minus finite elements, at the nodes
-    double now = 0.;
+    Vector                        difference; // peridynamics minus finite elements, at the nodes
+    std::unique_ptr<Grading<dim>> grading;    // only where the mesh is adapted
+    bool                          readers_fit   = true; // the mesh
+    unsigned int                  n_adaptations = 0;
+    double                        now           = 0.;
   };
 } // namespace PeriDeal

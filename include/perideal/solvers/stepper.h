@@ -65,6 +65,14 @@ namespace PeriDeal
       return spent;
     }
 
+    /** Go on counting from what another stepper of the same run has had. */
+    void carry_over(const StepperCost &before)
+    {
+      spent.steps += before.steps;
+      spent.rejected += before.rejected;
+      spent.iterations += before.iterations;
+    }
+
   protected:
     StepperCost spent;
   };

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// From one output time to the next, through events of the cracks and changes of the mesh.
+
+#include <perideal/base/user_error.h>
+#include <perideal/scene/lists.h>
+#include <perideal/simulation/simulation.h>
+#include <perideal/solvers/linear_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "result_record.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Refuse what a stepper would never finish. @p stiffness is the end time times the largest eigenvalue. */
+    void check_stepper(const std::string &name, const TimeControl &time, const double stiffness)
+    {
+      constexpr double   longest = 1e12, finest = 1e-11;
+      const bool         implicit = name == "sdirk2" || name == "bdf2" || name == "crank nicolson";
+      std::ostringstream message;
+      if (!implicit && stiffness > longest)
+        message
+          << "'End time' in section 'Time' is " << time.end_time << ", " << stiffness
+          << " times the shortest decay time of this mesh: too long for the explicit stepper '"
+          << name << "'. Choose 'Steady = true' or 'Stepper = sdirk2'.";
+      if (name == "rkc2" && time.time_step < 0. && time.tolerance < finest)
+        message << "'Tolerance' in section 'Time' is " << time.tolerance
+                << ", which round-off does not allow 'rkc2' to reach; it needs " << finest
+                << " or more. 'chebyshev' and a fixed 'Time step' reach more.";
+      AssertThrow(message.str().empty(), UserError(message.str()));
+    }
+  } // namespace
+
+
+  template <int dim>
+  void Simulation<dim>::make_stepper_of(ModelRun<dim> &model)
+  {
+    StepperOptions options;
+    options.time_step        = scene.time.time_step;
+    options.tolerance        = scene.time.tolerance;
+    options.solver_tolerance = scene.solver.tolerance;
+    options.max_iterations   = scene.solver.max_iterations;
+    options.direct_up_to     = scene.solver.direct_up_to;
+    Timings::Scope scope(model.timings, "stepper");
+    with_formulas([&] { model.stepper = make_stepper(scene.time.stepper, model.op(), options); });
+    check_stepper(model.stepper->name(),
+                  scene.time,
+                  model.op().spectrum().sharp * scene.time.end_time);
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::make_steppers()
+  {
+    if (scene.time.steady)
+      return;
+    for (auto &model : models)
+      {
+        make_stepper_of(*model);
+        std::ostringstream line;
+        line << model->name() << ": stepper " << model->stepper->name();
+        if (model->stepper->current_step() > 0.)
+          line << ", step " << model->stepper->current_step();
+        progress.line(line.str());
+      }
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::solve_models()
+  {
+    for (auto &model : models)
+      {
+        Timings::Scope scope(model->timings, "solve");
+        with_formulas([&] {
+          model->steady_iterations += solve_steady(model->op(),
+                                                   model->solution,
+                                                   0.,
+                                                   scene.solver.tolerance,
+                                                   scene.solver.max_iterations,
+                                                   scene.solver.direct_up_to);
+        });
+      }
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::advance_through_events(ModelRun<dim> &model,
+                                               const double   t_begin,
+                                               const double   t_end)
+  {
+    Timings::Scope scope(model.timings, "time stepping");
+    with_formulas([&] {
+      for (double from = t_begin; from < t_end;)
+        {
+          if (model.update(from))
+            model.stepper->restart();
+          const double to = std::min(t_end, model.op().next_event(from));
+          model.stepper->advance(model.solution, from, to);
+          from = to;
+        }
+    });
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::advance_to(const double t)
+  {
+    if (scene.time.steady)
+      {
+        solve_models();
+        constexpr double settled = 0.05; // share of cells more or fewer
+        for (unsigned int round = 0; round < 2 * scene.domain.coarsening; ++round)
+          {
+            const double n_before = mesh->n_global_active_cells();
+            if (!adapt(0.))
+              break;
+            solve_models();
+            if (std::abs(mesh->n_global_active_cells() - n_before) < settled * n_before)
+              break;
+          }
+      }
+    while (now < t)
+      {
+        const double next = grading ? grading->next_adaptation(now) :
+                                      std::numeric_limits<double>::infinity();
+        const double to   = std::min(t, next);
+        for (auto &model : models)
+          advance_through_events(*model, now, to);
+        now = to;
+        if (to == next)
+          adapt(to);
+      }
+    now = t;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::prepare_adaptation()
+  {
+    if (scene.coupling.zone != ZoneKind::adaptive)
+      return;
+    const double coarse = mesh->n_cells(0) > 0 ? mesh->begin(0)->extent_in_direction(0) :
+                                                 0.; // on every process
+    grading             = std::make_unique<Grading<dim>>(
+      scene,
+      static_cast<unsigned int>(std::lround(std::log2(coarse / scene.domain.spacing()[0]))));
+    if (scene.time.steady)
+      return;
+    for (unsigned int round = 0; round < scene.domain.coarsening && adapt(0.); ++round)
+      for (auto &model : models)
+        set_start(*model);
+  }
+
+
+  template <int dim>
+  bool Simulation<dim>::adapt(const double t)
+  {
+    if (!grading)
+      return false;
+    Timings::Scope scope(timings, "mesh adaptation");
+    grading->set_time(t);
+    const auto    guide = std::find_if(models.begin(), models.end(), [](const auto &model) {
+      return model->name() == to_string(Model::coupled);
+    });
+    const Vector &u     = (*guide)->solution;
+    u.update_ghost_values();
+    const RecoveryIndicators found = (*guide)->indicators(u);
+    u.set_ghost_state(false);
+    const double goal   = scene.coupling.adaptive_tolerance;
+    const double target = goal * goal * found.energy / mesh->n_global_active_cells();
+    if (!grading->mark(*mesh, found.squares, target))
+      return false;
+    for (auto &model : models)
+      model->before_remesh();
+    mesh->execute_coarsening_and_refinement();
+    with_formulas([&] {
+      for (auto &model : models)
+        {
+          model->after_remesh(t, scene.time.steady);
+          if (!model->stepper)
+            continue;
+          const StepperCost before = model->stepper->cost();
+          make_stepper_of(*model);
+          model->stepper->carry_over(before);
+        }
+    });
+    readers_fit = false;
+    ++n_adaptations;
+    return true;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                      \
+  template void Simulation<dim>::make_steppers();      \
+  template void Simulation<dim>::prepare_adaptation(); \
+  template void Simulation<dim>::advance_to(const double t);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
