@@ -19,7 +19,7 @@ try:
     import numpy as np
 
     import style
-    from contours import Maps, color_bar, draw_picture, segments_of, sparse_ticks
+    from contours import Maps, color_bar, draw_cells, draw_picture, segments_of, sparse_ticks
     from read_run import MODEL_ORDER, ReportError, Run
 except ImportError as fault:
     sys.exit(f"animate: a Python package is missing ({fault}); frames need numpy, matplotlib and h5py")
@@ -53,6 +53,7 @@ class Film:
         """One frame in its axes, with its time in the corner."""
         draw_picture(axes, self.view, self.pictures[index], scale or self.scale,
                      self.segments[index], self.isolines[index])
+        draw_cells(axes, self.run, index, self.model)
         axes.text(0.02, 0.98, self.time_text(index), transform=axes.transAxes, va="top", ha="left",
                   fontsize=8.5, zorder=9, color=style.INK,
                   bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 2})

@@ -4,6 +4,7 @@
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PolyCollection
 from matplotlib.ticker import MaxNLocator
 
 import style
@@ -64,6 +65,17 @@ def draw_cracks(axes, segments, width=1.7):
                   solid_capstyle="round", zorder=6)
         axes.plot([a[0], b[0]], [a[1], b[1]], color="black", linewidth=width,
                   solid_capstyle="round", zorder=7)
+
+
+def draw_cells(axes, run, index, model, most=40_000):
+    """The edges of a graded mesh, hardly visible where cells are small."""
+    if not run.mesh_is_graded:
+        return
+    mesh = run.mesh(index, model)
+    if mesh.dimension != 2 or len(mesh.cells) > most:
+        return
+    axes.add_collection(PolyCollection(mesh.nodes[mesh.cells], facecolors="none",
+                                       edgecolors="black", linewidths=0.25, alpha=0.35, zorder=3))
 
 
 def draw_isolines(axes, view, picture, scale, segments):
@@ -239,6 +251,7 @@ def field_figure(maps, index, words, field, largest=None, scale=None):
     for i, model in enumerate(models):
         axes = layout.panel(i)
         draw_picture(axes, view, pictures[model], scale, segments, smooth[model])
+        draw_cells(axes, run, index, model)
         axes.set_title(style.name(model), loc="left", pad=5)
         label_axes(axes, words, view, i, layout)
     layout.bar(0, len(models) - 1, scale, field.label())

@@ -243,9 +243,10 @@ class Run:
             raise ReportError(f"'{path}' is not a readable HDF5 file: {error}") from None
 
     def mesh(self, index, model):
-        """The mesh of a model; read once, and shared between models where it is the same."""
-        if model in self._meshes:
-            return self._meshes[model]
+        """The mesh of a model; read once if it never changes, and shared between models where it is the same."""
+        key = (model, index if self.mesh_changes else None)
+        if key in self._meshes:
+            return self._meshes[key]
         path = self.field_file(index, model)
         with self._open(path) as file:
             for name in ("nodes", "cells"):
@@ -263,8 +264,18 @@ class Run:
             if other.same_as(mesh):
                 mesh = other
                 break
-        self._meshes[model] = mesh
+        self._meshes[key] = mesh
         return mesh
+
+    @property
+    def mesh_is_graded(self):
+        """Whether some cells of the lattice are merged."""
+        return "mesh" in self.summary
+
+    @property
+    def mesh_changes(self):
+        """Whether each written time may have a mesh of its own."""
+        return self.summary.get("mesh", {}).get("adaptations", 0) > 0
 
     def field(self, index, model, name, required=True):
         """Values of a field at the vertices, (N) or (N x 3); None if absent and not required."""

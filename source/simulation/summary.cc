@@ -211,6 +211,8 @@ namespace PeriDeal
                                          {"upper", coordinates(corners.second)},
                                          {"shape", shapes[static_cast<int>(scene.domain.shape)]}};
     summary["cells"]                  = mesh->n_global_active_cells();
+        if (scene.domain.coarsening > 0)
+      summary["mesh"] = {{"coarsening", scene.domain.coarsening}, {"adaptations", n_adaptations}};
     summary["cracks"]                 = corners_of(scene.cracks.pieces(scene.cracks.end_time));
     summary["sides"]                  = describe_sides(scene);
     summary["steady"]                 = scene.time.steady;

@@ -270,6 +270,18 @@ def coupled():
     compare("3D, coupled, steady", BODY, {**ADAPTIVE["steady"], **exchange}, solved)
 
 
+def work():
+    """Cells are dealt out by what they cost: processes with bonds get fewer of them."""
+    heavy = {"Coupling/Zone": "0.6 - x - 0.5*y", "Coupling/Certificate": "false", "Time/Steady": "true"}
+    for what, scene, more in (("plate", PLATE, {"Domain/Cells": "96, 80", "Peridynamics/Horizon ratio": "5"}),
+                              ("graded plate", PLATE, {"Domain/Cells": "96, 80", "Domain/Coarsening": "3"}),
+                              ("body", BODY, {"Domain/Cells": "20, 20, 16", "Peridynamics/Horizon ratio": "2.4"})):
+        for n in (2, 4):
+            run = run_scene(scene, {"Models": "coupled", **heavy, **more}, ranks=n)
+            share = run.model("coupled")["work of the busiest process"]
+            check(1 <= share <= 1.2, f"{what}, {n} processes: the busiest has {share:.3f} times the mean work")
+
+
 def implicit():
     bounds = {"peridynamics": 1e-8, "finite elements": 1e-8}
     for name, choice in ADAPTIVE.items():
@@ -290,8 +302,9 @@ def quick():
 
 
 def main():
-    parts = {"plates": plates, "bodies": bodies, "others": others, "implicit": implicit, "coupled": coupled, "quick": quick}
-    folders = [parts[name]() for name in sys.argv[1:] or ("plates", "bodies", "others", "implicit", "coupled")]
+    parts = {"plates": plates, "bodies": bodies, "others": others, "implicit": implicit, "coupled": coupled,
+             "work": work, "quick": quick}
+    folders = [parts[name]() for name in sys.argv[1:] or ("plates", "bodies", "others", "implicit", "coupled", "work")]
     print_table("Differences from the run on one process", ("case", "model", "processes", "difference", "allowed"), ROWS)
     finish(*[folder for folder in folders if folder])
 
