@@ -193,7 +193,7 @@ def add_to(page, data):
         page.add('<ul class="notes">' + "".join(f"<li>Left out: {escape(s)}</li>" for s in data["left out"]) + "</ul>")
     page.section("What errors cost", "costs")
     page.add("<p>Interpolated along each family in logarithms; ≤: the coarsest lattice is better already; ≈: extrapolated beyond the finest lattice, "
-             "whose error is so many times the target.</p>")
+             "whose error is so many times the target (no more than ten).</p>")
     page.add(f'<div class="wide">{target_table(data)}</div>')
     page.section("The Pareto front", "front")
     page.add(f'<div class="wide">{front_table(data)}</div>')

@@ -12,6 +12,24 @@
 
 namespace PeriDeal
 {
+  namespace
+  {
+    /** The order in the cost of the last three points of a family (of two, if it has no more). */
+    double final_order(const std::vector<WorkPoint> &family)
+    {
+      std::vector<double> costs, errors;
+      for (std::size_t k = family.size() - std::min<std::size_t>(3, family.size());
+           k < family.size();
+           ++k)
+        {
+          costs.push_back(family[k].cost);
+          errors.push_back(family[k].error);
+        }
+      return -observed_order(costs, errors);
+    }
+  } // namespace
+
+
   bool dominates(const WorkPoint &a, const WorkPoint &b)
   {
     return a.cost <= b.cost && a.error <= b.error && (a.cost < b.cost || a.error < b.error);
@@ -85,16 +103,18 @@ namespace PeriDeal
         result.cost = family.front().cost;
         return result;
       }
-    const bool beyond = last + 1 == family.size();
-    if (beyond && family.size() < 2)
+    const bool       beyond = last + 1 == family.size();
+    const WorkPoint &b      = family[beyond ? last : last + 1];
+    result.beyond           = beyond ? b.error / error : 1.;
+    double order            = 0.; // error = C cost^-order
+    if (beyond)
+      order = result.beyond > farthest_extrapolation ? 0. : final_order(family);
+    else
+      order = std::log(family[last].error / b.error) / std::log(b.cost / family[last].cost);
+    if (!(b.error > 0.) || !(order > 1e-2) || !std::isfinite(order))
       return result;
-    const WorkPoint &a = family[beyond ? last - 1 : last], &b = family[beyond ? last : last + 1];
-    if (!(b.error < a.error) || !(b.cost > a.cost) || !(b.error > 0.))
-      return result;
-    const double slope = std::log(b.cost / a.cost) / std::log(b.error / a.error);
-    result.kind        = beyond ? CostAtError::Kind::extrapolated : CostAtError::Kind::interpolated;
-    result.cost        = b.cost * std::pow(error / b.error, slope);
-    result.beyond      = beyond ? b.error / error : 1.;
+    result.kind = beyond ? CostAtError::Kind::extrapolated : CostAtError::Kind::interpolated;
+    result.cost = b.cost * std::pow(b.error / error, 1. / order);
     return result;
   }
 

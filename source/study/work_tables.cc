@@ -230,7 +230,7 @@ namespace PeriDeal
             text += " (" + percent(std::round(line.work.beyond * error * 1e5) / 1e5) + ")";
           text += "\n";
         }
-      return text + (none.empty() ? "" : "  never, as far as seen: " + none + "\n");
+      return text + (none.empty() ? "" : "  not seen, or too far to extrapolate: " + none + "\n");
     }
   } // namespace
 

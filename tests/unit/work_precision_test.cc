@@ -66,6 +66,7 @@ namespace
     EXPECT_NEAR(cost.cost, 2000., 1e-9);
     cost = cost_at_error(family, 0.1);
     EXPECT_NEAR(cost.cost, 1000., 1e-9);
+    EXPECT_EQ(cost_at_error(family, 0.0009).kind, Kind::none); // too far
     cost = cost_at_error(family, 0.001);
     EXPECT_EQ(cost.kind, Kind::extrapolated);
     EXPECT_NEAR(cost.cost, 1e5, 1e-6);

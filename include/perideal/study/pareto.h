@@ -31,15 +31,18 @@ namespace PeriDeal
    */
   double observed_order(const std::vector<double> &spacings, const std::vector<double> &errors);
 
+  /** How far costs are extrapolated: down to this part of the finest point's error. */
+  constexpr double farthest_extrapolation = 10.;
+
   /** What an error costs along a family of settings. */
   struct CostAtError
   {
     enum class Kind
     {
       interpolated, // between two points of the family
-      extrapolated, // beyond its finest point, with the slope of its last two
+      extrapolated, // beyond its finest point, with the slope of its last three
       at_most,      // the coarsest point is already better: its cost is an upper bound
-      none          // fewer than two points, or refining makes the error no smaller at the end
+      none          // fewer than two points, too far beyond them, or the error does not become smaller
     };
 
     Kind   kind   = Kind::none;
