@@ -42,7 +42,7 @@ namespace PeriDeal
       interpolated, // between two points of the family
       extrapolated, // beyond its finest point, with the slope of its last three
       at_most,      // the coarsest point is already better: its cost is an upper bound
-      none          // fewer than two points, too far beyond them, or the error does not become smaller
+      none // fewer than two points, too far beyond them, or the error does not become smaller
     };
 
     Kind   kind   = Kind::none;
