@@ -7,6 +7,7 @@
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/simulation.h>
 #include <perideal/study/study.h>
+#include <perideal/study/work_precision.h>
 
 #include <CLI/CLI.hpp>
 
@@ -58,8 +59,9 @@ namespace
 
     std::vector<std::string> files,
       variations; // of a study: one study file, or scenes and what varies
-    std::string  output;
-    StudyOptions study;
+    std::string          output;
+    StudyOptions         study;
+    WorkPrecisionOptions work_precision;
   };
 
 
@@ -71,8 +73,42 @@ namespace
   }
 
 
+  const std::string work_precision = "work_precision"; // in place of a study file
+
+
+  /** `perideal study work_precision SCENE.prm`. */
+  void compute_work_precision(const Request &request)
+  {
+    AssertThrow(request.files.size() == 2 && !is_study_file(request.files[1]),
+                UserError("perideal study work_precision needs one scene (.prm), found " +
+                          (request.files.size() == 1 ?
+                             "none" :
+                             join_names(std::vector<std::string>(request.files.begin() + 1,
+                                                                 request.files.end()))) +
+                          "."));
+    AssertThrow(
+      request.variations.empty(),
+      UserError(
+        "--vary is not for work_precision, which varies methods and lattices; --cells names the lattices."));
+    WorkPrecisionOptions options = request.work_precision;
+    options.scene                = request.files[1];
+    options.overrides            = request.overrides;
+    options.output               = request.output;
+    options.study                = request.study;
+    options.study.quiet          = request.quiet;
+    run_work_precision(options, MPI_COMM_WORLD);
+  }
+
+
   void compute_study(const Request &request)
   {
+    if (request.files.front() == work_precision)
+      return compute_work_precision(request);
+    AssertThrow(
+      request.work_precision.cells.empty() && request.work_precision.reference.empty() &&
+        request.work_precision.budget == WorkPrecisionOptions().budget,
+      UserError(
+        "--cells, --reference and --budget are for `perideal study work_precision SCENE.prm`."));
     const MPI_Comm communicator = MPI_COMM_WORLD;
     Study          study;
     if (std::any_of(request.files.begin(), request.files.end(), is_study_file))
@@ -107,7 +143,13 @@ namespace
       "study",
       "Compute many runs: the rows of a study file (.json), or all combinations of what --vary names; "
       "finished rows are kept, so an interrupted study goes on where it was");
-    study->add_option("files", request.files, "study file (.json), or scenes (.prm)")->required();
+    study
+      ->add_option(
+        "files",
+        request.files,
+        "study file (.json), or scenes (.prm), or: work_precision SCENE.prm, which charts accuracy "
+        "against cost over methods and lattices")
+      ->required();
     study
       ->add_option(
         "--vary",
@@ -132,6 +174,18 @@ namespace
                    request.study.repeats,
                    "run every row so often and keep the smallest times")
       ->check(CLI::Range(1u, 1000u));
+    study->add_option(
+      "--cells",
+      request.work_precision.cells,
+      "work_precision: the lattices, from coarse to fine: \"21, 21 | 41, 41 | 81, 81\"");
+    study->add_option("--reference",
+                      request.work_precision.reference,
+                      "work_precision: the three lattices of the reference solution");
+    study
+      ->add_option("--budget",
+                   request.work_precision.budget,
+                   "work_precision: leave out peridynamics in the whole body with more bonds (2e6)")
+      ->check(CLI::PositiveNumber);
     study->add_flag("-q,--quiet", request.quiet, "print nothing but errors");
   }
 
@@ -147,6 +201,7 @@ namespace
       "  mpirun -np 4 perideal run prm/quick_start.prm\n"
       "  perideal study prm/studies/delta_convergence.json\n"
       "  perideal study prm/quick_start.prm --vary \"Domain/Cells=30, 30 | 60, 60\" --vary \"Peridynamics/Horizon ratio=2 | 3\"\n"
+      "  perideal study work_precision prm/coupling/oblique_crack.prm\n"
       "  perideal parameters markdown\n"
       "Scenes to start from are in prm/; the format is explained in doc/scene_format.md, that of studies in doc/study.md.");
 
@@ -198,7 +253,15 @@ namespace
     std::vector<std::string> options = {"--set", "--quiet", "--help", "--version"};
     if (app.got_subcommand("study"))
       options.insert(options.end(),
-                     {"--vary", "--output", "--only", "--quick", "--redo", "--repeat"});
+                     {"--vary",
+                      "--output",
+                      "--only",
+                      "--quick",
+                      "--redo",
+                      "--repeat",
+                      "--cells",
+                      "--reference",
+                      "--budget"});
     const std::vector<std::string> remaining = app.remaining(true);
     if (!remaining.empty() && remaining.front().compare(0, 2, "--") == 0)
       message +=

@@ -4,12 +4,15 @@
 """Make the pictures of the README and of doc/ from real runs, and the README's table of scenes.
 
     python3 doc/make_figures.py [--program PERIDEAL] [--all] [SCENE.prm ...]
+    python3 doc/make_figures.py --work-precision
 
 Runs each scene (all below prm/ but those of prm/failures and those as published, if none is named), draws its report, and keeps of it
 doc/figures/NAME.png: the last temperature, scaled to a thumbnail. For prm/quick_start.prm the
 figure is kept in full width too, as doc/figures/quick_start_wide.png. A picture that is newer
 than its scene is left as it is, unless --all is given. The table names every scene below prm/ with
 its title and the first sentence of its comment, up to a colon or bracket; --table writes the table only.
+--work-precision makes the charts of accuracy against cost of doc/coupling.md instead, and prints what
+`perideal study work_precision` says.
 """
 
 import argparse
@@ -25,6 +28,13 @@ from PIL import Image, ImageChops
 ROOT = Path(__file__).resolve().parent.parent
 FIGURES = ROOT / "doc" / "figures"
 THUMBNAIL_HEIGHT, WIDE_WIDTH = 200, 1300
+CHART_WIDTH = 1400
+LADDER = "21, 21 | 41, 41 | 81, 81 | 161, 161 | 321, 321"
+# Scene, options of `perideal study work_precision`, and the charts that are kept.
+CHARTS = (("prm/coupling/insulated_crack.prm",
+           ["-s", "Time/Steady=true", "--cells", LADDER, "--reference", "240, 240 | 480, 480 | 960, 960"],
+           {"error_over_work": "work_precision_insulated_crack", "error_over_wall_time": "work_precision_insulated_crack_time"}),
+          ("prm/coupling/oblique_crack.prm", ["--cells", LADDER], {"error_over_work": "work_precision_oblique_crack"}))
 BEGIN, END = "<!-- scenes: written by doc/make_figures.py -->\n", "<!-- end of scenes -->\n"
 
 
@@ -119,6 +129,16 @@ def write_table():
     page.write_text(text[:begin] + "\n" + "".join(rows) + "\n" + text[end:], encoding="utf-8")
 
 
+def make_charts(program):
+    """Accuracy against cost."""
+    for scene, options, charts in CHARTS:
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([program, "study", "work_precision", scene, "--output", folder, "--repeat", "3", *options], check=True, cwd=ROOT)
+            subprocess.run([sys.executable, str(ROOT / "applications" / "report" / "study.py"), folder], check=True, stdout=subprocess.DEVNULL)
+            for figure, name in charts.items():
+                save(cropped(Image.open(Path(folder) / f"{figure}.png")), name, width=CHART_WIDTH)
+
+
 def main():
     """Command line."""
     parser = argparse.ArgumentParser(description="Make doc/figures from runs of the scenes.")
@@ -126,7 +146,11 @@ def main():
     parser.add_argument("--program", default=str(ROOT / "build/release/applications/perideal"))
     parser.add_argument("--all", action="store_true", help="also those that are up to date")
     parser.add_argument("--table", action="store_true", help="only the table in the README")
+    parser.add_argument("--work-precision", action="store_true", help="only the charts of accuracy against cost")
     options = parser.parse_args()
+    if options.work_precision:
+        make_charts(options.program)
+        return 0
     if options.table:
         write_table()
         return 0

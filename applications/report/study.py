@@ -6,7 +6,7 @@
     python3 study.py DIRECTORY
 
 Each figure is DIRECTORY/NAME.png and stands in the page, too. A study that names no figures gets one: the error, or
-without a reference the wall time, over the first entry that varies. A fault of the file is told in one line, with
+without a reference the wall time, over the first entry that varies; one of `work_precision` gets charts of accuracy against cost. A fault of the file is told in one line, with
 exit status 1.
 """
 
@@ -18,6 +18,7 @@ from pathlib import Path
 
 try:
     import tables
+    import work_precision
     from page import Page, paragraphs, write_page
     from style import name, plain, prose
     from study_figures import ENTRY_MARK, StudyError, draw, label_of, last_lines, number
@@ -123,7 +124,10 @@ def page_of(study, directory):
     page.section("The study", "problem")
     page.add(paragraphs(prose(study.get("text", ""))))
     page.add(notes(study))
-    figures = study["figures"] or default_figures(study)
+    chart = work_precision.read(directory)
+    if chart:
+        work_precision.add_to(page, chart)
+    figures = study["figures"] or (default_figures(study) if not chart else [])
     drawn = 0
     for wanted in figures:
         figure, remark = draw(study, wanted)
@@ -136,12 +140,12 @@ def page_of(study, directory):
         drawn += 1
     table = rows_table(study)
     if table:
-        page.section("Results", "results")
+        page.section("Results" if not chart else "All rows", "results")
         page.add("<p>At the end of each run. Times are the smallest of all repeats; memory is that of nodes, bonds and matrices, peak "
                  "memory that of the whole program with all models of a row and what earlier rows have left.</p>")
         page.add(f'<div class="wide">{table}</div>')
     page.section("Files", "files")
-    items = "".join(f'<li><a href="{file}">{file}</a></li>' for file in ("study.csv", "study.json")
+    items = "".join(f'<li><a href="{file}">{file}</a></li>' for file in ("study.csv", "study.json", "work_precision.csv", "work_precision.json")
                     if (Path(directory) / file).is_file())
     page.add(f'<ul class="files">{items}</ul><p>The files of each row are in its folder in rows/.</p>')
     page.add(f"<footer>Written by {escape(study.get('program', 'PeriDeal'))}.</footer>")

@@ -5,10 +5,10 @@
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/grid/grid_tools_cache.h>
 
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/user_error.h>
+#include <perideal/mesh/cell_search.h>
 #include <perideal/scene/crack_geometry.h>
 
 #include <algorithm>
@@ -37,18 +37,23 @@ namespace PeriDeal
     }
 
 
-    /** The first of this process's cells that holds the point. */
+    /** A cell and a point of its unit cell. */
     template <int dim>
-    bool find_by_looking_everywhere(
-      const DoFHandler<dim>                                                    &dofs,
-      const Mapping<dim>                                                       &mapping,
-      const Point<dim>                                                         &point,
-      std::pair<typename Triangulation<dim>::active_cell_iterator, Point<dim>> &place)
+    using Place = std::pair<typename DoFHandler<dim>::active_cell_iterator, Point<dim>>;
+
+
+    /** The first of this process's cells that hold the point. */
+    template <int dim>
+    bool find_place(const CellSearch<dim> &search, const Point<dim> &point, Place<dim> &place)
     {
-      constexpr double slack = 1e-8;
-      for (const auto &cell : dofs.get_triangulation().active_cell_iterators())
-        if (cell->is_locally_owned() &&
-            cell->bounding_box().point_inside(point, slack * cell->diameter()))
+      constexpr double                            slack = 1e-8;
+      const MappingQ1<dim>                        mapping;
+      std::vector<typename CellSearch<dim>::Cell> near;
+      const std::vector<BoundingBox<dim>>         box{{{point, point}}};
+      search.find(box, slack * search.largest_diameter(), near);
+      std::sort(near.begin(), near.end());
+      for (const auto &cell : near)
+        if (cell->is_locally_owned())
           try
             {
               const Point<dim> unit = mapping.transform_real_to_unit_cell(cell, point);
@@ -159,11 +164,11 @@ namespace PeriDeal
                                            const std::vector<Point<dim>> &points)
   {
     // Every point has a nearest node, but not every point is in the body.
-    const MappingQ1<dim>      mapping;
+    const CellSearch<dim>     search(dofs);
     std::vector<unsigned int> here(points.size(), 0), in_body(points.size());
-    std::pair<typename Triangulation<dim>::active_cell_iterator, Point<dim>> place;
+    Place<dim>                place;
     for (unsigned int k = 0; k < points.size(); ++k)
-      here[k] = find_by_looking_everywhere(dofs, mapping, points[k], place) ? 1 : 0;
+      here[k] = find_place(search, points[k], place) ? 1 : 0;
     Utilities::MPI::max(here, communicator, in_body);
     // Ties go to the node that comes first in space, so that the answer does not depend on the partition.
     const auto before = [](const Point<dim> &a, const Point<dim> &b) {
@@ -214,44 +219,13 @@ namespace PeriDeal
   void PointEvaluator<dim>::locate_in_mesh(const DoFHandler<dim>         &dofs,
                                            const std::vector<Point<dim>> &points)
   {
-    const MappingQ1<dim>        mapping;
-    const GridTools::Cache<dim> cache(dofs.get_triangulation(), mapping);
-    const unsigned int          me     = Utilities::MPI::this_mpi_process(communicator);
-    const unsigned int          nobody = Utilities::MPI::n_mpi_processes(communicator);
-    std::vector<unsigned int>   finder(points.size(), nobody), first(points.size());
-    std::vector<std::pair<typename Triangulation<dim>::active_cell_iterator, Point<dim>>> places(
-      points.size());
-    std::vector<bool> owned_vertices(dofs.get_triangulation().n_vertices(), false);
-    for (const auto &cell : dofs.get_triangulation().active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (const unsigned int v : cell->vertex_indices())
-          owned_vertices[cell->vertex_index(v)] = true;
-    const bool any_owned = std::find(owned_vertices.begin(), owned_vertices.end(), true) !=
-                           owned_vertices.end();
+    const unsigned int        me     = Utilities::MPI::this_mpi_process(communicator);
+    const unsigned int        nobody = Utilities::MPI::n_mpi_processes(communicator);
+    const CellSearch<dim>     search(dofs);
+    std::vector<unsigned int> finder(points.size(), nobody), first(points.size());
+    std::vector<Place<dim>>   places(points.size());
     for (unsigned int k = 0; k < points.size(); ++k)
-      {
-        if (!any_owned)
-          break;
-        const auto first_place =
-          GridTools::find_active_cell_around_point(cache, points[k], {}, owned_vertices, 1e-8);
-        if (first_place.first.state() != IteratorState::valid)
-          continue; // somebody else's
-        const auto found = GridTools::find_all_active_cells_around_point(mapping,
-                                                                         dofs.get_triangulation(),
-                                                                         points[k],
-                                                                         1e-8,
-                                                                         first_place);
-        for (const auto &place : found)
-          if (place.first->is_locally_owned() && finder[k] == nobody)
-            {
-              finder[k] = me;
-              places[k] = place;
-            }
-      }
-    Utilities::MPI::min(finder, communicator, first);
-    // The search starts from the nearest vertex. Where that is doubled it may be the one across the crack, from which no way leads to the point.
-    for (unsigned int k = 0; k < points.size(); ++k)
-      if (first[k] == nobody && find_by_looking_everywhere(dofs, mapping, points[k], places[k]))
+      if (find_place(search, points[k], places[k]))
         finder[k] = me;
     Utilities::MPI::min(finder, communicator, first);
     const FiniteElement<dim> &fe = dofs.get_fe();
@@ -261,11 +235,7 @@ namespace PeriDeal
     for (unsigned int k = 0; k < points.size(); ++k)
       if (first[k] == me)
         {
-          const typename DoFHandler<dim>::active_cell_iterator cell(&dofs.get_triangulation(),
-                                                                    places[k].first->level(),
-                                                                    places[k].first->index(),
-                                                                    &dofs);
-          cell->get_dof_indices(indices);
+          places[k].first->get_dof_indices(indices);
           for (unsigned int v = 0; v < n_slots; ++v)
             own.insert(own.end(),
                        {static_cast<double>(k * n_slots + v),

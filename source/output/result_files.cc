@@ -26,9 +26,14 @@ namespace PeriDeal
     /** Files that a run writes, in its directory or in the folder of fields. Nothing else is ever removed. */
     bool is_result(const fs::path &path, const bool field)
     {
-      static const std::vector<std::string> names =
-        {"summary.json", "report.html", "probes.csv", "line.csv", "totals.csv", "scene.prm"};
-      const std::string name = path.filename().string();
+      static const std::vector<std::string> names = {"summary.json",
+                                                     "report.html",
+                                                     "probes.csv",
+                                                     "line.csv",
+                                                     "grid.csv",
+                                                     "totals.csv",
+                                                     "scene.prm"};
+      const std::string                     name  = path.filename().string();
       const bool series = begins_with(name, "finite_elements") || begins_with(name, "peridynamics");
       const std::string kind = path.extension().string();
       if (field)

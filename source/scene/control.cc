@@ -81,6 +81,13 @@ namespace PeriDeal
             "1000",
             "1",
             "A linear solver that needs more iterations ends the run with an error.");
+    declare(
+      "Direct solver up to",
+      EntryType::whole_number,
+      "2000",
+      "1",
+      "Multigrid solves a level of at most so many unknowns directly. Smaller systems need one iteration, whose cost is that of a "
+      "factorization.");
   }
 
 
@@ -90,6 +97,9 @@ namespace PeriDeal
     max_iterations = whole_number("Maximum iterations");
     if (max_iterations == 0)
       error("Maximum iterations", "found 0, needs 1 or more.");
+    direct_up_to = whole_number("Direct solver up to");
+    if (direct_up_to == 0)
+      error("Direct solver up to", "found 0, needs 1 or more.");
   }
 
 
@@ -124,6 +134,13 @@ namespace PeriDeal
             "",
             "length, length, 1",
             "`start ; end ; number of points`: evenly spaced points whose values go to line.csv.");
+    declare(
+      "Grid",
+      EntryType::list,
+      "",
+      "1",
+      "Numbers of cells, one per direction: the values at the vertices of such a lattice over the box go to grid.csv. Several "
+      "lattices are separated by `;`.");
   }
 
 
@@ -219,6 +236,50 @@ namespace PeriDeal
       }
     parse_write_times(end_time, steady);
     parse_points_of_output();
+  }
+
+
+  template <int dim>
+  void OutputControl<dim>::make_grid(const bool                box,
+                                     const dealii::Point<dim> &lower,
+                                     const dealii::Point<dim> &upper)
+  {
+    grid.clear();
+    const std::vector<std::string> lattices = split_list(text("Grid"), ';');
+    if (!lattices.empty() && !box)
+      error("Grid", "needs a body that is a box ('Shape' in section 'Domain').");
+    for (const std::string &lattice : lattices)
+      {
+        const std::vector<std::string> pieces = split_list(lattice, ',');
+        if (pieces.size() != dim)
+          error("Grid",
+                "found '" + lattice + "', needs " + std::to_string(dim) + " numbers of cells.");
+        std::vector<unsigned int> n_cells;
+        double                    n_points = static_cast<double>(grid.size());
+        double                    n        = 1.;
+        for (const std::string &piece : pieces)
+          {
+            n_cells.push_back(parse_whole_number(piece, where("Grid"), max_n_points));
+            if (n_cells.back() == 0)
+              error("Grid", "found 0, needs at least one cell in each direction.");
+            n *= n_cells.back() + 1.;
+          }
+        if (n_points + n > max_n_points)
+          error("Grid", "has more than " + std::to_string(max_n_points) + " points.");
+        for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k)
+          {
+            std::vector<double> p(dim);
+            std::size_t         rest = k;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                // the corners of the body exactly
+                const double s = static_cast<double>(rest % (n_cells[d] + 1)) / n_cells[d];
+                p[d]           = lower[d] * (1. - s) + upper[d] * s;
+                rest /= n_cells[d] + 1;
+              }
+            grid.push_back(p);
+          }
+      }
   }
 
 

@@ -305,6 +305,7 @@ namespace PeriDeal
                   !material.stores; // a conductor without capacitance is always in its steady state
     solver.parse();
     output.parse(time.end_time, time.steady);
+    output.make_grid(domain.shape == Shape::box, domain.lower, domain.upper);
     reference.parse();
     units.parse();
 

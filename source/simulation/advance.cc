@@ -49,6 +49,7 @@ namespace PeriDeal
     options.tolerance        = scene.time.tolerance;
     options.solver_tolerance = scene.solver.tolerance;
     options.max_iterations   = scene.solver.max_iterations;
+    options.direct_up_to     = scene.solver.direct_up_to;
     Timings::Scope scope(model.timings, "stepper");
     with_formulas([&] { model.stepper = make_stepper(scene.time.stepper, model.op(), options); });
     check_stepper(model.stepper->name(),
@@ -85,7 +86,8 @@ namespace PeriDeal
                                                    model->solution,
                                                    0.,
                                                    scene.solver.tolerance,
-                                                   scene.solver.max_iterations);
+                                                   scene.solver.max_iterations,
+                                                   scene.solver.direct_up_to);
         });
       }
   }

@@ -194,6 +194,7 @@ namespace PeriDeal
   {
     probe_readers.clear();
     line_readers.clear();
+    grid_readers.clear();
     const auto make =
       [&](const std::vector<std::vector<double>> &points, const std::string &entry, auto &readers) {
         if (!points.empty())
@@ -206,6 +207,7 @@ namespace PeriDeal
       };
     make(scene.output.probes, "Probes", probe_readers);
     make(scene.output.line, "Line", line_readers);
+    make(scene.output.grid, "Grid", grid_readers);
     readers_fit = true;
   }
 
@@ -216,6 +218,7 @@ namespace PeriDeal
     make_readers();
     probes = std::make_unique<PointTable>(scene.output.probes, dim);
     line   = std::make_unique<PointTable>(scene.output.line, dim);
+    grid   = std::make_unique<PointTable>(scene.output.grid, dim);
   }
 
 
@@ -304,6 +307,7 @@ namespace PeriDeal
       };
     add(scene.output.probes, probe_readers, *probes);
     add(scene.output.line, line_readers, *line);
+    add(scene.output.grid, grid_readers, *grid);
   }
 
 

@@ -212,17 +212,17 @@ namespace PeriDeal
                                          {"upper", coordinates(corners.second)},
                                          {"shape", shapes[static_cast<int>(scene.domain.shape)]}};
     summary["cells"]                  = mesh->n_global_active_cells();
-        if (scene.domain.coarsening > 0)
+    if (scene.domain.coarsening > 0)
       summary["mesh"] = {{"coarsening", scene.domain.coarsening}, {"adaptations", n_adaptations}};
-    summary["cracks"]                 = corners_of(scene.cracks.pieces(scene.cracks.end_time));
-    summary["sides"]                  = describe_sides(scene);
-    summary["steady"]                 = scene.time.steady;
-    summary["end time"]               = scene.time.steady ? 0. : scene.time.end_time;
-    summary["write times"]            = output_times();
-    summary["reference"]              = scene.reference.solution;
-    summary["notes"]                  = record->notes;
-    summary["fields"]                 = record->fields;
-    summary["wall time"]              = timings.all();
+    summary["cracks"]      = corners_of(scene.cracks.pieces(scene.cracks.end_time));
+    summary["sides"]       = describe_sides(scene);
+    summary["steady"]      = scene.time.steady;
+    summary["end time"]    = scene.time.steady ? 0. : scene.time.end_time;
+    summary["write times"] = output_times();
+    summary["reference"]   = scene.reference.solution;
+    summary["notes"]       = record->notes;
+    summary["fields"]      = record->fields;
+    summary["wall time"]   = timings.all();
     summary["memory of mesh"] =
       Utilities::MPI::sum(static_cast<double>(mesh->memory_consumption()), communicator);
     for (const auto &model : models)
@@ -241,6 +241,8 @@ namespace PeriDeal
             write_file(directory + "probes.csv", probes->text());
           if (!scene.output.line.empty())
             write_file(directory + "line.csv", line->text());
+          if (!scene.output.grid.empty())
+            write_file(directory + "grid.csv", grid->text());
           write_file(directory + "totals.csv", record->totals);
           write_file(directory + "scene.prm", scene_with_defaults());
           write_file(directory + "summary.json",

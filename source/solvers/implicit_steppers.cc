@@ -25,7 +25,7 @@ namespace PeriDeal
         , dt(fixed ? options.time_step : 0.)
         , tolerance(options.tolerance)
         , third_order_tolerance(local_tolerance(options.tolerance))
-        , solver(op, options.solver_tolerance, options.max_iterations)
+        , solver(op, options.solver_tolerance, options.max_iterations, options.direct_up_to)
       {
         for (Vector *v : {&next, &error, &residual, &change, &offset})
           op.initialize_vector(*v);

@@ -53,11 +53,13 @@ namespace PeriDeal
 
   LinearSolver::LinearSolver(const Operator    &op,
                              const double       tolerance,
-                             const unsigned int max_iterations)
+                             const unsigned int max_iterations,
+                             const unsigned int direct_up_to)
     : op(op)
     , tolerance(tolerance)
     , max_iterations(max_iterations)
-    , preconditioner(std::make_unique<MultigridPreconditioner>(op))
+    , direct_up_to(direct_up_to)
+    , preconditioner(std::make_unique<MultigridPreconditioner>(op, direct_up_to))
   {}
 
 
@@ -74,7 +76,7 @@ namespace PeriDeal
                       n_last_iterations > n_first_iterations + 3 + n_first_iterations / 3;
     if (worn)
       {
-        preconditioner = std::make_unique<MultigridPreconditioner>(op);
+        preconditioner = std::make_unique<MultigridPreconditioner>(op, direct_up_to);
         outdated       = false;
       }
     const bool   one_only = a == 0. || b == 0.; // C or K alone: built for the same one or not
@@ -142,7 +144,8 @@ namespace PeriDeal
                             Vector            &u,
                             const double       t,
                             const double       tolerance,
-                            const unsigned int max_iterations)
+                            const unsigned int max_iterations,
+                            const unsigned int direct_up_to)
   {
     AssertThrow(
       op.has_steady_state(),
@@ -156,7 +159,7 @@ namespace PeriDeal
     op.take_material_at(u);
     op.distribute(u, t);
     op.residual(rhs, u, t);
-    LinearSolver solver(op, tolerance, max_iterations);
+    LinearSolver solver(op, tolerance, max_iterations, direct_up_to);
     check_no_floating_part(op, solver.surrogate());
     unsigned int n_iterations = solver.solve(0., 1., change, rhs);
     u += change;

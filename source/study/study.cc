@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "study_rows.h"
 #include "study_tables.h"
 
 namespace PeriDeal
@@ -128,31 +129,37 @@ namespace PeriDeal
       const std::string status = result.status_of(row);
       return result.message.empty() ? status : status + ": " + result.message;
     }
-
-
-    void throw_if_wrong(const Study                  &study,
-                        const std::vector<bool>      &selected,
-                        const std::vector<RowResult> &results)
-    {
-      std::string  list;
-      unsigned int n_wrong = 0;
-      for (std::size_t k = 0; k < results.size(); ++k)
-        if (selected[k] && results[k].is_wrong(study.rows[k]))
-          {
-            ++n_wrong;
-            list += "\n  " + study.rows[k].name + ": " + outcome(results[k], study.rows[k]);
-          }
-      const auto n_rows = std::count(selected.begin(), selected.end(), true);
-      AssertThrow(n_wrong == 0,
-                  UserError(study.source + ": " + std::to_string(n_wrong) + " of " +
-                            std::to_string(n_rows) + " rows did not end as they should:" + list));
-    }
   } // namespace
 
 
-  void run_study(const Study &study, const StudyOptions &options, const MPI_Comm communicator)
+  void throw_if_wrong(const Study &study, const ComputedStudy &computed)
   {
-    const std::vector<bool>  selected = selected_rows(study, options);
+    std::string  list;
+    unsigned int n_wrong = 0;
+    for (std::size_t k = 0; k < computed.results.size(); ++k)
+      if (computed.selected[k] && computed.results[k].is_wrong(study.rows[k]))
+        {
+          ++n_wrong;
+          list += "\n  " + study.rows[k].name + ": " + outcome(computed.results[k], study.rows[k]);
+        }
+    const auto n_rows = std::count(computed.selected.begin(), computed.selected.end(), true);
+    AssertThrow(n_wrong == 0,
+                UserError(study.source + ": " + std::to_string(n_wrong) + " of " +
+                          std::to_string(n_rows) + " rows did not end as they should:" + list));
+  }
+
+
+  void print_line(const MPI_Comm communicator, const bool quiet, const std::string &text)
+  {
+    Log(communicator, quiet).print(text + "\n");
+  }
+
+
+  ComputedStudy compute_study(const Study        &study,
+                              const StudyOptions &options,
+                              const MPI_Comm      communicator)
+  {
+    ComputedStudy            computed;
     std::vector<std::string> names;
     for (const StudyRow &row : study.rows)
       names.push_back(row.name);
@@ -160,12 +167,13 @@ namespace PeriDeal
     AssertThrow(study.output.find_first_of("#\n\r\\") == std::string::npos,
                 UserError(study.source + ": \"output\" (or --output): '" + study.output +
                           "' must not contain #, \\ or line ends."));
-    std::vector<CheckedRow> rows;
+    const std::vector<bool> &selected = computed.selected = selected_rows(study, options);
+    std::vector<CheckedRow> &rows                         = computed.rows;
+    std::vector<RowResult>  &results                      = computed.results;
     for (std::size_t k = 0; k < study.rows.size(); ++k)
       rows.push_back(
         check_row(study, study.rows[k], study.output + "/rows/" + folders[k], communicator));
     make_directory(study, communicator);
-    std::vector<RowResult> results;
     for (const CheckedRow &row : rows)
       results.push_back(read_row(row, communicator));
 
@@ -193,7 +201,14 @@ namespace PeriDeal
                     readable_duration(results[k].record.value("wall time", 0.)) + "\n");
       }
     write_tables(study, rows, results, communicator);
-    log.print("Results: " + study.output + "\n");
-    throw_if_wrong(study, selected, results);
+    return computed;
+  }
+
+
+  void run_study(const Study &study, const StudyOptions &options, const MPI_Comm communicator)
+  {
+    const ComputedStudy computed = compute_study(study, options, communicator);
+    print_line(communicator, options.quiet, "Results: " + study.output);
+    throw_if_wrong(study, computed);
   }
 } // namespace PeriDeal

@@ -370,6 +370,19 @@ namespace PeriDeal
     expect_fault(fault(s, "Line = 0,0 ; 1,1 ; 1"), s, "Line", {"2 or more"});
     expect_fault(fault(s, "Line = 0,0 ; 0,0 ; 3"), s, "Line", {"same point"});
     expect_fault(fault(s, "Line = 0,0 ; 1,1.5 ; 3"), s, "Line", {"(1, 1.5) lies outside"});
+    expect_fault(fault(s, "Grid = 4"), s, "Grid", {"'4'", "2 numbers of cells"});
+    expect_fault(fault(s, "Grid = 4, 4 ; 0, 4"), s, "Grid", {"found 0"});
+    expect_fault(fault(s, "Grid = 4, x"), s, "Grid", {"'x'"});
+    expect_fault(fault(s, "Grid = 5000, 5000"), s, "Grid", {"more than 10000000 points"});
+    expect_fault(fault("subsection Domain\nset Shape = plate with hole\nend\n"
+                       "subsection Output\nset Grid = 4, 4\nend\n"),
+                 s,
+                 "Grid",
+                 {"a box"});
+    expect_fault(fault("Solver", "Direct solver up to = 0"),
+                 "Solver",
+                 "Direct solver up to",
+                 {"1 or more"});
 
     Scene<1> scene;
     scene.output.set("Write every", "0.1");

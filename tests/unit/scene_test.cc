@@ -74,6 +74,7 @@ subsection Output
   set Write at = 1.5, 0.5, 2, 0.5
   set Probes = 0,0.1 ; 0.5,0.1
   set Line = 0,-1 ; 0,1 ; 5
+  set Grid = 2, 3 ; 1, 1
 end
 subsection Reference
   set Solution = x*t
@@ -136,6 +137,12 @@ end
     ASSERT_EQ(scene.output.line.size(), 5u);
     EXPECT_EQ(scene.output.line[1], (std::vector<double>{0., -0.5}));
     EXPECT_EQ(scene.output.line[4], (std::vector<double>{0., 1.}));
+    ASSERT_EQ(scene.output.grid.size(), 12u + 4u); // x fastest, one lattice after the other
+    EXPECT_EQ(scene.output.grid[1][1], scene.domain.lower[1]);
+    EXPECT_EQ(scene.output.grid[2],
+              (std::vector<double>{scene.domain.upper[0], scene.domain.lower[1]}));
+    EXPECT_EQ(scene.output.grid[15],
+              (std::vector<double>{scene.domain.upper[0], scene.domain.upper[1]}));
     EXPECT_EQ(scene.reference.solution, "x*t");
     EXPECT_EQ(scene.units.length, "cm");
     EXPECT_EQ(scene.units.time, "s");

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <deal.II/base/point.h>
+
 #include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 
@@ -36,6 +38,7 @@ namespace PeriDeal
 
     double       tolerance      = 1e-10;
     unsigned int max_iterations = 1000;
+    unsigned int direct_up_to   = 2000; // unknowns of a level of multigrid
 
     void parse();
   };
@@ -53,12 +56,21 @@ namespace PeriDeal
       write_times; // sorted, without the end time unless given; from `Write at` and `Write every`
     std::vector<std::vector<double>> probes;
     std::vector<std::vector<double>> line; // the points of the line, evenly spaced, ends included
+    std::vector<std::vector<double>> grid; // from make_grid()
 
     /**
      * Throws UserError. @param end_time last time written by `Write every`; times beyond it are an
      * error.
      */
     void parse(const double end_time, const bool steady);
+
+    /**
+     * The vertices of the lattices of `Grid` in the box with these corners, one lattice after the other, x fastest. Throws UserError, also
+     * if the body is no @p box.
+     */
+    void make_grid(const bool                box,
+                   const dealii::Point<dim> &lower,
+                   const dealii::Point<dim> &upper);
 
   private:
     void parse_write_times(const double end_time, const bool steady);

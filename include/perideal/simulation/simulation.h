@@ -77,9 +77,9 @@ namespace PeriDeal
     std::unique_ptr<dealii::Triangulation<dim>>       mesh;
     std::vector<std::unique_ptr<ModelRun<dim>>>       models;
     std::vector<std::unique_ptr<FieldWriter<dim>>>    writers;
-    std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers;
+    std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers, grid_readers;
     std::unique_ptr<ExactSolution>                    exact;
-    std::unique_ptr<PointTable>                       probes, line;
+    std::unique_ptr<PointTable>                       probes, line, grid;
     std::unique_ptr<ResultRecord>                     record;
     Vector                        difference; // peridynamics minus finite elements, at the nodes
     std::unique_ptr<Grading<dim>> grading;    // only where the mesh is adapted

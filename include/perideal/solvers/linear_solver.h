@@ -19,9 +19,13 @@ namespace PeriDeal
   {
   public:
     /**
-     * @param tolerance relative residual. Throws UserError, naming the entries of section 'Solver', if it is not reached.
+     * @param tolerance    relative residual. Throws UserError, naming the entries of section 'Solver', if it is not reached.
+     * @param direct_up_to as of MultigridPreconditioner
      */
-    LinearSolver(const Operator &op, const double tolerance, const unsigned int max_iterations);
+    LinearSolver(const Operator    &op,
+                 const double       tolerance,
+                 const unsigned int max_iterations,
+                 const unsigned int direct_up_to = 2000);
 
     /** Returns the number of iterations. x is the start on entry; its entries that are not free must be zero. Collective. */
     unsigned int solve(const double  capacity_factor,
@@ -40,7 +44,7 @@ namespace PeriDeal
 
     const Operator                          &op;
     const double                             tolerance;
-    const unsigned int                       max_iterations;
+    const unsigned int                       max_iterations, direct_up_to;
     std::unique_ptr<MultigridPreconditioner> preconditioner;
     double                                   built_capacity = -1., built_stiffness = -1.;
     bool                                     outdated           = false;
@@ -56,5 +60,6 @@ namespace PeriDeal
                             Vector            &u,
                             const double       t,
                             const double       tolerance,
-                            const unsigned int max_iterations);
+                            const unsigned int max_iterations,
+                            const unsigned int direct_up_to = 2000);
 } // namespace PeriDeal

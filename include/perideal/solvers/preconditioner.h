@@ -17,7 +17,8 @@ namespace PeriDeal
   class MultigridPreconditioner
   {
   public:
-    explicit MultigridPreconditioner(const Operator &op);
+    /** @param direct_up_to the most unknowns of a level that is solved directly */
+    MultigridPreconditioner(const Operator &op, const unsigned int direct_up_to);
     ~MultigridPreconditioner();
 
     /** Set up for a C + b K. Collective. */
@@ -33,6 +34,7 @@ namespace PeriDeal
     struct Data;
 
     const Operator       &op;
+    const unsigned int    direct_up_to;
     std::unique_ptr<Data> data;
   };
 } // namespace PeriDeal

@@ -18,6 +18,7 @@ namespace PeriDeal
     double       tolerance        = 1e-4;
     double       solver_tolerance = 1e-10;
     unsigned int max_iterations   = 1000;
+    unsigned int direct_up_to     = 2000;
   };
 
 

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "work_evaluation.h"
+
+#include <perideal/base/user_error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <numeric>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    using Json   = RowResult::Json;
+    using Status = RowResult::Status;
+
+    /** The values of one model in grid.csv at the last time. */
+    std::vector<double> read_grid(const CheckedRow &row, const std::string &model)
+    {
+      std::ifstream       in(row.folder + "/grid.csv");
+      std::vector<double> values;
+      std::string         time;
+      for (std::string line; std::getline(in, line);)
+        {
+          const std::size_t first = line.find(','), second = line.find(',', first + 1);
+          if (second == std::string::npos ||
+              line.compare(first + 1, second - first - 1, model) != 0)
+            continue;
+          if (line.compare(0, first, time) != 0)
+            {
+              values.clear();
+              time = line.substr(0, first);
+            }
+          values.push_back(std::strtod(line.c_str() + line.rfind(',') + 1, nullptr));
+        }
+      AssertThrow(!values.empty(),
+                  UserError("work_precision: '" + row.folder + "/grid.csv' of the row '" +
+                            row.row.name + "' cannot be read. Compute it again with --redo."));
+      return values;
+    }
+
+
+    std::size_t n_vertices(const CellCounts &cells)
+    {
+      std::size_t n = 1;
+      for (const unsigned int count : cells)
+        n *= count + 1;
+      return n;
+    }
+
+
+    /** Values of the limit at the vertices of all lattices. */
+    using LatticeValues = std::map<CellCounts, std::vector<double>>;
+
+    LatticeValues split(const std::vector<double> &values, const std::vector<CellCounts> &lattices)
+    {
+      LatticeValues parts;
+      auto          begin = values.begin();
+      for (const CellCounts &cells : lattices)
+        {
+          const auto end = begin + static_cast<std::ptrdiff_t>(n_vertices(cells));
+          parts[cells].assign(begin, end);
+          begin = end;
+        }
+      return parts;
+    }
+
+
+    /** Near a crack's end finite elements are of first order at the nodes, without one of second: such an order is taken for what it is. */
+    double likely_order(const double observed)
+    {
+      return std::abs(observed - 1.) < 0.15 ? 1. : std::abs(observed - 2.) < 0.15 ? 2. : observed;
+    }
+
+
+    LatticeValues extrapolate(const WorkPlan      &plan,
+                              const ComputedStudy &computed,
+                              WorkReference       &reference)
+    {
+      std::vector<std::vector<double>> solutions;
+      for (std::size_t k = 0; k < plan.rows.size() && plan.rows[k].family == nullptr; ++k)
+        {
+          AssertThrow(
+            computed.results[k].status == Status::finished,
+            UserError("work_precision: the row '" + plan.rows[k].name +
+                      "' is not there, and without the reference nothing is known of errors" +
+                      (computed.results[k].message.empty() ?
+                         ". Compute it, too: --only has to name 'reference'." :
+                         ": " + computed.results[k].message)));
+          solutions.push_back(read_grid(computed.rows[k], "finite elements"));
+        }
+      const std::vector<CellCounts> lattices = lattices_of(plan);
+      std::size_t                   n_values = 0;
+      for (const CellCounts &cells : lattices)
+        n_values += n_vertices(cells);
+      for (const std::vector<double> &values : solutions)
+        AssertThrow(
+          values.size() == n_values,
+          UserError(
+            "work_precision: the reference belongs to other lattices. Compute it again with --redo."));
+      const auto difference = [&](const std::vector<double> &a, const std::vector<double> &b) {
+        double              worst = 0.;
+        const LatticeValues u = split(a, lattices), v = split(b, lattices);
+        for (const CellCounts &cells : lattices)
+          worst = std::max(worst, nodal_error(u.at(cells), v.at(cells), cells));
+        return worst;
+      };
+      reference.exact          = false;
+      reference.observed_order = order_of_differences(difference(solutions[0], solutions[1]),
+                                                      difference(solutions[1], solutions[2]));
+      reference.order          = likely_order(reference.observed_order);
+      AssertThrow(
+        reference.order > 0.2,
+        UserError(
+          "work_precision: finite elements on the three lattices of the reference do not converge; observed order " +
+          std::to_string(reference.observed_order) + ". Name finer ones with --reference."));
+      const auto rough    = richardson(solutions[0], solutions[1], reference.order);
+      const auto limit    = richardson(solutions[1], solutions[2], reference.order);
+      reference.own_error = difference(rough, limit);
+      return split(limit, lattices);
+    }
+
+
+    /**
+     * Numbers that one application of the operator multiplies: the entries of a matrix; of bonds that are kept apart what a matrix of them would have, two
+     * for each bond and one for each unknown, and what is stored besides.
+     */
+    unsigned long long applied_nonzeros(const WorkRow &row)
+    {
+      if (row.form == "matrix")
+        return row.nonzeros;
+      return row.nonzeros + row.unknowns + (row.form == "lattice" ? 2 * row.bonds : 0);
+    }
+
+
+    WorkRow costs_of(const WorkPlan::Row &planned, const RowResult &result, const bool steady)
+    {
+      const Json &model  = result.results["models"][planned.family->model];
+      const Json &record = result.record["models"][planned.family->model];
+      WorkRow     row;
+      row.name         = planned.name;
+      row.family       = planned.family;
+      row.cells        = planned.cells;
+      row.form         = model["operator form"].get<std::string>();
+      row.unknowns     = model["unknowns"].get<unsigned long long>();
+      row.bonds        = model.value("bonds", 0ull);
+      row.nonzeros     = model["nonzeros"].get<unsigned long long>();
+      row.iterations   = model["iterations"].get<unsigned long long>();
+      row.applications = model["operator applications"].get<unsigned long long>();
+      row.applied      = applied_nonzeros(row);
+      row.work         = static_cast<double>(row.applied) *
+                 static_cast<double>(steady ? row.iterations : row.applications);
+      row.memory      = model.value("memory", 0.);
+      row.peak_memory = result.record.value("peak memory", 0.);
+      row.set_up      = record["times"]["set-up"].get<double>();
+      row.solve       = record["times"]["stepping"].get<double>();
+      row.wall_time   = record["times"]["total"].get<double>();
+      return row;
+    }
+  } // namespace
+
+
+  std::vector<std::size_t> WorkResults::front(const bool in_time) const
+  {
+    return pareto_front(points(in_time));
+  }
+
+
+  std::vector<std::size_t> WorkResults::of_family(const WorkFamily &family) const
+  {
+    std::vector<std::size_t> some;
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      if (rows[k].family == &family)
+        some.push_back(k);
+    return some;
+  }
+
+
+  std::vector<WorkPoint> WorkResults::points(const std::vector<std::size_t> &some,
+                                             const bool                      in_time) const
+  {
+    std::vector<WorkPoint> list;
+    for (const std::size_t k : some)
+      list.push_back({in_time ? rows[k].wall_time : rows[k].work, rows[k].error});
+    return list;
+  }
+
+
+  std::vector<WorkPoint> WorkResults::points(const bool in_time) const
+  {
+    std::vector<std::size_t> all(rows.size());
+    std::iota(all.begin(), all.end(), std::size_t(0));
+    return points(all, in_time);
+  }
+
+
+  std::vector<CellCounts> lattices_of(const WorkPlan &plan)
+  {
+    std::vector<CellCounts> lattices;
+    for (const WorkPlan::Row &row : plan.rows)
+      if (row.family != nullptr &&
+          std::find(lattices.begin(), lattices.end(), row.cells) == lattices.end())
+        lattices.push_back(row.cells);
+    std::sort(lattices.begin(), lattices.end());
+    return lattices;
+  }
+
+
+  WorkResults evaluate_work(const CrackedBox    &box,
+                            const WorkPlan      &plan,
+                            const ComputedStudy &computed)
+  {
+    WorkResults   results;
+    LatticeValues limit;
+    if (!plan.reference.empty())
+      limit = extrapolate(plan, computed, results.reference);
+    for (std::size_t k = 0; k < plan.rows.size(); ++k)
+      {
+        const WorkPlan::Row &planned = plan.rows[k];
+        if (planned.family == nullptr || computed.results[k].status != Status::finished)
+          continue;
+        results.steady                   = computed.results[k].results["steady"].get<bool>();
+        WorkRow                   row    = costs_of(planned, computed.results[k], results.steady);
+        const std::vector<double> values = read_grid(computed.rows[k], planned.family->model);
+        const std::vector<double> expected =
+          plan.reference.empty() ? read_grid(computed.rows[k], "exact") : limit.at(planned.cells);
+        AssertThrow(values.size() == n_vertices(planned.cells) && expected.size() == values.size(),
+                    UserError("work_precision: '" + computed.rows[k].folder +
+                              "/grid.csv' is not whole. Compute the row again with --redo."));
+        row.error = nodal_error(values, expected, planned.cells);
+        for (unsigned int d = 0; d < box.dim(); ++d)
+          row.spacing = std::max(row.spacing, (box.upper[d] - box.lower[d]) / planned.cells[d]);
+        results.rows.push_back(row);
+      }
+    results.dominated_by      = dominating_points(results.points(false));
+    results.dominated_in_time = dominating_points(results.points(true));
+    return results;
+  }
+} // namespace PeriDeal

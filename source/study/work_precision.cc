@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/output/result_files.h>
+#include <perideal/study/work_precision.h>
+
+#include <set>
+
+#include "work_tables.h"
+
+namespace PeriDeal
+{
+  namespace
+  {
+    /** What the study has to know of a scene. */
+    struct SceneFacts
+    {
+      CrackedBox  box;
+      bool        exact = false, moving_cracks = false;
+      std::string title;
+    };
+
+
+    template <int dim>
+    SceneFacts facts_of(const Scene<dim> &scene)
+    {
+      const std::string who = "work_precision: ";
+      AssertThrow(dim > 1,
+                  UserError(who + "'Dimension' is 1, where a crack has no ends; it needs 2 or 3."));
+      AssertThrow(
+        !scene.cracks.cracks.empty(),
+        UserError(
+          who +
+          "the scene has no crack ('Segments' or 'Polygons' in section 'Cracks'), with which the "
+          "methods that it compares have to deal."));
+      AssertThrow(
+        scene.domain.shape == Shape::box,
+        UserError(
+          who +
+          "'Shape' in section 'Domain' has to be box: other bodies change with the lattice, or have none."));
+      AssertThrow(
+        !scene.cracks.conduct() || scene.cracks.contact_conductance >= 0.,
+        UserError(
+          who +
+          "'Transmission' in section 'Cracks' is a share of bonds of one horizon, another crack on each "
+          "lattice. Give 'Contact conductance' in its place."));
+      SceneFacts facts;
+      facts.title         = scene.general.title;
+      facts.exact         = !scene.reference.solution.empty();
+      facts.moving_cracks = scene.cracks.change();
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          facts.box.lower.push_back(scene.domain.lower[d]);
+          facts.box.upper.push_back(scene.domain.upper[d]);
+          facts.box.cells.push_back(scene.domain.cells[d]);
+        }
+      for (const auto &crack : scene.cracks.cracks)
+        {
+          facts.box.cracks.emplace_back();
+          for (const dealii::Point<dim> &corner : crack)
+            {
+              facts.box.cracks.back().emplace_back();
+              for (unsigned int d = 0; d < dim; ++d)
+                facts.box.cracks.back().back().push_back(corner[d]);
+            }
+        }
+      return facts;
+    }
+
+
+    /** What is the same in all rows, stronger than the scene. */
+    std::vector<Setting> common_settings()
+    {
+      return {
+        {"Domain/Node spacing", ""},
+        {"Domain/Nodes", "vertices"},
+        {"Peridynamics/Flux treatment", "natural"},
+        {"Finite elements/Degree", "1"},
+        {"Coupling/Certificate", "false"},
+        {"Solver/Direct solver up to", "100"}, // so that iterations compare on coarse lattices, too
+        {"Output/Fields", "none"},
+        {"Output/Write at", ""},
+        {"Output/Write every", ""},
+        {"Output/Probes", ""},
+        {"Output/Line", ""}};
+    }
+
+
+    /** The entries that no override may touch. */
+    std::set<std::string> decided_entries()
+    {
+      std::set<std::string> entries = {"Domain/Cells", "Output/Grid"};
+      for (const Setting &setting : common_settings())
+        entries.insert(setting.first);
+      for (const WorkFamily &family : work_families())
+        for (const Setting &setting : family.settings)
+          entries.insert(setting.first);
+      return entries;
+    }
+
+
+    /** Of the reference: as the finite elements it is compared with, but with the error in time out of sight. */
+    std::vector<Setting> reference_settings(const WorkPlan &plan)
+    {
+      std::string grid;
+      for (const CellCounts &cells : lattices_of(plan))
+        grid += (grid.empty() ? "" : " ; ") + to_text(cells);
+      std::vector<Setting> settings = work_families().front().settings;
+      settings.emplace_back("Time/Tolerance", "1e-7");
+      settings.emplace_back("Output/Grid", grid);
+      return settings;
+    }
+
+
+    void add_rows(Study &study, const WorkPlan &plan, const std::string &scene)
+    {
+      for (const WorkPlan::Row &planned : plan.rows)
+        {
+          StudyRow row;
+          row.name     = planned.name;
+          row.scene    = scene;
+          row.sweep    = planned.family == nullptr ? "reference" : planned.family->name;
+          row.group    = planned.family == nullptr ? "reference" : planned.family->model;
+          row.settings = common_settings();
+          row.settings.emplace_back("Domain/Cells", to_text(planned.cells));
+          auto own = planned.family == nullptr ? reference_settings(plan) :
+                                                 planned.family->settings;
+          if (planned.family != nullptr)
+            own.emplace_back("Output/Grid", to_text(planned.cells));
+          row.settings.insert(row.settings.end(), own.begin(), own.end());
+          study.rows.push_back(row);
+        }
+      study.columns = {"Domain/Cells",
+                       "Cracks/Mesh",
+                       "Peridynamics/Horizon ratio",
+                       "Peridynamics/Boundary treatment",
+                       "Peridynamics/Surface correction",
+                       "Coupling/Zone"};
+    }
+
+
+    /** On rank 0; a user's error becomes everybody's. Returns the report. */
+    std::string write_results(const Study         &study,
+                              const CrackedBox    &box,
+                              const WorkPlan      &plan,
+                              const ComputedStudy &computed,
+                              const MPI_Comm       communicator)
+    {
+      std::string message, report;
+      if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+        try
+          {
+            const WorkResults results = evaluate_work(box, plan, computed);
+            write_file(study.output + "/work_precision.csv", work_csv(results));
+            write_file(study.output + "/work_precision.json", work_json(study, plan, results));
+            report = work_report(plan, results);
+          }
+        catch (const UserError &error)
+          {
+            message = error.message();
+          }
+      throw_on_all_if_any(communicator, message);
+      return report;
+    }
+  } // namespace
+
+
+  void run_work_precision(const WorkPrecisionOptions &options, const MPI_Comm communicator)
+  {
+    Study             study = sweep_of_scenes({options.scene}, {}, communicator);
+    const std::string scene = study.rows.front().scene;
+    study.varied            = decided_entries();
+    override_rows(study, options.overrides); // for its errors
+    std::vector<std::string> overrides = options.overrides;
+    for (const auto &[entry, value] : common_settings())
+      overrides.push_back(entry + "=" + value);
+    SceneFacts facts;
+    with_scene(read_scene(scene, overrides, communicator),
+               [&](const auto &parsed) { facts = facts_of(parsed); });
+    const WorkPlan plan = plan_work(facts.box,
+                                    facts.exact,
+                                    facts.moving_cracks,
+                                    options.cells,
+                                    options.reference,
+                                    options.budget);
+    study.rows.clear();
+    study.title  = facts.title + ": work and precision";
+    study.output = options.output.empty() ? study.output + "_work_precision" : options.output;
+    add_rows(study, plan, scene);
+    override_rows(study, options.overrides);
+    print_line(communicator,
+               options.study.quiet,
+               study.title + ": " + std::to_string(plan.rows.size()) + " rows, " +
+                 std::to_string(plan.left_out.size()) + " left out");
+    const ComputedStudy computed = compute_study(study, options.study, communicator);
+    const std::string   report   = write_results(study, facts.box, plan, computed, communicator);
+    print_line(communicator, options.study.quiet, report);
+    print_line(communicator, options.study.quiet, "Results: " + study.output);
+    throw_if_wrong(study, computed);
+  }
+} // namespace PeriDeal
