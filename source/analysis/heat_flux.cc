@@ -43,7 +43,7 @@ namespace PeriDeal
   }
 
 
-    namespace
+  namespace
   {
     /** On a graded mesh beside larger cells, where rows of K are not those of a lattice, the flux is that of the elements. */
     template <int dim>

@@ -47,6 +47,7 @@ namespace PeriDeal
               const double kappa =
                 material.conductivity.value(values.quadrature_point(q), temperatures[q]);
               result.energy += kappa * gradients[q].norm_square() * values.JxW(q);
+              result.size += kappa * temperatures[q] * temperatures[q] * values.JxW(q);
               for (unsigned int d = 0; d < dim; ++d)
                 {
                   const double defect = recovered[d][q] + kappa * gradients[q][d];
@@ -55,6 +56,7 @@ namespace PeriDeal
             }
         }
     result.energy = Utilities::MPI::sum(result.energy, dofs.get_communicator());
+    result.size   = Utilities::MPI::sum(result.size, dofs.get_communicator());
     return result;
   }
 

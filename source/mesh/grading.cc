@@ -33,11 +33,13 @@ namespace PeriDeal
         times.push_back(end * k / n_even);
       for (unsigned int k = 1; k <= n_early; ++k)
         times.push_back(end / n_even / (1u << k));
-      const double       advance = history.longest_advance();
-      const unsigned int stride =
-        advance > 0. ? static_cast<unsigned int>(std::max(1., scene.horizon() / advance)) : 1;
-      for (std::size_t k = 0; k < history.events().size(); k += stride)
-        times.push_back(history.events()[k]);
+      const double advance = history.longest_advance();
+      if (advance > 0.) // else cracks open or close where they are
+        {
+          const auto stride = static_cast<unsigned int>(std::max(1., scene.horizon() / advance));
+          for (std::size_t k = 0; k < history.events().size(); k += stride)
+            times.push_back(history.events()[k]);
+        }
       if (scene.time.time_step > 0.) // steps of fixed size are not divided
         for (double &t : times)
           t = scene.time.time_step * std::ceil(t / scene.time.time_step * (1. - 1e-12));
@@ -53,8 +55,9 @@ namespace PeriDeal
 
   template <int dim>
   Grading<dim>::Grading(const Scene<dim> &scene, const unsigned int finest)
-    : zone(scene.domain.fine_by_formula ? Zone<dim>(scene.domain.fine) :
-                                          Zone<dim>(scene.coupling, scene.horizon()))
+    : zone(scene.coupling, scene.horizon())
+    , by_zone(true)
+    , by_name(scene.domain.fine_by_formula)
     , history(scene.crack_history())
     , adaptations(adaptation_times(scene, history))
     , finest(finest)
@@ -63,6 +66,12 @@ namespace PeriDeal
   {
     for (unsigned int d = 0; d < dim; ++d)
       spacing = std::max(spacing, scene.domain.spacing()[d]);
+    const auto &models = scene.general.models;
+    if (by_name)
+      {
+        named   = Zone<dim>(scene.domain.fine);
+        by_zone = std::find(models.begin(), models.end(), Model::coupled) != models.end();
+      }
     set_time(0.);
   }
 
@@ -92,7 +101,15 @@ namespace PeriDeal
     constexpr double slack = 1e-6;
     const double     rim   = 2. * spacing * ((1u << (finest - level)) - 1. + slack),
                  half      = 0.5 * cell->diameter();
-    return zone.distance(cell->center(), half + 2. * rim) < half + rim;
+    return distance(cell->center(), half + 2. * rim) < half + rim;
+  }
+
+
+  template <int dim>
+  double Grading<dim>::distance(const Point<dim> &p, const double farthest) const
+  {
+    return std::min(by_zone ? zone.distance(p, farthest) : farthest,
+                    by_name ? named.distance(p, farthest) : farthest);
   }
 
 

@@ -75,7 +75,6 @@ namespace PeriDeal
     }
 
 
-
     /** Halvings that all cell counts allow, at most those that leave at least one coarse cell. */
     template <int dim>
     unsigned int common_halvings(const std::array<unsigned int, dim> &cells)
@@ -279,6 +278,13 @@ namespace PeriDeal
                           " times only, since the crack has to lie on faces of the largest ones."));
     // p4est sorts its coarse cells in a time that grows with the square of their number.
     const bool every_cell = dim == 1 || coarse.cells.size() > most_coarse_cells;
+    AssertThrow(
+      !every_cell || scene.coupling.zone != ZoneKind::adaptive || domain.coarsening == 0,
+      UserError(
+        "'Zone = adaptive' in section 'Coupling' needs a mesh that p4est distributes, of at most " +
+        std::to_string(most_coarse_cells) + " coarse cells; this one has " +
+        std::to_string(coarse.cells.size()) +
+        ". Choose 'Cells' (section 'Domain') divisible by a higher power of two."));
     if (dim > 1 && every_cell && Utilities::MPI::n_mpi_processes(communicator) > 1)
       notes.push_back("Every process keeps all cells of the mesh, since it has " +
                       std::to_string(coarse.cells.size()) +

@@ -35,7 +35,7 @@ namespace PeriDeal
   }
 
 
-    template <int dim>
+  template <int dim>
   std::vector<bool> hanging_nodes(const Nodes<dim> &nodes)
   {
     Vector marks(nodes.partitioner());

@@ -300,7 +300,7 @@ namespace PeriDeal
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
     if (!bonds_apart)
-            DoFTools::make_sparsity_pattern(dofs, pattern, constraints, false);
+      DoFTools::make_sparsity_pattern(dofs, pattern, constraints, false);
     if (coupling)
       add_bond_pattern(pattern);
     pattern.compress();

@@ -263,8 +263,8 @@ namespace PeriDeal
     IndexSet        relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
-        DoFTools::make_sparsity_pattern(dofs, pattern, constraints, false);
-    const auto                                  &layout = *coupling->families().nodes().partitioner();
+    DoFTools::make_sparsity_pattern(dofs, pattern, constraints, false);
+    const auto                               &layout = *coupling->families().nodes().partitioner();
     std::vector<typename Coupling<dim>::Bond> bonds;
     std::vector<types::global_dof_index>      columns;
     std::vector<double>                       values;

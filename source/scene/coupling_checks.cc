@@ -75,22 +75,40 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Scene<dim>::check_adaptive_zone() const
+  {
+    const std::string entry = coupling.where("Zone");
+    if (coupling.zone != ZoneKind::adaptive)
+      return;
+    if (!runs(*this, Model::coupled))
+      entry_error(entry,
+                  "is 'adaptive', but 'Models' has no 'coupled', which the mesh would follow.");
+    if (domain.coarsening == 0)
+      entry_error(
+        entry,
+        "'adaptive' changes the mesh, but 'Coarsening' in section 'Domain' is 0: no cell may be "
+        "larger than those of 'Cells'. Give it at least 1.");
+    if (cracks.mesh == CrackMesh::faces)
+      entry_error(
+        entry,
+        "'adaptive' is for cracks that lie across cells; 'Mesh' in section 'Cracks' is 'faces'.");
+    if (time.time_step > 0. && (time.stepper == "euler" || time.stepper == "rk4"))
+      entry_error(
+        entry,
+        "'adaptive' changes the mesh and with it the stability bound of '" + time.stepper +
+          "', for which 'Time step' in section 'Time' is given. Use 'Time step = auto' or 'Stepper = auto'.");
+  }
+
+
+  template <int dim>
   void Scene<dim>::check_coupling() const
   {
+    check_adaptive_zone();
     if (!runs(*this, Model::coupled))
       return;
     const auto list = obstacles_to_bonds_on_elements(*this);
     if (!list.empty())
       entry_error(list.front().where, list.front().reason + ", for 'Models = coupled'.");
-    if (coupling.zone == ZoneKind::adaptive && domain.coarsening == 0)
-      entry_error(
-        coupling.where("Zone"),
-        "'adaptive' changes the mesh, but 'Coarsening' in section 'Domain' is 0: no cell may be "
-        "larger than those of 'Cells'. Give it at least 1.");
-    if (coupling.zone == ZoneKind::adaptive && cracks.mesh == CrackMesh::faces)
-      entry_error(
-        coupling.where("Zone"),
-        "'adaptive' is for cracks that lie across cells; 'Mesh' in section 'Cracks' is 'faces'.");
     if (dim == 1 && coupling.zone == ZoneKind::near_cracks)
       entry_error(
         coupling.where("Zone"),
@@ -135,9 +153,6 @@ namespace PeriDeal
         entry,
         found +
           "'Scheme' in section 'Coupling' is not 'exchange', the only one for graded meshes.");
-    if (coupling.zone == ZoneKind::adaptive && !runs(*this, Model::coupled))
-      entry_error(coupling.where("Zone"),
-                  "is 'adaptive', but 'Models' has no 'coupled', which the mesh would follow.");
     const bool near_cracks = coupling.zone == ZoneKind::near_cracks ||
                              coupling.zone == ZoneKind::adaptive;
     if (!domain.fine_by_formula && near_cracks && cracks.cracks.empty())
@@ -154,6 +169,9 @@ namespace PeriDeal
   template void Scene<1>::resolve_boundary_treatment();
   template void Scene<2>::resolve_boundary_treatment();
   template void Scene<3>::resolve_boundary_treatment();
+  template void Scene<1>::check_adaptive_zone() const;
+  template void Scene<2>::check_adaptive_zone() const;
+  template void Scene<3>::check_adaptive_zone() const;
   template void Scene<1>::check_coupling() const;
   template void Scene<2>::check_coupling() const;
   template void Scene<3>::check_coupling() const;

@@ -56,6 +56,8 @@ namespace PeriDeal
     overlap            = number("Overlap");
     certificate        = boolean("Certificate");
     adaptive_tolerance = positive_number("Adaptive tolerance");
+    if (is_given("Adaptive tolerance") && trimmed(text("Zone")) != "adaptive")
+      error("Adaptive tolerance", "is for 'Zone = adaptive'; 'Zone' is '" + text("Zone") + "'.");
     if (overlap < 0.)
       error("Overlap", "found " + text("Overlap") + ", needs 0 or more horizons.");
     parse_zone();

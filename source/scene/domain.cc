@@ -81,18 +81,20 @@ namespace PeriDeal
             "",
             "length",
             "Edge length of the cells, instead of Cells. It must divide every edge of the box.");
-    declare("Coarsening",
-            EntryType::whole_number,
-            "0",
-            "1",
-            "How often cells may be merged, two in each direction, away from where they have to stay as fine as `Cells` says: a graded mesh "
-            "with hanging nodes. `Cells` must allow as many halvings. Only for a box, and not for peridynamics alone.");
-    declare("Fine where",
-            EntryType::text,
-            "auto",
-            "",
-            "With `Coarsening`: cells stay fine where this formula of x, y, z is greater than 0. `auto`: in the zone of section "
-            "`Coupling`, thus around cracks. Beyond, there are at least two cells of each size.");
+    declare(
+      "Coarsening",
+      EntryType::whole_number,
+      "0",
+      "1",
+      "How often cells may be merged, two in each direction, away from where they have to stay as fine as `Cells` says: a graded mesh "
+      "with hanging nodes. `Cells` must allow as many halvings. Only for a box, and not for peridynamics alone.");
+    declare(
+      "Fine where",
+      EntryType::text,
+      "auto",
+      "",
+      "With `Coarsening`: cells stay fine where this formula of x, y, z is greater than 0, and in the zone of section `Coupling` if "
+      "the model `coupled` runs. `auto`: in that zone, thus around cracks, for all models. Beyond, there are at least two cells of each size.");
     declare("Nodes",
             EntryType::choice,
             "vertices",

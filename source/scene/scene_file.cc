@@ -158,7 +158,7 @@ namespace PeriDeal
     /** The path as it is, or beside the scene file if there is nothing at that path but something there. */
     std::string found_near(const std::string &path, const std::string &scene_file)
     {
-      namespace fs = std::filesystem;
+      namespace fs          = std::filesystem;
       const fs::path beside = fs::path(scene_file).parent_path() / path;
       return !path.empty() && !fs::exists(path) && fs::exists(beside) ? beside.string() : path;
     }
@@ -186,7 +186,9 @@ namespace PeriDeal
             all << in.rdbuf();
           text = all.str();
           if (!in)
-            message = "The scene file '" + file_name + "' cannot be read. Check its path, which is relative to the working directory.";
+            message =
+              "The scene file '" + file_name +
+              "' cannot be read. Check its path, which is relative to the working directory.";
           else if (trimmed(text).empty())
             message = "The scene file '" + file_name + "' is empty.";
           else if (text.find('\0') != std::string::npos)

@@ -98,7 +98,7 @@ namespace PeriDeal
   {}
 
 
-    template <int dim>
+  template <int dim>
   Zone<dim>::Zone(const Expression &formula)
     : kind(ZoneKind::formula)
     , formula(formula)

@@ -171,7 +171,6 @@ namespace PeriDeal
   {
     if (!grading)
       return false;
-    Timings::Scope scope(timings, "mesh adaptation");
     grading->set_time(t);
     const auto    guide = std::find_if(models.begin(), models.end(), [](const auto &model) {
       return model->name() == to_string(Model::coupled);
@@ -180,13 +179,20 @@ namespace PeriDeal
     u.update_ghost_values();
     const RecoveryIndicators found = (*guide)->indicators(u);
     u.set_ghost_state(false);
-    const double goal   = scene.coupling.adaptive_tolerance;
-    const double target = goal * goal * found.energy / mesh->n_global_active_cells();
-    if (!grading->mark(*mesh, found.squares, target))
-      return false;
-    for (auto &model : models)
-      model->before_remesh();
-    mesh->execute_coarsening_and_refinement();
+    // A uniform temperature has fluxes of round-off only.
+    constexpr double round_off = 1e-20;
+    const double     least     = round_off * found.size / scene.domain.spacing().norm_square();
+    const double     goal      = scene.coupling.adaptive_tolerance;
+    const double     target =
+      goal * goal * std::max(found.energy, least) / mesh->n_global_active_cells();
+    {
+      Timings::Scope scope(timings, "mesh adaptation");
+      if (!grading->mark(*mesh, found.squares, target))
+        return false;
+      for (auto &model : models)
+        model->before_remesh();
+      mesh->execute_coarsening_and_refinement();
+    }
     with_formulas([&] {
       for (auto &model : models)
         {

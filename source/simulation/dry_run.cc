@@ -42,6 +42,8 @@ namespace PeriDeal
                         " operator applications, " +
                         readable_duration(n * time_of_application(*model)));
       }
+    if (grading)
+      progress.line("With 'Zone = adaptive' all figures are those of the mesh at the start.");
     for (const std::string &note : record->notes)
       progress.note(note);
     progress.line("The scene is valid. Nothing was computed.");

@@ -82,8 +82,16 @@ namespace PeriDeal
             Vector volumes(u);
             integrate(initial, u);
             integrate([](const Point<dim> &) { return 1.; }, volumes);
+            if (scene.domain.coarsening > 0)
+              {
+                fem->condense(u);
+                fem->condense(volumes);
+                fem->set_hanging(volumes, 1.);
+              }
             for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
               u.local_element(i) /= volumes.local_element(i);
+            if (scene.domain.coarsening > 0)
+              move_to_nodes(initial, volumes, u);
           }
         else
           for_each_node(
@@ -115,9 +123,11 @@ namespace PeriDeal
         fem->initialize_vector(u);
         transfer->interpolate(u);
         transfer.reset();
-        fem->distribute(u, t);
+        fem->interpolate_hanging(u);
+        const double lost = heat_before - fem->heat(u);
+        fem->distribute(u, t); // what new nodes on Dirichlet sides get comes from outside
         if (!steady)
-          keep_heat(t);
+          give_heat(lost, t);
       }
 
       std::vector<OutputField> derived_fields(const Vector &u, const double) const override
@@ -240,14 +250,53 @@ namespace PeriDeal
 
 
       /**
+       * Where sizes of cells meet, the mean around a node is that of a place beside it, which shifts smooth fields: correct by the difference of the values there.
+       * On the surface of the body the mean stays, as on uniform meshes.
+       */
+      void move_to_nodes(const std::function<double(const Point<dim> &)> &initial,
+                         const Vector                                    &volumes,
+                         Vector                                          &u) const
+      {
+        std::array<Vector, dim> centers;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            fem->initialize_vector(centers[d]);
+            integrate([d](const Point<dim> &p) { return p[d]; }, centers[d]);
+            fem->condense(centers[d]);
+          }
+        Vector on_surface(u);
+        on_surface = 0.;
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned() && cell->at_boundary())
+            {
+              cell->get_dof_indices(indices);
+              for (const unsigned int f : cell->face_indices())
+                for (unsigned int i = 0; i < indices.size() && cell->face(f)->at_boundary(); ++i)
+                  if (element.has_support_on_face(i, f))
+                    on_surface(indices[i]) = 1.;
+            }
+        on_surface.compress(VectorOperation::max);
+        const double apart = 1e-9 * scene.domain.spacing().norm();
+        const Vector mean(u); // nodes are visited from each of their cells
+        for_each_node([&](const unsigned int i, const Point<dim> &p) {
+          Point<dim> center;
+          for (unsigned int d = 0; d < dim; ++d)
+            center[d] = centers[d].local_element(i) / volumes.local_element(i);
+          if (on_surface.local_element(i) == 0. && center.distance(p) > apart)
+            u.local_element(i) = mean.local_element(i) + initial(p) - initial(center);
+        });
+      }
+
+
+      /**
        * Where cells have been merged the interpolant holds a little more or less heat than the finer field did. The difference goes to the nodes of merged cells,
        * each by the same temperature.
        */
-      void keep_heat(const double t)
+      void give_heat(const double lost, const double t)
       {
-        Vector      &u    = this->solution;
-        const double lost = heat_before - fem->heat(u);
-        Vector       share(u);
+        Vector &u = this->solution;
+        Vector  share(u);
         share                                        = 0.;
         const double                         spacing = scene.domain.spacing()[0];
         std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());

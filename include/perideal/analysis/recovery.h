@@ -15,8 +15,10 @@ namespace PeriDeal
   /** By how much fluxes that are smooth differ from those of the elements. */
   struct RecoveryIndicators
   {
-    std::vector<double> squares;     // integral of |q* - q|^2/kappa over each owned cell, by active cell index
-    double              energy = 0.; // integral of |q|^2/kappa over the body
+    std::vector<double>
+           squares;     // integral of |q* - q|^2/kappa over each owned cell, by active cell index
+    double energy = 0.; // integral of |q|^2/kappa over the body
+    double size   = 0.; // integral of kappa u^2, by which round-off is told from a flux
   };
 
   /**

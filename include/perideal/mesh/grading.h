@@ -15,8 +15,9 @@ namespace PeriDeal
 {
   /**
    * Which cells of a box have to be as fine as its lattice, and how large the others may be: at least two cells of each size lie between the fine part and
-   * cells twice as large. The fine part is that of `Fine where`, or the zone of section `Coupling` around the cracks as they will be: at the end of the run, or, with
-   * `Zone = adaptive`, at the time when the mesh is adapted next. The same on every process; nothing is collective unless stated.
+   * cells twice as large. The fine part is the zone of section `Coupling` around the cracks as they will be: at the end of the run, or, with
+   * `Zone = adaptive`, at the time when the mesh is adapted next; and that of `Fine where`, which alone counts for finite elements alone. The same on every process;
+   * nothing is collective unless stated.
    */
   template <int dim>
   class Grading
@@ -48,7 +49,10 @@ namespace PeriDeal
               const double                target) const;
 
   private:
-    Zone<dim>           zone;
+    double distance(const dealii::Point<dim> &p, const double farthest) const;
+
+    Zone<dim>           zone, named; // of section `Coupling`, of `Fine where`
+    bool                by_zone, by_name;
     CrackHistory<dim>   history;
     std::vector<double> adaptations; // times, ascending
     unsigned int        finest, coarsest;
@@ -58,8 +62,8 @@ namespace PeriDeal
 
   /** The work that an active cell makes. */
   template <int dim>
-  using CellWork = std::function<unsigned int(
-    const typename dealii::Triangulation<dim>::cell_iterator &cell)>;
+  using CellWork =
+    std::function<unsigned int(const typename dealii::Triangulation<dim>::cell_iterator &cell)>;
 
   /**
    * The nonzeros of a node's row in all models of a scene, by the place of the cell: in a zone also those of its bonds. With a zone that follows

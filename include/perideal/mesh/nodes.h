@@ -81,7 +81,7 @@ namespace PeriDeal
     /** Some lattice sites carry two nodes, because a crack was cut into the mesh. */
     bool has_doubled_nodes() const;
 
-        /** Some cells of the lattice are merged (`Coarsening`), so that sites in them have no node. */
+    /** Some cells of the lattice are merged (`Coarsening`), so that sites in them have no node. */
     bool is_graded() const;
 
     /** A node whose value follows from its neighbours', because it lies on the side of a larger cell. For owned nodes. */

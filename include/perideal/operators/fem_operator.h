@@ -28,7 +28,7 @@ namespace PeriDeal
    * crack's transmission (doc/theory.md). With `Surface correction = crack scaling` the cell matrices next to cracks are multiplied by the mean of their vertices' factors.
    * `removed`: cut cells conduct nothing.
    *
-      * With a coupling the cells keep what it leaves of them, and its bonds are added: the model `coupled`. Then the elements are Q1, and vectors
+   * With a coupling the cells keep what it leaves of them, and its bonds are added: the model `coupled`. Then the elements are Q1, and vectors
       * have the horizon-wide halo of the nodes. Otherwise vectors have the locally relevant dofs as ghosts.
    *
    * Hanging nodes of a graded mesh follow from their neighbours: K is C^T K C, and their rows are those of unknowns that are not free.
@@ -103,6 +103,9 @@ namespace PeriDeal
     /** Set the owned hanging nodes of v to what follows from their neighbours. Collective. */
     void interpolate_hanging(Vector &v) const;
 
+    /** Give what owned hanging nodes have of an integral, a load for instance, to the nodes they follow from. Collective. */
+    void condense(Vector &loads) const;
+
     /** Set the entries of v for owned hanging nodes. Not collective. */
     void set_hanging(Vector &v, const double value) const;
 
@@ -147,7 +150,6 @@ namespace PeriDeal
     void     add_to(dealii::TrilinosWrappers::SparseMatrix             &matrix,
                     const dealii::FullMatrix<double>                   &of_cell,
                     const std::vector<dealii::types::global_dof_index> &indices) const;
-    void     condense(Vector &loads) const;
     void     find_diagonal();
     void     extract_remainder();
     void     add_remainder(Vector            &y,

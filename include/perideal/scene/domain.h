@@ -8,7 +8,6 @@
 #include <perideal/scene/expression.h>
 #include <perideal/scene/section.h>
 
-
 #include <array>
 #include <string>
 
@@ -55,9 +54,9 @@ namespace PeriDeal
     HoleShape                     hole_shape  = HoleShape::circle;
     double                        hole_angle  = 0.; // degrees
     std::string                   mesh_file;
-    unsigned int                  coarsening = 0; // times that cells are merged away from where they stay fine
-    Expression                    fine;           // they stay fine where greater than 0
-    bool                          fine_by_formula = false; // else in the zone of section `Coupling`
+    unsigned int coarsening = 0; // times that cells are merged away from where they stay fine
+    Expression   fine;           // they stay fine where greater than 0
+    bool         fine_by_formula = false; // else in the zone of section `Coupling`
 
 
     /** Box and plate with a hole: edge length of a lattice cell in each direction. */

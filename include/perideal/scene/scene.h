@@ -98,6 +98,7 @@ namespace PeriDeal
     /** What `Boundary treatment = auto` means here. Throws UserError where `exchange` is asked for and not possible. */
     void resolve_boundary_treatment();
 
+    void check_adaptive_zone() const;
     void check_coupling() const;
     void check_coarsening() const;
   };
