@@ -21,12 +21,26 @@ namespace PeriDeal
     constexpr unsigned int none = numbers::invalid_unsigned_int;
 
 
-    /** Corner k of a face, in deal.II's order of directions. */
+    constexpr unsigned int corners_of_edge[4][2] = {{0, 2}, {1, 3}, {0, 1}, {2, 3}},
+                           corners_of_face[6][4] = {{0, 2, 4, 6},
+                                                    {1, 3, 5, 7},
+                                                    {0, 1, 4, 5},
+                                                    {2, 3, 6, 7},
+                                                    {0, 1, 2, 3},
+                                                    {4, 5, 6, 7}};
+
+
+    /** Corners of a face of a cell. */
     template <int dim>
-    constexpr unsigned int face_corner(const unsigned int face, const unsigned int k)
+    const unsigned int *face_corners(const unsigned int face)
     {
-      const unsigned int normal = face / 2, low = k & ((1u << normal) - 1);
-      return low | ((face & 1) << normal) | ((k ^ low) << 1);
+      static constexpr unsigned int ends[2] = {0, 1};
+      if constexpr (dim == 1)
+        return &ends[face];
+      else if constexpr (dim == 2)
+        return corners_of_edge[face];
+      else
+        return corners_of_face[face];
     }
 
 
@@ -156,23 +170,44 @@ namespace PeriDeal
     }
 
 
-    /** Whether the path is clear of a face's corners' box across it. */
+    /** Faces of a cell that the path may cross, as bits: not those with all corners on one side of it. */
     template <int dim>
-    bool is_beside(const Seen<dim> &seen, const unsigned int *corners, const double tolerance)
+    unsigned int faces_to_cross(const Seen<dim> &seen, const double tolerance)
     {
-      constexpr unsigned int n = GeometryInfo<dim>::vertices_per_cell / 2;
+      constexpr unsigned int n_corners = GeometryInfo<dim>::vertices_per_cell;
+      unsigned int           faces     = 0;
+      unsigned int           above[2], below[2]; // corners
       for (unsigned int d = 0; d + 1 < dim; ++d)
         {
-          unsigned int n_above = 0, n_below = 0;
-          for (unsigned int k = 0; k < n; ++k)
+          above[d] = below[d] = 0;
+          for (unsigned int v = 0; v < n_corners; ++v)
             {
-              n_above += seen.across[d][corners[k]] > tolerance;
-              n_below += seen.across[d][corners[k]] < -tolerance;
+              above[d] |= static_cast<unsigned int>(seen.across[d][v] > tolerance) << v;
+              below[d] |= static_cast<unsigned int>(seen.across[d][v] < -tolerance) << v;
             }
-          if (n_above == n || n_below == n)
-            return true;
         }
-      return false;
+      constexpr unsigned int corners_with[3][2] = {{0x55, 0xaa}, {0x33, 0xcc}, {0x0f, 0xf0}};
+      constexpr unsigned int all                = (1u << n_corners) - 1;
+      for (unsigned int face = 0; face < 2 * dim; ++face)
+        {
+          const unsigned int corners = corners_with[face / 2][face % 2] & all;
+          bool               beside  = false;
+          for (unsigned int d = 0; d + 1 < dim; ++d)
+            beside |= (above[d] & corners) == corners || (below[d] & corners) == corners;
+          faces |= static_cast<unsigned int>(!beside) << face;
+        }
+      return faces;
+    }
+
+
+    /** Shape functions of an edge or a face. */
+    template <int dim>
+    std::array<double, GeometryInfo<dim>::vertices_per_cell / 2> face_values(const double (&u)[2])
+    {
+      if constexpr (dim == 2)
+        return {{1. - u[0], u[0]}};
+      else
+        return {{(1. - u[0]) * (1. - u[1]), u[0] * (1. - u[1]), (1. - u[0]) * u[1], u[0] * u[1]}};
     }
   } // namespace
 
@@ -196,17 +231,16 @@ namespace PeriDeal
     // What counts as close to an edge, with some room.
     const double tolerance = 20. * slack * (corners[n_corners - 1] - corners[0]).norm();
     Step         result    = Step::stays;
+    unsigned int faces     = faces_to_cross(seen, tolerance);
+    if (entry != none)
+      faces &= ~(1u << entry);
     for (unsigned int face = 0; face < n_faces; ++face)
       {
-        if (face == entry)
+        if (!((faces >> face) & 1))
           continue;
-        unsigned int f[n_face_corners];
-        for (unsigned int k = 0; k < n_face_corners; ++k)
-          f[k] = face_corner<dim>(face, k);
-        if (is_beside(seen, f, tolerance))
-          continue;
-        double             coordinates[2][2];
-        const unsigned int n = find_crossings(seen, f, coordinates);
+        const unsigned int *const f = face_corners<dim>(face);
+        double                    coordinates[2][2];
+        const unsigned int        n = find_crossings(seen, f, coordinates);
         for (unsigned int k = 0; k < n; ++k)
           {
             int inside = 1;
@@ -217,12 +251,7 @@ namespace PeriDeal
               }
             if (inside == 0)
               continue;
-            const auto weights = shape_values([&] {
-              Point<dim - 1> at;
-              for (unsigned int d = 0; d + 1 < dim; ++d)
-                at[d] = coordinates[k][d];
-              return at;
-            }());
+            const auto weights = face_values<dim>(coordinates[k]);
             double     place   = 0.;
             for (unsigned int c = 0; c < n_face_corners; ++c)
               place += weights[c] * seen.along[f[c]];
@@ -313,7 +342,7 @@ namespace PeriDeal
     piece.change[at->corner] = -1.;
     for (;;)
       {
-        Exit       exit;
+        Exit       exit{};
         const Step step = leave(cell, entry, line, from, exit);
         if (step == Step::unclear)
           return false;
@@ -328,7 +357,7 @@ namespace PeriDeal
           }
         else
           for (unsigned int k = 0; k < n_face_corners; ++k)
-            piece.change[face_corner<dim>(exit.face, k)] += exit.weights[k];
+            piece.change[face_corners<dim>(exit.face)[k]] += exit.weights[k];
         const double factor = 1. / std::sqrt(exit.place - from);
         for (double &x : piece.change)
           x *= factor;
@@ -343,9 +372,9 @@ namespace PeriDeal
         // The same values of the shape functions, seen from the other cell.
         for (unsigned int k = 0; k < n_face_corners; ++k)
           {
-            const unsigned int corner = face_corner<dim>(entry, k);
+            const unsigned int corner = face_corners<dim>(entry)[k];
             for (unsigned int l = 0; l < n_face_corners; ++l)
-              if (cells[piece.cell].nodes[corner] == nodes[face_corner<dim>(exit.face, l)])
+              if (cells[piece.cell].nodes[corner] == nodes[face_corners<dim>(exit.face)[l]])
                 piece.change[corner] = -exit.weights[l];
           }
         cell = piece.cell;
@@ -374,7 +403,7 @@ namespace PeriDeal
           {
             FaceNodes list;
             for (unsigned int v = 0; v < n_face_corners; ++v)
-              list[v] = nodes[face_corner<dim>(face, v)];
+              list[v] = nodes[face_corners<dim>(face)[v]];
             std::sort(list.begin(), list.end());
             faces.emplace_back(list, c * n_faces + face);
           }

@@ -56,6 +56,7 @@ namespace PeriDeal
         joined[i]   = may_join[i] && this->zone.contains(nodes.position(i));
         n_in_zone += i < nodes.n_owned() && may_join[i];
       }
+    stays = joined == may_join;
     throw_if_zone_empty(n_in_zone, nodes.communicator());
     find_cells(scene);
     send_cells();
@@ -239,6 +240,13 @@ namespace PeriDeal
     neighbors.clear();
     if (!may_join[node])
       return;
+    if (stays)
+      {
+        for (const unsigned int number : bonds_of_node[node])
+          neighbors.push_back(
+            zone_bonds[number].nodes[zone_bonds[number].nodes[0] == node ? 1 : 0]);
+        return;
+      }
     std::vector<Bond> family;
     bonds.known_bonds_of(node, family);
     for (const Bond &bond : family)

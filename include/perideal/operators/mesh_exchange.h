@@ -81,6 +81,7 @@ namespace PeriDeal
     Zone<dim>                                         zone;
     double                                            last;             // time of the run
     std::vector<bool>                                 joined, may_join; // by local number of nodes
+    bool                                              stays = false;    // all have joined
     std::vector<PathCell<dim>>                        cells;            // this process's first
     std::vector<CellState>                            states;           // of cells
     std::vector<unsigned int>                         cell_of_index;    // by active cell index
