@@ -203,7 +203,6 @@ namespace
     std::vector<typename CellPaths<dim>::Piece> walked, plain;
     double                                      worst   = 0.;
     std::size_t                                 n_paths = 0, n_leaving = 0;
-    const auto order = [](const auto &a, const auto &b) { return a.cell < b.cell; };
     for (unsigned int a = 0; a < nodes.size(); ++a)
       for (unsigned int b = 0; b < nodes.size(); ++b)
         {
