@@ -21,16 +21,17 @@ namespace PeriDeal
   double Families<dim>::off_lattice_weight(const double r) const
   {
     const double h        = own_nodes->smallest_spacing();
-    const double fraction = parameters.volume_fraction == VolumeFraction::linear ?
-                              linear_fraction(r, delta, h) :
-                              (r <= delta * (1. + 1e-9) ? 1. : 0.);
-    if (fraction == 0.)
-      return 0.;
-    const double at    = parameters.kernel == KernelShape::conical &&
-                          parameters.volume_fraction == VolumeFraction::linear ?
-                           shifted_distance(r, delta, h) :
-                           r;
-    double       power = 1.; // r^n
+    double       fraction = 1., at = r;
+    if (r > delta - 0.5 * h) // else all of the neighbour is within the horizon
+      {
+        const bool linear = parameters.volume_fraction == VolumeFraction::linear;
+        fraction = linear ? linear_fraction(r, delta, h) : (r <= delta * (1. + 1e-9) ? 1. : 0.);
+        if (fraction == 0.)
+          return 0.;
+        if (linear && parameters.kernel == KernelShape::conical)
+          at = shifted_distance(r, delta, h);
+      }
+    double power = 1.; // r^n
     for (unsigned int k = 0; k < parameters.kernel_exponent; ++k)
       power *= r;
     return factor * conductivity_scale * kernel_shape(parameters.kernel, at, delta) * fraction /

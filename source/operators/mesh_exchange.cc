@@ -12,8 +12,6 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh_exchange_tree.h"
-
 namespace PeriDeal
 {
   using namespace dealii;
@@ -35,32 +33,6 @@ namespace PeriDeal
       return volume;
     }
 
-
-    /** Whether a point lies in a cell or on its surface. */
-    template <int dim>
-    bool is_inside(const CellCorners<dim> &corners, const Point<dim> &p)
-    {
-      constexpr double slack = 1e-9; // less than the crack points of a bond lie beside its nodes
-      if constexpr (dim == 2)
-        {
-          constexpr unsigned int around[5] = {0, 1, 3, 2, 0}; // a convex quadrilateral
-          for (unsigned int k = 0; k < 4; ++k)
-            {
-              const Tensor<1, dim> side = corners[around[k + 1]] - corners[around[k]],
-                                   to_p = p - corners[around[k]];
-              if (!(side[0] * to_p[1] - side[1] * to_p[0] > -slack * side.norm_square()))
-                return false;
-            }
-          return true;
-        }
-      Point<dim> unit;
-      if (!unit_point(corners, p, unit))
-        return false;
-      for (unsigned int d = 0; d < dim; ++d)
-        if (!(unit[d] > -slack && unit[d] < 1. + slack))
-          return false;
-      return true;
-    }
   } // namespace
 
 
@@ -84,24 +56,11 @@ namespace PeriDeal
         joined[i]   = may_join[i] && this->zone.contains(nodes.position(i));
         n_in_zone += i < nodes.n_owned() && may_join[i];
       }
+    stays = joined == may_join;
     throw_if_zone_empty(n_in_zone, nodes.communicator());
     find_cells(scene);
     send_cells();
-    Point<dim> low, high; // of all nodes that may ever join
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        low[d]  = std::numeric_limits<double>::max();
-        high[d] = -std::numeric_limits<double>::max();
-      }
-    for (unsigned int i = 0; i < nodes.n_local(); ++i)
-      for (unsigned int d = 0; d < dim && may_join[i]; ++d)
-        {
-          low[d]  = std::min(low[d], nodes.position(i)[d]);
-          high[d] = std::max(high[d], nodes.position(i)[d]);
-        }
-    if (low[0] > high[0])
-      high = low; // far away from everything
-    tree = std::make_unique<Tree>(cells, BoundingBox<dim>({low, high}));
+    find_paths(hanging);
     find_bonds();
     const double kept = kept_share();
     AssertThrow(
@@ -118,83 +77,43 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool MeshExchange<dim>::follow(const ZoneBond &bond, std::vector<Passage> &way)
+  void MeshExchange<dim>::find_paths(const std::vector<bool> &hanging)
+  {
+    const Nodes<dim>       &nodes = bonds.nodes();
+    std::vector<Point<dim>> ends; // all that may ever join
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      if (may_join[i])
+        ends.push_back(nodes.position(i));
+    const bool regular =
+      !nodes.has_doubled_nodes() &&
+      std::none_of(hanging.begin(), hanging.end(), [](const bool h) { return h; });
+    paths = std::make_unique<CellPaths<dim>>(cells, ends, bonds.reach() * (1. + 1e-6), regular);
+  }
+
+
+  template <int dim>
+  bool MeshExchange<dim>::follow(const ZoneBond &bond, std::vector<PathPiece<dim>> &way)
   {
     const Nodes<dim> &nodes = bonds.nodes();
-    const Point<dim> &a = nodes.position(bond.nodes[0]), &b = nodes.position(bond.nodes[1]);
-    std::vector<unsigned int> &near   = memory.near;
-    std::vector<double>       &places = memory.places, &cuts = memory.cuts;
-    tree->find(a, b, near);
-    const Tensor<1, dim> along = (b - a) / a.distance(b);
-    places.clear();
-    // A cell that the bond passes has a face that it crosses, since it begins and ends at vertices.
-    constexpr double apart = 1e-9;
-    near.erase(std::remove_if(
-                 near.begin(),
-                 near.end(),
-                 [&](const unsigned int c) {
-                   if (!tree->is_near_line(c, a, along))
-                     return true;
-                   const std::size_t before = places.size();
-                   add_face_crossings(cells[c].corners, a, b, places);
-                   return std::none_of(places.begin() + before, places.end(), [](const double s) {
-                     return s > -1e-6 && s < 1. + 1e-6;
-                   });
-                 }),
-               near.end());
-    std::sort(places.begin(), places.end());
-    cuts.assign(1, 0.);
-    for (const double s : places)
-      if (s > cuts.back() + apart && s < 1. - apart)
-        cuts.push_back(s);
-    cuts.push_back(1.);
-    // Which side of a crack cut into the mesh a bond runs along is told by the crack points of its nodes.
-    const Point<dim> aside_a = nodes.crack_point(bond.nodes[0]),
-                     aside_b = nodes.crack_point(bond.nodes[1]);
-    way.clear();
-    for (std::size_t k = 0; k + 1 < cuts.size(); ++k)
-      {
-        const double      middle = 0.5 * (cuts[k] + cuts[k + 1]);
-        const Point<dim>  p      = aside_a + middle * (aside_b - aside_a);
-        const std::size_t first  = way.size();
-        for (const unsigned int c : near)
-          {
-            if (!tree->box_holds(c, p) || !is_inside(cells[c].corners, p))
-              continue;
-            Point<dim> from, to;
-            if (!unit_point(cells[c].corners, a + cuts[k] * (b - a), from) ||
-                !unit_point(cells[c].corners, a + cuts[k + 1] * (b - a), to))
-              return false;
-            Passage    passage;
-            const auto before = shape_values(from);
-            passage.change    = shape_values(to);
-            passage.cell      = c;
-            for (unsigned int v = 0; v < n_corners; ++v)
-              passage.change[v] -= before[v];
-            way.push_back(passage);
-          }
-        const std::size_t n_around = way.size() - first;
-        if (n_around == 0)
-          return false; // leaves the body
-        const double factor = 1. / std::sqrt((cuts[k + 1] - cuts[k]) * n_around);
-        for (std::size_t w = first; w < way.size(); ++w)
-          for (double &x : way[w].change)
-            x *= factor;
-      }
-    return true;
+    const auto        end   = [&](const unsigned int i) {
+      return PathEnd<dim>{nodes.partitioner()->local_to_global(i),
+                          nodes.position(i),
+                          nodes.crack_point(i)};
+    };
+    return paths->follow(end(bond.nodes[0]), end(bond.nodes[1]), way);
   }
 
 
   template <int dim>
   void MeshExchange<dim>::find_bonds()
   {
-    const Nodes<dim>    &nodes = bonds.nodes();
-    std::vector<Bond>    family;
-    std::vector<Passage> way;
+    const Nodes<dim>           &nodes = bonds.nodes();
+    std::vector<Bond>           family;
+    std::vector<PathPiece<dim>> way;
     zone_bonds.clear();
-    passages.clear();
+    for (auto &matrix : taken)
+      matrix.clear();
     bonds_of_node.assign(nodes.n_owned(), {});
-    const unsigned int        n_own_cells = taken.size();
     std::vector<unsigned int> way_cells; // of each bond in turn, those of other processes too
     std::vector<std::size_t>  way_ends;
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
@@ -210,22 +129,18 @@ namespace PeriDeal
             if (!follow(zone_bond, way))
               continue;
             double lowest = std::numeric_limits<double>::max(), highest = 0.;
-            for (const Passage &passage : way)
+            for (const PathPiece<dim> &piece : way)
               {
-                lowest  = std::min(lowest, cells[passage.cell].lowest);
-                highest = std::max(highest, cells[passage.cell].highest);
+                lowest  = std::min(lowest, states[piece.cell].lowest);
+                highest = std::max(highest, states[piece.cell].highest);
               }
             if (highest > largest_contrast * lowest)
               continue;
             zone_bond.intact *= lowest / bonds.bond_conductivity(i, bond.neighbor);
             const unsigned int number = zone_bonds.size();
-            for (Passage &passage : way)
-              {
-                passage.bond = number;
-                way_cells.push_back(passage.cell);
-                if (passage.cell < n_own_cells)
-                  passages.push_back(passage);
-              }
+            take(zone_bond.intact, way);
+            for (const PathPiece<dim> &piece : way)
+              way_cells.push_back(piece.cell);
             way_ends.push_back(way_cells.size());
             for (const unsigned int node : zone_bond.nodes)
               if (node < nodes.n_owned())
@@ -233,30 +148,46 @@ namespace PeriDeal
             zone_bonds.push_back(zone_bond);
           }
       }
-    sum_up();
     find_strains();
     share_strains();
-    for (std::size_t k = 0, w = 0; k < zone_bonds.size(); ++k)
-      for (; w < way_ends[k]; ++w)
-        if (const double strain = cells[way_cells[w]].strain; strain > part_to_take)
-          zone_bonds[k].scale = std::min(zone_bonds[k].scale, part_to_take / strain);
-    sum_up();
+    scale_bonds(way_cells, way_ends);
   }
 
 
   template <int dim>
-  void MeshExchange<dim>::sum_up()
+  void MeshExchange<dim>::scale_bonds(const std::vector<unsigned int> &way_cells,
+                                      const std::vector<std::size_t>  &way_ends)
   {
-    for (auto &matrix : taken)
-      matrix.clear();
-    for (const Passage &passage : passages)
+    std::vector<PathPiece<dim>> way;
+    for (std::size_t k = 0, w = 0; k < zone_bonds.size(); ++k)
       {
-        auto        &matrix = taken[passage.cell];
-        const double weight = zone_bonds[passage.bond].intact * zone_bonds[passage.bond].scale;
-        matrix.resize(n_corners * n_corners, 0.);
+        ZoneBond &bond = zone_bonds[k];
+        for (; w < way_ends[k]; ++w)
+          if (const double strain = states[way_cells[w]].strain; strain > part_to_take)
+            bond.scale = std::min(bond.scale, part_to_take / strain);
+        // Following it again is cheaper than the memory for all ways.
+        if (bond.scale < 1. && follow(bond, way))
+          take((bond.scale - 1.) * bond.intact, way);
+      }
+  }
+
+
+  template <int dim>
+  void MeshExchange<dim>::take(const double weight, const std::vector<PathPiece<dim>> &way)
+  {
+    for (const PathPiece<dim> &piece : way)
+      {
+        if (piece.cell >= taken.size())
+          continue; // of another process
+        taken[piece.cell].resize(n_corners * n_corners, 0.);
+        const auto    change = piece.change;
+        double *const matrix = taken[piece.cell].data();
         for (unsigned int a = 0; a < n_corners; ++a)
-          for (unsigned int b = 0; b < n_corners; ++b)
-            matrix[a * n_corners + b] += weight * passage.change[a] * passage.change[b];
+          {
+            const double factor = weight * change[a];
+            for (unsigned int b = 0; b < n_corners; ++b)
+              matrix[a * n_corners + b] += factor * change[b];
+          }
       }
   }
 
@@ -266,7 +197,7 @@ namespace PeriDeal
   {
     for (unsigned int c = 0; c < taken.size(); ++c)
       {
-        cells[c].strain = 0.;
+        states[c].strain = 0.;
         if (taken[c].empty())
           continue;
         // sum W L on the linear fields x_a; K_c is kappa times the volume there.
@@ -281,7 +212,7 @@ namespace PeriDeal
           Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>>(linear)
             .eigenvalues()
             .maxCoeff();
-        cells[c].strain = largest / (cells[c].lowest * volume_of(cells[c].corners));
+        states[c].strain = largest / (states[c].lowest * volume_of(cells[c].corners));
       }
   }
 
@@ -309,6 +240,13 @@ namespace PeriDeal
     neighbors.clear();
     if (!may_join[node])
       return;
+    if (stays)
+      {
+        for (const unsigned int number : bonds_of_node[node])
+          neighbors.push_back(
+            zone_bonds[number].nodes[zone_bonds[number].nodes[0] == node ? 1 : 0]);
+        return;
+      }
     std::vector<Bond> family;
     bonds.known_bonds_of(node, family);
     for (const Bond &bond : family)
@@ -436,8 +374,9 @@ namespace PeriDeal
   template <int dim>
   std::size_t MeshExchange<dim>::memory_consumption() const
   {
-    return bonds.memory_consumption() + cells.capacity() * sizeof(NearCell) +
-           zone_bonds.capacity() * sizeof(ZoneBond) + passages.capacity() * sizeof(Passage);
+    return bonds.memory_consumption() + paths->memory_consumption() +
+           cells.capacity() * (sizeof(PathCell<dim>) + sizeof(CellState)) +
+           zone_bonds.capacity() * sizeof(ZoneBond);
   }
 
 

@@ -29,7 +29,8 @@ namespace PeriDeal
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          NearCell near;
+          PathCell<dim> shape;
+          CellState     near;
           near.lowest = near.highest = constant;
           if (!scene.material.conductivity.is_constant())
             {
@@ -44,9 +45,13 @@ namespace PeriDeal
                 }
             }
           for (unsigned int v = 0; v < n_corners; ++v)
-            near.corners[v] = cell->vertex(v);
+            {
+              shape.corners[v] = cell->vertex(v);
+              shape.nodes[v]   = cell->vertex_dof_index(v, 0);
+            }
           cell_of_index[cell->active_cell_index()] = cells.size();
-          cells.push_back(near);
+          cells.push_back(shape);
+          states.push_back(near);
         }
     taken.resize(cells.size());
   }
@@ -63,7 +68,7 @@ namespace PeriDeal
     // A bond through a cell of another process may pass any cell within its reach of that one.
     std::vector<Point<dim>> own_corners;
     double                  size = 0.;
-    for (const NearCell &cell : cells)
+    for (const PathCell<dim> &cell : cells)
       {
         own_corners.insert(own_corners.end(), cell.corners.begin(), cell.corners.end());
         for (unsigned int v = 1; v < n_corners; ++v)
@@ -83,21 +88,29 @@ namespace PeriDeal
             for (const Point<dim> &p : cells[c].corners)
               for (unsigned int d = 0; d < dim; ++d)
                 numbers.push_back(p[d]);
-            numbers.push_back(cells[c].lowest);
-            numbers.push_back(cells[c].highest);
+            for (const auto node : cells[c].nodes)
+              numbers.push_back(static_cast<double>(node)); // exact up to 2^53
+            numbers.push_back(states[c].lowest);
+            numbers.push_back(states[c].highest);
           }
-    constexpr unsigned int record_size = n_corners * dim + 2;
+    constexpr unsigned int record_size = n_corners * (dim + 1) + 2;
     for (const auto &[rank, numbers] : Utilities::MPI::some_to_some(communicator, to_send))
       for (std::size_t k = 0; k < numbers.size(); k += record_size)
         {
-          NearCell near;
+          PathCell<dim> shape;
+          CellState     near;
           for (unsigned int v = 0; v < n_corners; ++v)
-            for (unsigned int d = 0; d < dim; ++d)
-              near.corners[v][d] = numbers[k + v * dim + d];
+            {
+              for (unsigned int d = 0; d < dim; ++d)
+                shape.corners[v][d] = numbers[k + v * dim + d];
+              shape.nodes[v] =
+                static_cast<types::global_dof_index>(numbers[k + n_corners * dim + v]);
+            }
           near.lowest  = numbers[k + record_size - 2];
           near.highest = numbers[k + record_size - 1];
           received[rank].push_back(cells.size());
-          cells.push_back(near);
+          cells.push_back(shape);
+          states.push_back(near);
         }
   }
 
@@ -111,10 +124,10 @@ namespace PeriDeal
     std::map<unsigned int, std::vector<double>> to_send;
     for (const auto &[rank, list] : sent)
       for (const unsigned int c : list)
-        to_send[rank].push_back(cells[c].strain);
+        to_send[rank].push_back(states[c].strain);
     for (const auto &[rank, strains] : Utilities::MPI::some_to_some(communicator, to_send))
       for (std::size_t k = 0; k < strains.size(); ++k)
-        cells[received.at(rank)[k]].strain = strains[k];
+        states[received.at(rank)[k]].strain = strains[k];
   }
 
 

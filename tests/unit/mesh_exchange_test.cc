@@ -3,12 +3,15 @@
 
 #include <perideal/analysis/coupling_certificate.h>
 #include <perideal/mesh/cell_geometry.h>
+#include <perideal/mesh/cell_paths.h>
 #include <perideal/operators/mesh_exchange.h>
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <random>
 
 #include "growth_test_tools.h"
@@ -149,6 +152,95 @@ TEST(CellGeometry, unit_points_and_crossings)
           }
       EXPECT_EQ(n_ahead, 1u);
     }
+}
+
+
+namespace
+{
+  /**
+   * Follows all paths up to a length in a random mesh of n^dim cells in both ways.
+   * Part of it is not distorted, and it has a notch. Returns the share of paths that were walked.
+   */
+  template <int dim>
+  double compare_paths(const unsigned int n, const double part, const double reach)
+  {
+    constexpr unsigned int                 n_corners = dealii::GeometryInfo<dim>::vertices_per_cell;
+    std::mt19937                           random(11);
+    std::uniform_real_distribution<double> shift(-part, part);
+    std::vector<dealii::Point<dim>>        nodes;
+    std::vector<PathCell<dim>>             cells;
+    const unsigned int                     n_z = dim == 3 ? n : 0;
+    for (unsigned int k = 0; k <= n_z; ++k)
+      for (unsigned int j = 0; j <= n; ++j)
+        for (unsigned int i = 0; i <= n; ++i)
+          {
+            const unsigned int at[3] = {i, j, k};
+            dealii::Point<dim> p;
+            // Flat outer faces, and one quarter of the mesh not distorted: paths along faces, edges and through vertices.
+            const bool regular = 2 * i <= n && 2 * j <= n;
+            for (unsigned int d = 0; d < dim; ++d)
+              p[d] = at[d] + (at[d] > 0 && at[d] < n && !regular ? shift(random) : 0.);
+            nodes.push_back(p);
+          }
+    const auto missing = [&](const unsigned int i, const unsigned int j) {
+      return i == n - 2 && j >= n - 2; // a notch
+    };
+    for (unsigned int k = 0; k < std::max(1u, n_z); ++k)
+      for (unsigned int j = 0; j < n; ++j)
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            PathCell<dim> cell;
+            for (unsigned int v = 0; v < n_corners; ++v)
+              {
+                cell.nodes[v] =
+                  i + (v & 1) + (n + 1) * (j + ((v >> 1) & 1) + (n + 1) * (k + ((v >> 2) & 1)));
+                cell.corners[v] = nodes[cell.nodes[v]];
+              }
+            if (!missing(i, j))
+              cells.push_back(cell);
+          }
+    CellPaths<dim>                              paths(cells, nodes, reach, true);
+    std::vector<typename CellPaths<dim>::Piece> walked, plain;
+    double                                      worst   = 0.;
+    std::size_t                                 n_paths = 0, n_leaving = 0;
+    for (unsigned int a = 0; a < nodes.size(); ++a)
+      for (unsigned int b = 0; b < nodes.size(); ++b)
+        {
+          if (a == b || nodes[a].distance(nodes[b]) > reach)
+            continue;
+          ++n_paths;
+          const PathEnd<dim> from{a, nodes[a], nodes[a]}, to{b, nodes[b], nodes[b]};
+          const bool         one = paths.follow(from, to, walked);
+          EXPECT_EQ(one, paths.follow_plainly(from, to, plain));
+          n_leaving += !one;
+          if (!one)
+            continue;
+          // The general way may cut a piece along an edge once more: what each cell has of the path is the same.
+          std::map<unsigned int, std::array<double, n_corners * n_corners>> difference;
+          for (const auto *const way : {&walked, &plain})
+            for (const auto &piece : *way)
+              for (unsigned int v = 0; v < n_corners * n_corners; ++v)
+                difference[piece.cell][v] += (way == &walked ? 1. : -1.) *
+                                             piece.change[v / n_corners] *
+                                             piece.change[v % n_corners];
+          for (const auto &[cell, matrix] : difference)
+            for (const double x : matrix)
+              worst = std::max(worst, std::abs(x));
+        }
+    EXPECT_LT(worst, 1e-10);
+    EXPECT_GT(n_leaving, 0u);
+    const double share = 1. - paths.n_followed_plainly() / static_cast<double>(n_paths);
+    std::cout << dim << "D: " << n_paths << " paths, " << n_leaving << " leave, walked " << share
+              << ", difference " << worst << std::endl;
+    return share;
+  }
+} // namespace
+
+
+TEST(CellPaths, walked_as_followed_plainly)
+{
+  EXPECT_GT(compare_paths<2>(16, 0.25, 3.6), 0.6);
+  EXPECT_GT(compare_paths<3>(7, 0.1, 3.1), 0.5);
 }
 
 

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/mesh/cell_geometry.h>
+#include <perideal/mesh/cell_paths.h>
 #include <perideal/operators/coupling.h>
 #include <perideal/scene/scene.h>
 
@@ -51,20 +51,11 @@ namespace PeriDeal
   private:
     static constexpr unsigned int n_corners = dealii::GeometryInfo<dim>::vertices_per_cell;
 
-    /** A cell of this process, or a copy of one of another. */
-    struct NearCell
+    /** Of a cell of this process, or of a copy of one of another. */
+    struct CellState
     {
-      CellCorners<dim> corners;
-      double           lowest, highest; // conductivity
-      double           strain = 0.;     // lambda_c
-    };
-
-    /** What a bond has in a cell: W L = weight change change^T. */
-    struct Passage
-    {
-      unsigned int bond, cell;
-      std::array<double, n_corners>
-        change; // over the square root of the length, times that of the share
+      double lowest, highest; // conductivity
+      double strain = 0.;     // lambda_c
     };
 
     /** Between two nodes known here, the first one of a smaller local number. */
@@ -75,35 +66,29 @@ namespace PeriDeal
       double       scale = 1.;
     };
 
-    struct Tree;
-
-    /** Of follow(). */
-    struct Memory
-    {
-      std::vector<unsigned int> near;
-      std::vector<double>       places, cuts;
-    };
-
     void find_cells(const Scene<dim> &scene);
     void send_cells();
     void share_strains();
+    void find_paths(const std::vector<bool> &hanging);
     void find_bonds();
-    bool follow(const ZoneBond &bond, std::vector<Passage> &way);
+    void scale_bonds(const std::vector<unsigned int> &way_cells,
+                     const std::vector<std::size_t>  &way_ends);
+    bool follow(const ZoneBond &bond, std::vector<PathPiece<dim>> &way);
+    void take(const double weight, const std::vector<PathPiece<dim>> &way);
     void find_strains();
-    void sum_up();
 
     Families<dim>                                     bonds;
     Zone<dim>                                         zone;
     double                                            last;             // time of the run
     std::vector<bool>                                 joined, may_join; // by local number of nodes
-    std::vector<NearCell>                             cells;            // this process's first
+    bool                                              stays = false;    // all have joined
+    std::vector<PathCell<dim>>                        cells;            // this process's first
+    std::vector<CellState>                            states;           // of cells
     std::vector<unsigned int>                         cell_of_index;    // by active cell index
     std::map<unsigned int, std::vector<unsigned int>> sent, received;   // cells, by process
-    std::unique_ptr<Tree>                             tree;
-    Memory                                            memory;
+    std::unique_ptr<CellPaths<dim>>                   paths;
     std::vector<ZoneBond>                             zone_bonds;
-    std::vector<Passage>                   passages; // of zone_bonds in own cells, in their order
-    std::vector<std::vector<unsigned int>> bonds_of_node; // owned
-    std::vector<std::vector<double>>       taken;         // of own cells, sum s W L; empty: no bond
+    std::vector<std::vector<unsigned int>>            bonds_of_node; // owned
+    std::vector<std::vector<double>> taken; // of own cells, sum s W L; empty: no bond
   };
 } // namespace PeriDeal
