@@ -65,7 +65,7 @@ namespace PeriDeal
       index_lattice();
     else
       {
-        search = std::make_unique<Search>(nodes, farthest);
+        search = std::make_unique<Search>(nodes);
         calibrate_off_lattice();
       }
     find_conductivities(scene);
