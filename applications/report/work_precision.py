@@ -23,6 +23,7 @@ SHOWN = {
     "coupled, m = 3, c = 1": ("v", "-"), "coupled, m = 3, c = 1, scaled": ("D", "-"), "coupled, m = 2, c = 1, scaled": ("^", "-"),
     "FEM, crack on faces, graded 3": ("o", "--"), "FEM, pairs, scaled, graded 3": ("^", "--"),
     "coupled, m = 3, c = 1, scaled, graded 3": ("D", "--"), "coupled on faces, m = 3, c = 1": ("o", "-"),
+    "coupled on faces, m = 3, c = 0.5, graded 3": ("o", "--"),
 }
 FRONT = "#9aa5b1"
 AXES = {"work": "nonzeros × {}", "wall time": "wall time of the model, s"}

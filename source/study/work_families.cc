@@ -75,6 +75,16 @@ namespace PeriDeal
     }
 
 
+    /** The crack is part of the surface: no bond is broken, and there is nothing to be scaled. */
+    WorkFamily zone_on_faces(const std::string &width)
+    {
+      WorkFamily result = family("coupled on faces, m = 3, c = " + width, coupled, "faces", "none");
+      set(result, "Peridynamics/Horizon ratio", "3");
+      set(result, "Coupling/Zone", "cracks: " + width);
+      return result;
+    }
+
+
     /** The same on meshes whose cells are merged up to k times away from cracks; those of finite elements alone are as for m = 3, c = 1. */
     WorkFamily graded(WorkFamily family, const unsigned int k)
     {
@@ -108,17 +118,16 @@ namespace PeriDeal
         for (const char *const c : {"0.5", "1", "2"})
           for (const bool scaled : {false, true})
             all.push_back(zone(m, c, scaled));
-      // The crack is part of the surface: no bond is broken and nothing to be scaled.
-      WorkFamily on_faces = family("coupled on faces, m = 3, c = 1", coupled, "faces", "none");
-      set(on_faces, "Peridynamics/Horizon ratio", "3");
-      set(on_faces, "Coupling/Zone", "cracks: 1");
-      all.push_back(on_faces);
+      all.push_back(zone_on_faces("1"));
       for (const unsigned int k : {2u, 3u})
         for (const WorkFamily &uniform :
              {family("FEM, crack on faces", elements, "faces", "none"),
               family("FEM, pairs, scaled", elements, "pairs", "crack scaling"),
               zone("2", "1", true),
-              zone("3", "1", true)})
+              zone("3", "0.5", true),
+              zone("3", "1", true),
+              zone_on_faces("0.5"),
+              zone_on_faces("1")})
           all.push_back(graded(uniform, k));
       return all;
     }
