@@ -5,6 +5,7 @@
 
 #include <perideal/bonds/families.h>
 #include <perideal/laws/crack_conductance.h>
+#include <perideal/mesh/lattice_sites.h>
 
 #include <algorithm>
 #include <cmath>
@@ -159,20 +160,11 @@ namespace PeriDeal
         first[d] = site(box.lower_bound(d), corner[d], corner[d] + extent[d] - 1);
         last[d] =
           site(box.upper_bound(d) + lattice.spacing[d], corner[d], corner[d] + extent[d] - 1);
-        if (last[d] < first[d])
-          return;
       }
-    for (auto at = first;;)
-      {
-        if (const unsigned int i = node_of_site[site_key(at)]; i < own_nodes->n_owned())
-          found.push_back(i);
-        unsigned int d = 0;
-        for (; d < dim && at[d] == last[d]; ++d)
-          at[d] = first[d];
-        if (d == dim)
-          break;
-        ++at[d];
-      }
+    for_each_site(first, last, [&](const typename Lattice<dim>::Index &site) {
+      if (const unsigned int i = node_of_site[site_key(site)]; i < own_nodes->n_owned())
+        found.push_back(i);
+    });
   }
 
 

@@ -43,99 +43,6 @@ namespace PeriDeal
           return false;
       return true;
     }
-
-
-    /** Marks the blocks of a regular grid that lie within a distance of some point. */
-    template <int dim>
-    class Blocks
-    {
-    public:
-      Blocks(const std::vector<Point<dim>> &points, const double distance)
-        : size(distance)
-      {
-        if (points.empty())
-          return;
-        BoundingBox<dim> box(points);
-        low                          = box.get_boundary_points().first;
-        constexpr double most_blocks = 4.; // for each point
-        double           n_blocks    = 0.;
-        for (;; size *= 2.)
-          {
-            n_blocks = 1.;
-            for (unsigned int d = 0; d < dim; ++d)
-              n_blocks *= 3. + box.side_length(d) / size;
-            if (n_blocks < 1000. + most_blocks * points.size())
-              break;
-          }
-        std::size_t n = 1;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            low[d] -= size; // one block around
-            counts[d] = 3 + static_cast<int>(box.side_length(d) / size);
-            n *= counts[d];
-          }
-        marked.resize(n);
-        for (const Point<dim> &p : points)
-          visit(p, p, 1, [&](const std::size_t block) { marked[block] = true; });
-      }
-
-      bool reach(const CellCorners<dim> &corners) const
-      {
-        if (marked.empty())
-          return false;
-        Point<dim> from = corners[0], to = corners[0];
-        for (const Point<dim> &p : corners)
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              from[d] = std::min(from[d], p[d]);
-              to[d]   = std::max(to[d], p[d]);
-            }
-        bool any = false;
-        visit(from, to, 0, [&](const std::size_t block) { any = any || marked[block]; });
-        return any;
-      }
-
-    private:
-      /** All blocks between those of two points and some around. */
-      template <typename Action>
-      void visit(const Point<dim> &from,
-                 const Point<dim> &to,
-                 const int         n_around,
-                 const Action     &action) const
-      {
-        std::array<int, dim> first, last;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            // Cells may reach far beyond all blocks.
-            const auto block = [&](const double x) {
-              return static_cast<int>(
-                std::clamp(std::floor((x - low[d]) / size), -2., counts[d] + 1.));
-            };
-            first[d] = std::max(0, block(from[d]) - n_around);
-            last[d]  = std::min(counts[d] - 1, block(to[d]) + n_around);
-            if (last[d] < first[d])
-              return;
-          }
-        for (auto at = first;;)
-          {
-            std::size_t number = 0;
-            for (unsigned int d = dim; d-- > 0;)
-              number = number * counts[d] + at[d];
-            action(number);
-            unsigned int d = 0;
-            for (; d < dim && at[d] == last[d]; ++d)
-              at[d] = first[d];
-            if (d == dim)
-              break;
-            ++at[d];
-          }
-      }
-
-      double               size;
-      Point<dim>           low;
-      std::array<int, dim> counts;
-      std::vector<bool>    marked;
-    };
   } // namespace
 
 
@@ -201,12 +108,17 @@ namespace PeriDeal
   std::vector<unsigned int> CellPaths<dim>::cells_near(const std::vector<Point<dim>> &ends,
                                                        const double                   reach) const
   {
-    // No place on a path is farther from both ends than half of its length.
-    const Blocks<dim>         blocks(ends, 0.5001 * reach);
+    namespace index                  = boost::geometry::index;
+    const RTree<Point<dim>>   points = pack_rtree(ends);
     std::vector<unsigned int> near;
     for (unsigned int c = 0; c < cells.size(); ++c)
-      if (blocks.reach(cells[c].corners))
-        near.push_back(c);
+      {
+        // No place on a path is farther from both ends than half of its length.
+        BoundingBox<dim> box(cells[c].corners);
+        box.extend(0.5001 * reach);
+        if (points.qbegin(index::intersects(box)) != points.qend())
+          near.push_back(c);
+      }
     return near;
   }
 

@@ -43,6 +43,8 @@ namespace PeriDeal
       if (scene.time.time_step > 0.) // steps of fixed size are not divided
         for (double &t : times)
           t = scene.time.time_step * std::ceil(t / scene.time.time_step * (1. - 1e-12));
+      const auto is_late = [&](const double t) { return t > (1. - 1e-9) * end; };
+      times.erase(std::remove_if(times.begin(), times.end(), is_late), times.end());
       std::sort(times.begin(), times.end());
       times.erase(std::unique(times.begin(),
                               times.end(),
@@ -54,13 +56,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  Grading<dim>::Grading(const Scene<dim> &scene, const unsigned int finest)
+  Grading<dim>::Grading(const Scene<dim> &scene, const Triangulation<dim> &mesh)
     : zone(scene.coupling, scene.horizon())
     , by_zone(true)
     , by_name(scene.domain.fine_by_formula)
     , history(scene.crack_history())
     , adaptations(adaptation_times(scene, history))
-    , finest(finest)
+    , finest(
+        std::lround(std::log2(mesh.begin(0)->extent_in_direction(0) / scene.domain.spacing()[0])))
     , coarsest(finest - scene.domain.coarsening)
     , end(scene.cracks.end_time)
   {
@@ -113,26 +116,16 @@ namespace PeriDeal
   }
 
 
-  namespace
-  {
-    /** Where every process has all cells, each marks them all. */
-    template <int dim>
-    bool may_mark(const Triangulation<dim>                                &mesh,
-                  const typename Triangulation<dim>::active_cell_iterator &cell)
-    {
-      return cell->is_locally_owned() ||
-             dynamic_cast<const parallel::DistributedTriangulationBase<dim> *>(&mesh) == nullptr;
-    }
-  } // namespace
-
-
   template <int dim>
   void Grading<dim>::refine(Triangulation<dim> &mesh) const
   {
+    // Where every process has all cells, each marks them all.
+    const bool distributed =
+      dynamic_cast<const parallel::DistributedTriangulationBase<dim> *>(&mesh) != nullptr;
     for (unsigned int pass = coarsest; pass < finest; ++pass)
       {
         for (const auto &cell : mesh.active_cell_iterators())
-          if (may_mark(mesh, cell) && is_too_coarse(cell))
+          if ((cell->is_locally_owned() || !distributed) && is_too_coarse(cell))
             cell->set_refine_flag();
         mesh.execute_coarsening_and_refinement();
       }
@@ -149,7 +142,7 @@ namespace PeriDeal
     bool         any = false;
     for (const auto &cell : mesh.active_cell_iterators())
       {
-        if (!may_mark(mesh, cell))
+        if (!cell->is_locally_owned())
           continue;
         const unsigned int level = cell->level();
         const double       own   = indicators[cell->active_cell_index()];

@@ -310,7 +310,7 @@ namespace PeriDeal
     if (n_refinements > domain.coarsening)
       mesh->refine_global(n_refinements - domain.coarsening);
     if (domain.coarsening > 0)
-      Grading<dim>(scene, n_refinements).refine(*mesh);
+      Grading<dim>(scene, *mesh).refine(*mesh);
     if constexpr (dim > 1)
       if (auto *distributed = dynamic_cast<parallel::distributed::Triangulation<dim> *>(mesh.get());
           distributed != nullptr && work)

@@ -83,6 +83,11 @@ namespace PeriDeal
       }
     for (const auto &[dof, entry] : found)
       prescribed.push_back({dof, entry.second, &dirichlet[entry.first]});
+    for (const Prescribed &entry : prescribed)
+      held.push_back(entry.dof);
+    for (const HangingNode &node : hanging)
+      held.push_back(node.dof);
+    std::sort(held.begin(), held.end());
     any_prescribed = Utilities::MPI::max(prescribed.empty() ? 0 : 1, dofs.get_communicator()) > 0;
   }
 
@@ -144,22 +149,10 @@ namespace PeriDeal
                               const unsigned int begin,
                               const unsigned int end) const
   {
-    for (auto entry =
-           std::lower_bound(prescribed.begin(),
-                            prescribed.end(),
-                            begin,
-                            [](const Prescribed &a, const unsigned int b) { return a.dof < b; });
-         entry != prescribed.end() && entry->dof < end;
-         ++entry)
-      y.local_element(entry->dof) = value;
-    for (auto node =
-           std::lower_bound(hanging.begin(),
-                            hanging.end(),
-                            begin,
-                            [](const HangingNode &a, const unsigned int b) { return a.dof < b; });
-         node != hanging.end() && node->dof < end;
-         ++node)
-      y.local_element(node->dof) = value;
+    for (auto dof = std::lower_bound(held.begin(), held.end(), begin);
+         dof != held.end() && *dof < end;
+         ++dof)
+      y.local_element(*dof) = value;
   }
 
 

@@ -79,10 +79,8 @@ namespace PeriDeal
       return;
     search = std::make_unique<CellSearch<dim>>(dofs);
     event  = std::make_shared<EventData>(capacity);
-    for (const Prescribed &entry : prescribed)
-      event->held.insert(entry.dof);
-    for (const HangingNode &node : hanging)
-      event->held.insert(node.dof);
+    for (const unsigned int i : held)
+      event->held.insert(i);
   }
 
 

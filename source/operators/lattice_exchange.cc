@@ -3,23 +3,15 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/lattice_exchange.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "lattice_sites.h"
-
 namespace PeriDeal
 {
   using namespace dealii;
-
-  namespace
-  {
-    /** Bonds across a jump of the conductivity by more than this factor are not active. */
-    constexpr double largest_contrast = 1.5;
-  } // namespace
-
 
   template <int dim>
   const typename LatticeExchange<dim>::SiteData *LatticeExchange<dim>::at(const Site &site) const

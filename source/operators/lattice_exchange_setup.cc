@@ -7,13 +7,12 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/lattice_exchange.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "lattice_sites.h"
 
 namespace PeriDeal
 {

@@ -18,9 +18,8 @@ namespace PeriDeal
 
   namespace
   {
-    constexpr double largest_contrast = 1.5; // of conductivity on an active bond's way
-    constexpr double part_to_take     = 0.9; // of what a distorted cell has
-    constexpr double least_kept       = 0.2; // of all bonds' conductance
+    constexpr double part_to_take = 0.9; // of what a distorted cell has
+    constexpr double least_kept   = 0.2; // of all bonds' conductance
 
 
     template <int dim>

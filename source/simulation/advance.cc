@@ -153,11 +153,7 @@ namespace PeriDeal
   {
     if (scene.coupling.zone != ZoneKind::adaptive)
       return;
-    const double coarse = mesh->n_cells(0) > 0 ? mesh->begin(0)->extent_in_direction(0) :
-                                                 0.; // on every process
-    grading             = std::make_unique<Grading<dim>>(
-      scene,
-      static_cast<unsigned int>(std::lround(std::log2(coarse / scene.domain.spacing()[0]))));
+    grading = std::make_unique<Grading<dim>>(scene, *mesh);
     if (scene.time.steady)
       return;
     for (unsigned int round = 0; round < scene.domain.coarsening && adapt(0.); ++round)

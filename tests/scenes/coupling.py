@@ -25,7 +25,7 @@ def run_quietly(name, *more, probes=None):
     chosen = dict(QUIET)
     for some in more:
         chosen.update(some)
-    scene = f"prm/coupling/{name}.prm"
+    scene = f"prm/coupling/{name}"
     if probes:
         text = pathlib.Path(SOURCE_DIR, scene).read_text(encoding="utf-8")
         scene = re.sub(r"set Probes *=.*", "set Probes = " + " ; ".join(f"{x!r},{y!r}" for x, y in probes), text)
@@ -35,7 +35,7 @@ def run_quietly(name, *more, probes=None):
 def patches():
     """Linear fields are exact with exchange for any zone; of the other schemes the certificate tells."""
     rows = []
-    for name in ("patch_2d", "patch_3d"):
+    for name in ("patch_2d.prm", "patch_3d.prm"):
         for zone, formula in ZONES.items():
             for scheme, overlap in (("exchange", 0), ("splice", 0), ("blending", 1)):
                 run = run_quietly(name, {"Coupling/Zone": formula, "Coupling/Scheme": scheme, "Coupling/Overlap": str(overlap)})
@@ -58,7 +58,7 @@ def patches():
                 elif zone == "block" and scheme == "blending":
                     check(any("linear field" in note for note in run.summary["notes"]), f"{name}, {scheme}: the note tells of the error")
     print_table("Patch tests", ("scene", "zone", "scheme", "bonds", "error", "linear", "quadratic", "cubic", "asymmetry", "lost heat"), rows)
-    layers = run_quietly("two_layers")
+    layers = run_quietly("two_layers.prm")
     check_less(layers.error(BOTH), 1e-10, "layers 1:1000")
     check(0 < layers.model(BOTH)["bonds"] < layers.model(BOTH)["certificate"]["full peridynamics"]["bonds"], "layers: bonds, but none across")
 
@@ -69,7 +69,7 @@ def smooth():
     pi = "3.14159265358979323846"
     field = f"sin({pi}*x)*sin({pi}*y)"
     for zone, formula in ZONES.items():
-        errors = [run_quietly("patch_2d", {"Domain/Cells": f"{n}, {n}", "Coupling/Zone": formula, "Coupling/Certificate": "false",
+        errors = [run_quietly("patch_2d.prm", {"Domain/Cells": f"{n}, {n}", "Coupling/Zone": formula, "Coupling/Certificate": "false",
                                            "Boundary conditions/Dirichlet": "left: 0; right: 0; bottom: 0; top: 0",
                                            "Initial and source/Source": f"2*{pi}^2*{field}", "Reference/Solution": field}).error(BOTH)
                   for n in counts]
@@ -102,7 +102,7 @@ def crack():
     """Example 3 at 121 x 121 cells against the steady solution: finite elements with the crack on faces, extrapolated."""
     n = 121
     steady = {"Output/Line": "", "Output/Write at": "", "Time/Steady": "true", "Solver/Tolerance": "1e-10"}
-    fine = {c: nodal_values(run_quietly("insulated_crack", steady, {
+    fine = {c: nodal_values(run_quietly("insulated_crack.prm", steady, {
         "Models": FEM, "Domain/Cells": f"{c}, {c}", "Cracks/Mesh": "faces", "Peridynamics/Surface correction": "none"}, probes=nodes(n)), FEM)
         for c in (240, 480, 960)}
     first, exact = ([2 * b - a for a, b in zip(fine[c], fine[2 * c])] for c in (240, 480))
@@ -112,7 +112,7 @@ def crack():
     rows, values = [], {}
 
     def case(what, models, limit, **more):
-        run = run_quietly("insulated_crack", steady, {"Models": models, **{k.replace("__", "/").replace("_", " "): v for k, v in more.items()}},
+        run = run_quietly("insulated_crack.prm", steady, {"Models": models, **{k.replace("__", "/").replace("_", " "): v for k, v in more.items()}},
                           probes=nodes(n))
         for model in models.split(", "):
             entry = run.model(model)
@@ -148,7 +148,7 @@ def crack():
 def compared():
     """The summary compares the coupled model with both others, over the nodes."""
     n, times = 41, (0.1, 0.5)
-    run = run_quietly("insulated_crack", {"Domain/Cells": f"{n}, {n}", "Output/Line": "", "Coupling/Certificate": "false"}, probes=nodes(n))
+    run = run_quietly("insulated_crack.prm", {"Domain/Cells": f"{n}, {n}", "Output/Line": "", "Coupling/Certificate": "false"}, probes=nodes(n))
     found = run.summary["comparisons"]
     check(sorted(found) == ["coupled minus finite elements", "coupled minus peridynamics"], f"comparisons: {sorted(found)}")
     for other in (FEM, PD):
@@ -191,7 +191,7 @@ def oblique():
             errors = []
             for degrees in (0, 15, 30, 45, 62):
                 for offset in ((0.0, 0.0), (0.006, 0.0037), (0.012, -0.009)):
-                    run = run_quietly("oblique_crack", oblique_scene(math.radians(degrees), offset, cells), settings)
+                    run = run_quietly("oblique_crack.prm", oblique_scene(math.radians(degrees), offset, cells), settings)
                     errors.append(run.error(settings["Models"]))
             mean, worst = sum(errors) / len(errors), max(errors)
             rows.append((str(cells), what, f"{mean:.2e}", f"{worst:.2e}"))
@@ -205,10 +205,10 @@ def growing():
     """A moving zone against peridynamics in the whole body."""
     n, times = 60, (1, 2, 3, 3.5, 4, 5, 6, 7)
     coarse = {"Domain/Cells": f"{n}, {n}", "Coupling/Certificate": "false"}
-    full = run_quietly("growing_cracks", coarse, {"Models": PD}, probes=nodes(n))
+    full = run_quietly("growing_cracks.prm", coarse, {"Models": PD}, probes=nodes(n))
     rows = []
     for c, limit in (("1", 3e-3), ("2", 3e-4)):
-        run = run_quietly("growing_cracks", coarse, {"Coupling/Zone": f"cracks: {c}"}, probes=nodes(n))
+        run = run_quietly("growing_cracks.prm", coarse, {"Coupling/Zone": f"cracks: {c}"}, probes=nodes(n))
         gaps = [distance(n, nodal_values(run, BOTH, t), nodal_values(full, PD, t)) for t in times]
         rows.append((c, str(run.model(BOTH)["bonds"]), *(f"{gap:.1e}" for gap in gaps)))
         check_less(max(gaps), limit, f"c = {c}: largest distance to full peridynamics")
@@ -221,8 +221,8 @@ def growing():
 def others():
     """The remaining scenes: both models agree as far as they did when this was written, and no heat is lost."""
     # Measured differences of the heat: 1.03e-3, 3.2e-3, 3.4e-4, 7.3e-4, 4.5e-3; along the line 1.1e-3, 3.4e-3, 1.5e-3, 2.0e-3, 0.26 (of 100).
-    for name, allowed, apart in (("crack_leaving_body", 1.5e-3, 1.7e-3), ("graded_material_crack", 4.8e-3, 5.1e-3),
-                                 ("hole_beside_crack", 5.1e-4, 2.2e-3), ("square_crack_3d", 1.1e-3, 3e-3), ("distorted_mesh", 6.7e-3, 0.4)):
+    for name, allowed, apart in (("crack_leaving_body.prm", 1.5e-3, 1.7e-3), ("graded_material_crack.prm", 4.8e-3, 5.1e-3),
+                                 ("hole_beside_crack.prm", 5.1e-4, 2.2e-3), ("square_crack_3d.prm", 1.1e-3, 3e-3), ("distorted_mesh.prm", 6.7e-3, 0.4)):
         run = run_quietly(name)
         heats = [next(iter(run.model(m)["boundary flux"].values())) for m in (FEM, BOTH)]
         check_close(heats[1], heats[0], relative=allowed, what=f"{name}: heat of the coupled model")
@@ -235,7 +235,7 @@ def others():
         found = run.model(BOTH)["certificate"]
         check_less(found["patch error"]["linear"], 1e-12, f"{name}: linear patch error")
         kept = found["share of the conductance kept"]
-        check(0.5 < kept < 1 if name == "distorted_mesh" else kept == 1, f"{name}: share of the conductance kept {kept}")
+        check(0.5 < kept < 1 if name == "distorted_mesh.prm" else kept == 1, f"{name}: share of the conductance kept {kept}")
         print(f"{name}: share of the conductance kept {kept:.3f}")
 
 
@@ -243,7 +243,7 @@ def graded():
     """Meshes that are fine only around cracks: hanging nodes, and cells that are refined and merged as cracks grow."""
     rows = []
     for levels in range(4):
-        run = run_quietly("graded_mesh", {"Domain/Coarsening": str(levels)})
+        run = run_quietly("graded_mesh.prm", {"Domain/Coarsening": str(levels)})
         model = run.model(BOTH)
         rows.append((str(levels), str(model["unknowns"]), str(model["nonzeros"]), f"{run.error(FEM):.2e}", f"{run.error(BOTH):.2e}"))
         check_less(model["certificate"]["patch error"]["linear"], 1e-12, f"merged {levels} times: linear patch error")
@@ -253,20 +253,20 @@ def graded():
     print_table("Graded meshes: unknowns, nonzeros and errors", ("merged", "unknowns", "nonzeros", FEM, BOTH), rows)
     check(10 * int(rows[3][1]) < int(rows[0][1]), "a tenth of the unknowns")
 
-    steady = run_quietly("graded_mesh", {"Coupling/Zone": "adaptive"})
+    steady = run_quietly("graded_mesh.prm", {"Coupling/Zone": "adaptive"})
     check_less(steady.error(BOTH), 2.7e-3, "steady, adapted: error")
     check(any("adapted" in note for note in steady.summary["notes"]), "steady: the note tells of the mesh")
 
     small = {"Domain/Cells": "80, 80", "Domain/Coarsening": "2", "Time/End time": "4", "Output/Write at": "1, 2, 3"}
-    adapted = run_quietly("adaptive_zone", small)
-    uniform = run_quietly("adaptive_zone", small, {"Domain/Coarsening": "0", "Coupling/Zone": "cracks: 1"})
+    adapted = run_quietly("adaptive_zone.prm", small)
+    uniform = run_quietly("adaptive_zone.prm", small, {"Domain/Coarsening": "0", "Coupling/Zone": "cracks: 1"})
     gap = max(abs(a["value"] - b["value"]) for a, b in zip(adapted.probes, uniform.probes)) / 200
     print(f"growing cracks, adapted and uniform mesh: largest difference at the probes {gap:.1e} of the range")
     check_less(gap, 1.8e-4, "adapted mesh against the uniform one")  # measured: 1.2e-4
     check_less(adapted.model(BOTH)["unknowns"], 0.5 * uniform.model(BOTH)["unknowns"], "adapted: unknowns")
     balance = adapted.model(BOTH)["heat balance"]
     check_less(abs(balance["imbalance"]), 1e-10 * balance["throughput"], "adapted: imbalance of heat")
-    closed = run_quietly("adaptive_zone", small, {"Boundary conditions/Dirichlet": "", "Initial and source/Initial value": "1 + sin(3*y + x)",
+    closed = run_quietly("adaptive_zone.prm", small, {"Boundary conditions/Dirichlet": "", "Initial and source/Initial value": "1 + sin(3*y + x)",
                                                   "Material/Density": "1 + x*x"})
     heats = [row["value"] for row in closed.table("totals.csv") if row["quantity"] == "heat content"]
     check(any("adapted" in note for note in closed.summary["notes"]), "insulated body: the mesh was adapted")

@@ -25,8 +25,8 @@ namespace PeriDeal
   public:
     using Cell = typename dealii::Triangulation<dim>::cell_iterator;
 
-    /** @param finest level of the cells that have lattice size */
-    Grading(const Scene<dim> &scene, const unsigned int finest);
+    /** @param mesh that of the scene, or its coarse cells; on every process */
+    Grading(const Scene<dim> &scene, const dealii::Triangulation<dim> &mesh);
 
     /** `Zone = adaptive`: the time after t at which the mesh has to follow the cracks or the solution; infinity if it never has to. */
     double next_adaptation(const double t) const;
@@ -42,7 +42,8 @@ namespace PeriDeal
 
     /**
      * Mark cells to be refined and coarsened: those too coarse are refined, and those with an indicator above @p target; those with a far smaller one are
-     * merged where the fine part allows it. @p indicators are squares, by active cell index. Returns whether any mark was set. Collective.
+     * merged where the fine part allows it. @p indicators are squares, by active cell index. Returns whether any mark was set. Only for a mesh that p4est
+     * distributes. Collective.
      */
     bool mark(dealii::Triangulation<dim> &mesh,
               const std::vector<double>  &indicators,
@@ -55,8 +56,8 @@ namespace PeriDeal
     bool                by_zone, by_name;
     CrackHistory<dim>   history;
     std::vector<double> adaptations; // times, ascending
-    unsigned int        finest, coarsest;
-    double              spacing = 0., end;
+    unsigned int finest, coarsest;   // levels of the cells of lattice size and of the largest ones
+    double       spacing = 0., end;
   };
 
 

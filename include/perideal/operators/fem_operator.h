@@ -29,7 +29,7 @@ namespace PeriDeal
    * `removed`: cut cells conduct nothing.
    *
    * With a coupling the cells keep what it leaves of them, and its bonds are added: the model `coupled`. Then the elements are Q1, and vectors
-      * have the horizon-wide halo of the nodes. Otherwise vectors have the locally relevant dofs as ghosts.
+   * have the horizon-wide halo of the nodes. Otherwise vectors have the locally relevant dofs as ghosts.
    *
    * Hanging nodes of a graded mesh follow from their neighbours: K is C^T K C, and their rows are those of unknowns that are not free.
    */
@@ -228,6 +228,7 @@ namespace PeriDeal
     std::shared_ptr<EventData>        event;               // of update(), made for the first event
     std::vector<Prescribed>           prescribed;          // in the order of unknowns
     std::vector<HangingNode>          hanging;             // likewise
+    std::vector<unsigned int>         held;                // both: unknowns that are not free
     bool                              any_hanging = false; // on any process
     dealii::AffineConstraints<double> constraints;         // of hanging nodes
     std::vector<bool>                 cut;                 // by active cell index
