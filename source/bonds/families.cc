@@ -19,7 +19,10 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  Families<dim>::Families(Nodes<dim> &nodes, const Scene<dim> &scene, const HaloAround halo)
+  Families<dim>::Families(Nodes<dim>       &nodes,
+                          const Scene<dim> &scene,
+                          const HaloAround  halo,
+                          const HasBonds   &has_bonds)
     : own_nodes(&nodes)
     , material(scene.material)
     , parameters(scene.peridynamics)
@@ -66,7 +69,7 @@ namespace PeriDeal
     else
       {
         search = std::make_unique<Search>(nodes);
-        calibrate_off_lattice();
+        calibrate_off_lattice(has_bonds);
       }
     find_conductivities(scene);
   }

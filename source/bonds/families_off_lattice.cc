@@ -98,41 +98,49 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Families<dim>::calibrate_off_lattice()
+  void Families<dim>::calibrate_off_lattice(const HasBonds &has_bonds)
   {
-    double                                     smallest_count = std::numeric_limits<double>::max();
-    double                                     sum = 0., n_full = 0.;
     LinearAlgebra::distributed::Vector<double> at_boundary(own_nodes->partitioner());
-    std::vector<std::pair<unsigned int, double>> found;
-    const double                                 tiny = 1e-10 * own_nodes->smallest_spacing();
     for (const BoundaryShare &share : own_nodes->boundary_shares())
       at_boundary.local_element(share.node) = 1.;
     at_boundary.update_ghost_values();
+    const double tiny           = 1e-10 * own_nodes->smallest_spacing();
+    double       smallest_count = std::numeric_limits<double>::max(), sum = 0., n_full = 0.;
+    std::vector<std::pair<unsigned int, double>> found;
+    const auto                                   count = [&](const unsigned int i) {
+      search->within(own_nodes->position(i), farthest, found);
+      smallest_count = std::min(smallest_count, static_cast<double>(found.size()) - 1.);
+      const bool full = std::none_of(found.begin(), found.end(), [&](const auto &f) {
+        return at_boundary.local_element(f.first) > 0.;
+      });
+      if (!full || !members.empty())
+        return;
+      double moment = 0.;
+      for (const auto &[neighbor, square] : found)
+        if (square > tiny * tiny) // not the node itself, nor its twin across a crack
+          moment += off_lattice_weight(std::sqrt(square)) * own_nodes->volume(neighbor) * square;
+      sum += moment / (2. * dim);
+      n_full += 1.;
+    };
+    const auto has = [&](const unsigned int i) {
+      return !has_bonds || has_bonds(own_nodes->position(i));
+    };
     for (unsigned int i = 0; i < own_nodes->n_owned(); ++i)
-      {
-        const Point<dim> &p = own_nodes->position(i);
-        search->within(p, farthest, found);
-        smallest_count  = std::min(smallest_count, static_cast<double>(found.size()) - 1.);
-        const bool full = std::none_of(found.begin(), found.end(), [&](const auto &f) {
-          return at_boundary.local_element(f.first) > 0.;
-        });
-        if (!full || !members.empty())
-          continue;
-        double moment = 0.;
-        for (const auto &[neighbor, square] : found)
-          if (square > tiny * tiny) // not the node itself, nor its twin across a crack
-            moment += off_lattice_weight(std::sqrt(square)) * own_nodes->volume(neighbor) * square;
-        sum += moment / (2. * dim);
-        n_full += 1.;
-      }
-    smallest_count = Utilities::MPI::min(smallest_count, own_nodes->communicator());
-    sum            = Utilities::MPI::sum(sum, own_nodes->communicator());
-    n_full         = Utilities::MPI::sum(n_full, own_nodes->communicator());
+      if (has(i))
+        count(i);
     AssertThrow(
-      smallest_count > 0. || own_nodes->is_graded(), // nodes of merged cells are in no zone
+      Utilities::MPI::min(smallest_count, own_nodes->communicator()) > 0. ||
+        own_nodes->is_graded(), // nodes of merged cells are in no zone
       UserError(
         "'Horizon' in section 'Peridynamics' is " + std::to_string(delta) +
-        ": some node has no neighbour within it. Choose at least twice the largest cell of the mesh."));
+        ": some node has no neighbour within it. Choose at least twice the largest cell of the " +
+        (has_bonds ? "zone." : "mesh.")));
+    if (Utilities::MPI::sum(n_full, own_nodes->communicator()) == 0. && has_bonds)
+      for (unsigned int i = 0; i < own_nodes->n_owned(); ++i)
+        if (!has(i)) // a zone along the boundary
+          count(i);
+    sum    = Utilities::MPI::sum(sum, own_nodes->communicator());
+    n_full = Utilities::MPI::sum(n_full, own_nodes->communicator());
     if (parameters.calibration != Calibration::discrete || !members.empty())
       return;
     complete_families = n_full > 0.;
@@ -143,7 +151,7 @@ namespace PeriDeal
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
   template double Families<dim>::off_lattice_weight(const double) const;                           \
   template void   Families<dim>::bonds_off_lattice(const unsigned int, std::vector<Bond> &) const; \
-  template void   Families<dim>::calibrate_off_lattice();
+  template void   Families<dim>::calibrate_off_lattice(const HasBonds &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

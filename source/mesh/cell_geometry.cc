@@ -67,8 +67,6 @@ namespace PeriDeal
       for (unsigned int v = 0; v < c.size(); ++v)
         if (v & bit)
           c[v] -= c[v ^ bit];
-    for (unsigned int d = 0; d < dim; ++d)
-      unit[d] = 0.5;
     for (unsigned int k = 0; k < most_steps; ++k)
       {
         Tensor<1, dim> defect, step; // and the columns of the Jacobian

@@ -18,10 +18,12 @@ namespace PeriDeal
 
   namespace
   {
-    /** Whether a point lies in a cell or on its surface. */
+    /** Whether a point lies in a cell or on its surface; @p unit is then near that point of the unit cell. */
     template <int dim>
-    bool is_inside(const CellCorners<dim> &corners, const Point<dim> &p)
+    bool is_inside(const CellCorners<dim> &corners, const Point<dim> &p, Point<dim> &unit)
     {
+      for (unsigned int d = 0; d < dim; ++d)
+        unit[d] = 0.5;
       constexpr double slack = 1e-9; // less than the crack points of a path lie beside its ends
       if constexpr (dim == 2)
         {
@@ -35,7 +37,6 @@ namespace PeriDeal
             }
           return true;
         }
-      Point<dim> unit;
       if (!unit_point(corners, p, unit))
         return false;
       for (unsigned int d = 0; d < dim; ++d)
@@ -163,9 +164,10 @@ namespace PeriDeal
         for (const unsigned int c : found)
           {
             const CellCorners<dim> &corners = cells[c].corners;
-            if (!is_inside(corners, p))
+            Point<dim>              start_of_piece;
+            if (!is_inside(corners, p, start_of_piece))
               continue;
-            Point<dim> start_of_piece, end_of_piece;
+            Point<dim> end_of_piece = start_of_piece;
             if (!unit_point(corners, a + cuts[k] * (b - a), start_of_piece) ||
                 !unit_point(corners, a + cuts[k + 1] * (b - a), end_of_piece))
               return false;

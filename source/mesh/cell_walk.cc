@@ -123,6 +123,12 @@ namespace PeriDeal
     }
 
 
+    bool is_corner_of_face(const unsigned int corner, const unsigned int face)
+    {
+      return ((corner >> (face / 2)) & 1) == face % 2;
+    }
+
+
     /** Whether a coordinate of a face is on it: 1 inside, 0 beside, -1 close to its edge. */
     int side_of_edge(const double u)
     {
@@ -215,6 +221,7 @@ namespace PeriDeal
   template <int dim>
   typename CellPaths<dim>::Step CellPaths<dim>::leave(const unsigned int cell,
                                                       const unsigned int entry,
+                                                      const unsigned int outer,
                                                       const Line        &line,
                                                       const double       from,
                                                       Exit              &exit) const
@@ -234,6 +241,8 @@ namespace PeriDeal
     unsigned int faces     = faces_to_cross(seen, tolerance);
     if (entry != none)
       faces &= ~(1u << entry);
+    if (outer != none)
+      faces &= ~(1u << outer);
     for (unsigned int face = 0; face < n_faces; ++face)
       {
         if (!((faces >> face) & 1))
@@ -246,8 +255,12 @@ namespace PeriDeal
             int inside = 1;
             for (unsigned int d = 0; d + 1 < dim; ++d)
               {
-                const int side = side_of_edge(coordinates[k][d]);
-                inside         = side == 0 || inside == 0 ? 0 : std::min(inside, side);
+                int side = side_of_edge(coordinates[k][d]);
+                // A path within a side of the body crosses the edges there.
+                if (outer != none && d == outer / 2 - (outer > face ? 1 : 0) &&
+                    std::abs(coordinates[k][d] - outer % 2) < slack)
+                  side = 1;
+                inside = side == 0 || inside == 0 ? 0 : std::min(inside, side);
               }
             if (inside == 0)
               continue;
@@ -286,10 +299,12 @@ namespace PeriDeal
   }
 
 
+  /** The start of a path in a cell; @p outer is the outer face that the path lies in, if any. */
   template <int dim>
-  const typename CellPaths<dim>::Start *CellPaths<dim>::start_into(
-    const Tensor<1, dim> &along) const
+  const typename CellPaths<dim>::Start *CellPaths<dim>::start_into(const Tensor<1, dim> &along,
+                                                                   unsigned int &outer) const
   {
+    outer = none;
     for (const Start &candidate : starts)
       {
         const Tensor<1, dim> unit   = candidate.inverse * along;
@@ -301,8 +316,46 @@ namespace PeriDeal
           }
         if (lowest > steep * highest)
           return &candidate;
+        if (!(regular && std::abs(lowest) < slack * highest))
+          continue;
+        unsigned int n_flat = 0, flat = 0; // directions, and the last of them
+        for (unsigned int d = 0; d < dim; ++d)
+          if (unit[d] < steep * highest)
+            {
+              ++n_flat;
+              flat = d;
+            }
+        const unsigned int face = 2 * flat + ((candidate.corner >> flat) & 1);
+        if (n_flat == 1 && beyond[numbers[candidate.cell] * n_faces + face] == none)
+          {
+            outer = face;
+            return &candidate;
+          }
       }
     return nullptr;
+  }
+
+
+  /** The outer face of the next cell that continues one of this cell; none if the side of the body ends there. */
+  template <int dim>
+  unsigned int CellPaths<dim>::outer_beyond(const unsigned int cell,
+                                            const unsigned int outer,
+                                            const unsigned int exit) const
+  {
+    const unsigned int other = beyond[numbers[cell] * n_faces + exit], next = other / n_faces,
+                       entry = other % n_faces;
+    for (unsigned int face = 0; face < n_faces; ++face)
+      {
+        bool continues = face / 2 != entry / 2 && beyond[numbers[next] * n_faces + face] == none;
+        for (unsigned int v = 0; v < n_corners && continues; ++v)
+          if (is_corner_of_face(v, outer) && is_corner_of_face(v, exit))
+            for (unsigned int w = 0; w < n_corners; ++w)
+              if (cells[next].nodes[w] == cells[cell].nodes[v] && !is_corner_of_face(w, face))
+                continues = false;
+        if (continues)
+          return face;
+      }
+    return none;
   }
 
 
@@ -331,7 +384,8 @@ namespace PeriDeal
   template <int dim>
   bool CellPaths<dim>::walk(const End &a, const End &b, std::vector<Piece> &pieces) const
   {
-    const Start *at = start_into(b.position - a.position);
+    unsigned int outer;
+    const Start *at = start_into(b.position - a.position, outer);
     if (at == nullptr)
       return regular && follow_edge(b, pieces);
     pieces.clear();
@@ -343,7 +397,7 @@ namespace PeriDeal
     for (;;)
       {
         Exit       exit{};
-        const Step step = leave(cell, entry, line, from, exit);
+        const Step step = leave(cell, entry, outer, line, from, exit);
         if (step == Step::unclear)
           return false;
         const auto &nodes = cells[cell].nodes;
@@ -367,6 +421,12 @@ namespace PeriDeal
         const unsigned int next = beyond[numbers[cell] * n_faces + exit.face];
         if (next == none)
           return false;
+        if (outer != none)
+          {
+            outer = outer_beyond(cell, outer, exit.face);
+            if (outer == none)
+              return false;
+          }
         piece = {next / n_faces, {}};
         entry = next % n_faces;
         // The same values of the shape functions, seen from the other cell.

@@ -32,18 +32,28 @@ namespace PeriDeal
       return volume;
     }
 
+
+
+    /** The zone when all cracks have grown. */
+    template <int dim>
+    Zone<dim> zone_at_end(Zone<dim> zone, const Scene<dim> &scene)
+    {
+      zone.set_cracks(scene.crack_history().pieces(scene.cracks.end_time));
+      return zone;
+    }
   } // namespace
 
 
   template <int dim>
   MeshExchange<dim>::MeshExchange(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone)
-    : bonds(nodes, scene, HaloAround::cells)
+    : bonds(nodes,
+            scene,
+            HaloAround::cells,
+            [at_end = zone_at_end(zone, scene)](const Point<dim> &p) { return at_end.contains(p); })
     , zone(zone)
-    , last(scene.cracks.end_time)
   {
     const CrackHistory<dim> &history = bonds.crack_history();
-    Zone<dim>                at_end  = zone;
-    at_end.set_cracks(history.pieces(last));
+    const Zone<dim>          at_end  = zone_at_end(zone, scene);
     this->zone.set_cracks(history.pieces(history.representative(0.)));
     const std::vector<bool> hanging   = hanging_nodes(nodes);
     double                  n_in_zone = 0.;

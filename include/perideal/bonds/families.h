@@ -12,6 +12,7 @@
 #include <perideal/scene/crack_history.h>
 #include <perideal/scene/scene.h>
 
+#include <functional>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -44,8 +45,17 @@ namespace PeriDeal
       bool         cut;    // some crack separates the nodes
     };
 
-    /** Adds the halo to the nodes. Collective. Throws UserError for empty families and isolated nodes. */
-    Families(Nodes<dim> &nodes, const Scene<dim> &scene, const HaloAround halo = HaloAround::nodes);
+    /** Whether the node at a place has bonds at all, now or later. */
+    using HasBonds = std::function<bool(const dealii::Point<dim> &)>;
+
+    /**
+     * Adds the halo to the nodes. Collective. Throws UserError for empty families and isolated nodes.
+     * @param has_bonds all nodes if empty. Off the lattice discrete calibration is the mean over these, and no other has to have neighbours.
+     */
+    Families(Nodes<dim>       &nodes,
+             const Scene<dim> &scene,
+             const HaloAround  halo      = HaloAround::nodes,
+             const HasBonds   &has_bonds = {});
     ~Families();
 
     /** The family of an owned node, in its fixed order. @p bonds is overwritten, its memory is reused. */
@@ -158,7 +168,7 @@ namespace PeriDeal
     const FamilyMember<dim> *find_member(const dealii::Tensor<1, dim> &xi) const;
     void                     find_weights();
     void                     index_lattice();
-    void                     calibrate_off_lattice();
+    void                     calibrate_off_lattice(const HasBonds &has_bonds);
     void                     find_conductivities(const Scene<dim> &scene);
     void                     add_bond(const unsigned int node,
                                       const unsigned int neighbor,

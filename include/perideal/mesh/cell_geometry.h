@@ -20,7 +20,10 @@ namespace PeriDeal
   std::array<double, dealii::GeometryInfo<dim>::vertices_per_cell> shape_values(
     const dealii::Point<dim> &unit);
 
-  /** The point of the unit cell that the multilinear mapping takes to p, to round-off. Returns false far outside of the cell, where there may be none. */
+  /**
+   * The point of the unit cell that the multilinear mapping takes to p, to round-off; @p unit is where the search for it starts. Returns false far outside
+   * of the cell, where there may be none.
+   */
   template <int dim>
   bool unit_point(const CellCorners<dim>   &corners,
                   const dealii::Point<dim> &p,

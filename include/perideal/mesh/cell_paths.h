@@ -45,7 +45,7 @@ namespace PeriDeal
    * Follows straight lines from vertex to vertex through the cells on their way.
    *
    * A path that passes from cell to cell through the inside of faces walks so: where it crosses a face the two coordinates of the face give the shape
-   * functions of both cells. All others (along faces or edges, close to vertices, through hanging nodes, at cracks cut into the mesh) are cut at all
+   * functions of both cells. So do paths within a flat side of the body. All others (along faces or edges, close to vertices, through hanging nodes, at cracks cut into the mesh) are cut at all
    * faces of the cells nearby, and for each piece the cells that hold its middle are looked for.
    */
   template <int dim>
@@ -110,14 +110,18 @@ namespace PeriDeal
                                          const double                           reach) const;
     void                      connect(const std::vector<unsigned int> &near);
     void                      start_at(const End &a);
-    const Start              *start_into(const dealii::Tensor<1, dim> &along) const;
-    bool                      follow_edge(const End &b, std::vector<Piece> &pieces) const;
-    bool                      walk(const End &a, const End &b, std::vector<Piece> &pieces) const;
-    Step                      leave(const unsigned int cell,
-                                    const unsigned int entry,
-                                    const Line        &line,
-                                    const double       from,
-                                    Exit              &exit) const;
+    const Start *start_into(const dealii::Tensor<1, dim> &along, unsigned int &outer) const;
+    bool         follow_edge(const End &b, std::vector<Piece> &pieces) const;
+    bool         walk(const End &a, const End &b, std::vector<Piece> &pieces) const;
+    unsigned int outer_beyond(const unsigned int cell,
+                              const unsigned int outer,
+                              const unsigned int exit) const;
+    Step         leave(const unsigned int cell,
+                       const unsigned int entry,
+                       const unsigned int outer,
+                       const Line        &line,
+                       const double       from,
+                       Exit              &exit) const;
 
     const std::vector<PathCell<dim>> &cells;
     const bool                        regular;

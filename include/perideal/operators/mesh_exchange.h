@@ -79,7 +79,6 @@ namespace PeriDeal
 
     Families<dim>                                     bonds;
     Zone<dim>                                         zone;
-    double                                            last;             // time of the run
     std::vector<bool>                                 joined, may_join; // by local number of nodes
     bool                                              stays = false;    // all have joined
     std::vector<PathCell<dim>>                        cells;            // this process's first
