@@ -21,27 +21,19 @@ namespace PeriDeal
     constexpr unsigned int none = numbers::invalid_unsigned_int;
 
 
-    constexpr unsigned int corners_of_edge[4][2] = {{0, 2}, {1, 3}, {0, 1}, {2, 3}},
-                           corners_of_face[6][4] = {{0, 2, 4, 6},
-                                                    {1, 3, 5, 7},
-                                                    {0, 1, 4, 5},
-                                                    {2, 3, 6, 7},
-                                                    {0, 1, 2, 3},
-                                                    {4, 5, 6, 7}};
-
-
-    /** Corners of a face of a cell. */
+    /** Corners of the faces of a cell, in ascending order. */
     template <int dim>
-    const unsigned int *face_corners(const unsigned int face)
-    {
-      static constexpr unsigned int ends[2] = {0, 1};
-      if constexpr (dim == 1)
-        return &ends[face];
-      else if constexpr (dim == 2)
-        return corners_of_edge[face];
-      else
-        return corners_of_face[face];
-    }
+    constexpr auto face_corners = [] {
+      constexpr unsigned int                                   n_corners = 1u << (dim - 1);
+      std::array<std::array<unsigned int, n_corners>, 2 * dim> corners{};
+      for (unsigned int face = 0; face < 2 * dim; ++face)
+        for (unsigned int k = 0; k < n_corners; ++k)
+          {
+            const unsigned int d = face / 2, below = k & ((1u << d) - 1);
+            corners[face][k] = below | (face % 2) << d | (k - below) << 1;
+          }
+      return corners;
+    }();
 
 
     /** The columns of the Jacobian at a corner. */
@@ -247,7 +239,7 @@ namespace PeriDeal
       {
         if (!((faces >> face) & 1))
           continue;
-        const unsigned int *const f = face_corners<dim>(face);
+        const unsigned int *const f = face_corners<dim>[face].data();
         double                    coordinates[2][2];
         const unsigned int        n = find_crossings(seen, f, coordinates);
         for (unsigned int k = 0; k < n; ++k)
@@ -411,7 +403,7 @@ namespace PeriDeal
           }
         else
           for (unsigned int k = 0; k < n_face_corners; ++k)
-            piece.change[face_corners<dim>(exit.face)[k]] += exit.weights[k];
+            piece.change[face_corners<dim>[exit.face][k]] += exit.weights[k];
         const double factor = 1. / std::sqrt(exit.place - from);
         for (double &x : piece.change)
           x *= factor;
@@ -432,9 +424,9 @@ namespace PeriDeal
         // The same values of the shape functions, seen from the other cell.
         for (unsigned int k = 0; k < n_face_corners; ++k)
           {
-            const unsigned int corner = face_corners<dim>(entry)[k];
+            const unsigned int corner = face_corners<dim>[entry][k];
             for (unsigned int l = 0; l < n_face_corners; ++l)
-              if (cells[piece.cell].nodes[corner] == nodes[face_corners<dim>(exit.face)[l]])
+              if (cells[piece.cell].nodes[corner] == nodes[face_corners<dim>[exit.face][l]])
                 piece.change[corner] = -exit.weights[l];
           }
         cell = piece.cell;
@@ -463,7 +455,7 @@ namespace PeriDeal
           {
             FaceNodes list;
             for (unsigned int v = 0; v < n_face_corners; ++v)
-              list[v] = nodes[face_corners<dim>(face)[v]];
+              list[v] = nodes[face_corners<dim>[face][v]];
             std::sort(list.begin(), list.end());
             faces.emplace_back(list, c * n_faces + face);
           }
