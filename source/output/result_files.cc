@@ -125,11 +125,17 @@ namespace PeriDeal
   }
 
 
-  PointTable::PointTable(const std::vector<std::vector<double>> &points, const unsigned int dim)
+  PointTable::PointTable(const std::vector<std::vector<double>> &points,
+                         const unsigned int                      dim,
+                         const std::vector<std::string>         &columns)
     : points(points)
-    , header(std::string("time,model,x") + (dim > 1 ? ",y" : "") + (dim > 2 ? ",z" : "") +
-             ",value\n")
-  {}
+    , n_columns(columns.size())
+    , header(std::string("time,model,x") + (dim > 1 ? ",y" : "") + (dim > 2 ? ",z" : ""))
+  {
+    for (const std::string &column : columns)
+      header += "," + column;
+    header += "\n";
+  }
 
 
   void PointTable::add(const double               time,
@@ -141,7 +147,9 @@ namespace PeriDeal
         rows += full_precision(time) + "," + model;
         for (const double x : points[k])
           rows += "," + full_precision(x);
-        rows += "," + full_precision(values[k]) + "\n";
+        for (std::size_t c = 0; c < n_columns; ++c)
+          rows += "," + full_precision(values[k * n_columns + c]);
+        rows += "\n";
       }
   }
 
