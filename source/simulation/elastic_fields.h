@@ -4,7 +4,7 @@
 #pragma once
 
 #include <perideal/laws/elasticity.h>
-#include <perideal/simulation/elastic_model.h>
+#include <perideal/simulation/elastic_run.h>
 
 namespace PeriDeal
 {
@@ -88,11 +88,11 @@ namespace PeriDeal
                   std::vector<double>                 &rows);
 
   template <int dim>
-  std::unique_ptr<ElasticModel<dim>> make_elastic_element_model(
+  std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(
     const dealii::Triangulation<dim> &mesh,
     const Scene<dim>                 &scene);
 
   template <int dim>
-  std::unique_ptr<ElasticModel<dim>> make_state_model(const dealii::Triangulation<dim> &mesh,
+  std::unique_ptr<ElasticRun<dim>> make_state_run(const dealii::Triangulation<dim> &mesh,
                                                       const Scene<dim>                 &scene);
 } // namespace PeriDeal

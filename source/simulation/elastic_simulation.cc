@@ -53,8 +53,8 @@ namespace PeriDeal
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
     for (const Model kind : scene.general.models)
       {
-        models.push_back(make_elastic_model(kind, *mesh, scene));
-        const ElasticModel<dim> &model = *models.back();
+        models.push_back(make_elastic_run(kind, *mesh, scene));
+        const ElasticRun<dim> &model = *models.back();
         const OperatorSize       size  = model.op().size();
         std::string line = model.name() + ": " + readable_count(size.unknowns) + " unknowns";
         if (size.bonds > 0)
@@ -67,7 +67,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticSimulation<dim>::solve(ElasticModel<dim> &model)
+  void ElasticSimulation<dim>::solve(ElasticRun<dim> &model)
   {
     Timings::Scope   scope(model.timings, "solving");
     ElasticOperator &op = model.op();
@@ -135,7 +135,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticSimulation<dim>::add_totals(const ElasticModel<dim> &model)
+  void ElasticSimulation<dim>::add_totals(const ElasticRun<dim> &model)
   {
     const auto row = [&](const std::string &quantity, const double value) {
       record->totals += "0," + model.name() + "," + quantity + "," + full_precision(value) + "\n";

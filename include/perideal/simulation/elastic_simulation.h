@@ -8,7 +8,7 @@
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/progress.h>
 #include <perideal/output/result_files.h>
-#include <perideal/simulation/elastic_model.h>
+#include <perideal/simulation/elastic_run.h>
 
 #include <memory>
 
@@ -39,10 +39,10 @@ namespace PeriDeal
 
   private:
     void build();
-    void solve(ElasticModel<dim> &model);
+    void solve(ElasticRun<dim> &model);
     void write_points();
     void write_fields();
-    void add_totals(const ElasticModel<dim> &model);
+    void add_totals(const ElasticRun<dim> &model);
     void write_summary();
 
     const Scene<dim>                               &scene;
@@ -51,7 +51,7 @@ namespace PeriDeal
     mutable Progress                                progress;
     Timings                                         timings;
     std::unique_ptr<dealii::Triangulation<dim>>     mesh;
-    std::vector<std::unique_ptr<ElasticModel<dim>>> models;
+    std::vector<std::unique_ptr<ElasticRun<dim>>> models;
     PointTable                                      probes, line;
     std::unique_ptr<ResultRecord>                   record;
   };

@@ -39,18 +39,18 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<ElasticModel<dim>> make_elastic_model(const Model               model,
+  std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model               model,
                                                         const Triangulation<dim> &mesh,
                                                         const Scene<dim>         &scene)
   {
     Assert(model != Model::coupled, ExcNotImplemented()); // refused when the scene is read
-    return model == Model::peridynamics ? make_state_model(mesh, scene) :
-                                          make_elastic_element_model(mesh, scene);
+    return model == Model::peridynamics ? make_state_run(mesh, scene) :
+                                          make_elastic_element_run(mesh, scene);
   }
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                            \
-  template std::unique_ptr<ElasticModel<dim>> make_elastic_model(const Model,                \
+  template std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model,                \
                                                                  const Triangulation<dim> &, \
                                                                  const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)

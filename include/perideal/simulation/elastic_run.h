@@ -22,10 +22,10 @@ namespace PeriDeal
 {
   /** One model of an elastic body during a run: its nodes on the shared mesh, its operator, its displacement. All functions are collective. */
   template <int dim>
-  class ElasticModel
+  class ElasticRun
   {
   public:
-    virtual ~ElasticModel() = default;
+    virtual ~ElasticRun() = default;
 
     /** As in scenes and output files. */
     virtual std::string name() const = 0;
@@ -62,7 +62,7 @@ namespace PeriDeal
 
   /** Builds a model's nodes and operator. The time goes into its timings. */
   template <int dim>
-  std::unique_ptr<ElasticModel<dim>> make_elastic_model(const Model                       model,
+  std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model                       model,
                                                         const dealii::Triangulation<dim> &mesh,
                                                         const Scene<dim>                 &scene);
 } // namespace PeriDeal

@@ -17,10 +17,10 @@ namespace PeriDeal
   namespace
   {
     template <int dim>
-    class ElementModel : public ElasticModel<dim>
+    class ElementRun : public ElasticRun<dim>
     {
     public:
-      ElementModel(const Triangulation<dim> &mesh, const Scene<dim> &scene)
+      ElementRun(const Triangulation<dim> &mesh, const Scene<dim> &scene)
         : scene(scene)
         , handler(mesh)
       {
@@ -185,14 +185,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<ElasticModel<dim>> make_elastic_element_model(const Triangulation<dim> &mesh,
+  std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Triangulation<dim> &mesh,
                                                                 const Scene<dim>         &scene)
   {
-    return std::make_unique<ElementModel<dim>>(mesh, scene);
+    return std::make_unique<ElementRun<dim>>(mesh, scene);
   }
 
 #define PERIDEAL_INSTANTIATE(dim)                                         \
-  template std::unique_ptr<ElasticModel<dim>> make_elastic_element_model( \
+  template std::unique_ptr<ElasticRun<dim>> make_elastic_element_run( \
     const Triangulation<dim> &,                                           \
     const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)

@@ -17,10 +17,10 @@ namespace PeriDeal
   namespace
   {
     template <int dim>
-    class StateModel : public ElasticModel<dim>
+    class StateRun : public ElasticRun<dim>
     {
     public:
-      StateModel(const Triangulation<dim> &mesh, const Scene<dim> &scene)
+      StateRun(const Triangulation<dim> &mesh, const Scene<dim> &scene)
         : scene(scene)
         , handler(mesh)
       {
@@ -144,14 +144,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<ElasticModel<dim>> make_state_model(const Triangulation<dim> &mesh,
+  std::unique_ptr<ElasticRun<dim>> make_state_run(const Triangulation<dim> &mesh,
                                                       const Scene<dim>         &scene)
   {
-    return std::make_unique<StateModel<dim>>(mesh, scene);
+    return std::make_unique<StateRun<dim>>(mesh, scene);
   }
 
 #define PERIDEAL_INSTANTIATE(dim)                                                          \
-  template std::unique_ptr<ElasticModel<dim>> make_state_model(const Triangulation<dim> &, \
+  template std::unique_ptr<ElasticRun<dim>> make_state_run(const Triangulation<dim> &, \
                                                                const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
