@@ -21,11 +21,13 @@ namespace PeriDeal
     : SceneSection("Time")
   {
     declare("End time", EntryType::number, "1", "time", "The run goes from time 0 to this time.");
-    declare("Steady",
-            EntryType::boolean,
-            "false",
-            "",
-            "Solve for the steady state; all other entries of this section are ignored then.");
+    declare(
+      "Steady",
+      EntryType::boolean,
+      "false",
+      "",
+      "Solve for the steady state; all other entries of this section are ignored then. So they are in elastic equilibrium, by any "
+      "`Solver` in section `Elasticity` but `dynamics`.");
     declare(
       "Stepper",
       EntryType::choice,
@@ -152,8 +154,9 @@ namespace PeriDeal
     if (!at.empty() && !every.empty())
       error("Write every", "'Write at' is given, too: give one of the two.");
     if (steady && !(at.empty() && every.empty()))
-      error(at.empty() ? "Write every" : "Write at",
-            "is given, but 'Steady' in section 'Time' is true: there are no times to write at.");
+      error(
+        at.empty() ? "Write every" : "Write at",
+        "is given, but the scene is steady ('Steady' in section 'Time', or an elastic equilibrium): there are no times to write at.");
     for (const std::string &piece : split_list(at, ','))
       {
         const double time = parse_number(piece, where("Write at"));
@@ -331,6 +334,7 @@ namespace PeriDeal
   {
     return physics == Physics::heat        ? temperature :
            physics == Physics::electricity ? potential :
+           physics == Physics::elasticity  ? length :
                                              "";
   }
 

@@ -92,7 +92,7 @@ namespace PeriDeal
       "left to the elements, so that a linear field is exact up to the surface and all conditions act as in finite elements. The others "
       "cut families off at the surface, and Dirichlet values act on the nodes of the side (`none`), on layers of nodes inside, or on "
       "fictitious nodes outside the body, mirrored (2 T* - T) or constant (T*). `auto`: exchange where it is possible (nodes on "
-      "vertices, no slaves, self term or energy correction), else none.",
+      "vertices, no slaves, self term or energy correction), else none, as for elasticity.",
       {"auto", "exchange", "none", "layer", "fictitious mirror", "fictitious constant"});
     declare("Layer rows",
             EntryType::whole_number,

@@ -33,7 +33,11 @@ namespace PeriDeal
     , communicator(communicator)
     , progress(communicator, quiet)
     , record(std::make_unique<ResultRecord>())
-  {}
+  {
+    AssertThrow(
+      scene.general.physics != Physics::elasticity,
+      UserError("'Physics = elasticity' can be described by a scene, but not be run yet."));
+  }
 
 
   template <int dim>

@@ -36,6 +36,8 @@ end
 
 STEADY = {"Time/Steady": "true"}
 CRACK = {"Cracks/Segments": "0.25,0.5 ; 0.75,0.5"}
+ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "200", "Material/Poisson ratio": "0.3", "Boundary conditions/Dirichlet": "",
+           "Boundary conditions/Displacement": "left: 0, 0"}
 
 QUADS = """$MeshFormat
 2.2 0 8
@@ -165,6 +167,17 @@ def scene_mistakes(folder):
         ("zero saturation", {"Physics": "moisture", "Material/Saturated concentration": "0"}, ["'Saturated concentration'", "greater than 0"]),
         ("heat without capacity", {"Material/Heat capacity": "0"}, ["'Heat capacity'", "greater than 0"]),
         ("unknown physics", {"Physics": "moistrue"}, ["'Physics'", "Did you mean 'moisture'?"]),
+        # elasticity
+        ("elastic body with one modulus", {**ELASTIC, "Material/Poisson ratio": ""}, ["'Young modulus'", "exactly two"]),
+        ("moduli that contradict each other", {**ELASTIC, "Material/Poisson ratio": "", "Material/Bulk modulus": "20"},
+         ["'Young modulus'", "Poisson ratio would be -1.1666"]),
+        ("incompressible in plane strain", {**ELASTIC, "Material/Poisson ratio": "0.5", "Elasticity/Plane": "strain"}, ["'Poisson ratio'", "less than 0.5"]),
+        ("body that may turn", {**ELASTIC, "Boundary conditions/Displacement": "bottom: 0, free"},
+         ["'Displacement'", "translation in y, rotation about z"]),
+        ("empty grip", {**ELASTIC, "Boundary conditions/Displacement": "left: 0, 0; top: free, free"}, ["'Displacement'", "'top'", "empty grip"]),
+        ("traction on a grip", {**ELASTIC, "Boundary conditions/Traction": "left: 1, 0"}, ["'Traction'", "'left'", "displacement in x"]),
+        ("temperature of an elastic body", {**ELASTIC, "Boundary conditions/Dirichlet": "top: 1"}, ["'Dirichlet'", "'Displacement'"]),
+        ("displacement of heat", {"Boundary conditions/Displacement": "left: 0, 0"}, ["'Displacement'", "'Physics = elasticity'"]),
         # expressions
         ("bad expression", {"Material/Conductivity": "1 + 2*(x"}, ["'Conductivity'", "column"]),
         ("unknown name in an expression", {"Initial and source/Source": "2*x + foo"}, ["'Source'", "foo", "column 7"]),

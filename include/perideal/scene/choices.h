@@ -88,4 +88,32 @@ namespace PeriDeal
     arithmetic,
     harmonic
   };
+
+  enum class PlaneState
+  {
+    stress,
+    strain
+  };
+
+  /** Strains of the undeformed or of the deformed bonds. */
+  enum class Kinematics
+  {
+    linear,
+    full
+  };
+
+  enum class ElasticModel
+  {
+    state_based,
+    bond_based
+  };
+
+  enum class ElasticSolver
+  {
+    linear,
+    conjugate_gradients,
+    dynamic_relaxation,
+    adaptive_dynamic_relaxation,
+    dynamics
+  };
 } // namespace PeriDeal
