@@ -79,21 +79,24 @@ namespace PeriDeal
     }
 
 
+    /** Unknowns of multigrid's coarsest level: so few that iterations compare on coarse lattices, too. On those that have no more it has another level. */
+    constexpr unsigned int most_direct = 100, most_direct_of_few = 10;
+
+
     /** What is the same in all rows, stronger than the scene. */
     std::vector<Setting> common_settings()
     {
-      return {
-        {"Domain/Node spacing", ""},
-        {"Domain/Nodes", "vertices"},
-        {"Peridynamics/Flux treatment", "natural"},
-        {"Finite elements/Degree", "1"},
-        {"Coupling/Certificate", "false"},
-        {"Solver/Direct solver up to", "10"}, // so that iterations compare on coarse lattices, too
-        {"Output/Fields", "none"},
-        {"Output/Write at", ""},
-        {"Output/Write every", ""},
-        {"Output/Probes", ""},
-        {"Output/Line", ""}};
+      return {{"Domain/Node spacing", ""},
+              {"Domain/Nodes", "vertices"},
+              {"Peridynamics/Flux treatment", "natural"},
+              {"Finite elements/Degree", "1"},
+              {"Coupling/Certificate", "false"},
+              {"Solver/Direct solver up to", std::to_string(most_direct)},
+              {"Output/Fields", "none"},
+              {"Output/Write at", ""},
+              {"Output/Write every", ""},
+              {"Output/Probes", ""},
+              {"Output/Line", ""}};
     }
 
 
@@ -169,6 +172,13 @@ namespace PeriDeal
           row.group    = planned.family == nullptr ? "reference" : planned.family->model;
           row.settings = common_settings();
           row.settings.emplace_back("Domain/Cells", to_text(planned.cells));
+          double n_nodes = 1.;
+          for (const unsigned int n : planned.cells)
+            n_nodes *= n + 1.;
+          if (n_nodes <= most_direct)
+            for (Setting &setting : row.settings)
+              if (setting.first == "Solver/Direct solver up to")
+                setting.second = std::to_string(most_direct_of_few);
           auto own = planned.family == nullptr ? reference_settings(plan) :
                                                  planned.family->settings;
           if (planned.family != nullptr)
