@@ -188,6 +188,9 @@ def add_to(page, data):
     page.section("Work and precision", "figures")
     page.add(f"<p>{escape(reference_text(data))} Work is the number of nonzeros that one application of the operator multiplies, times "
              f"{applications(data)}.</p>")
+    if not data["families"]:
+        page.add("<p>Only the reference was computed.</p>")
+        return
     for x in ("work", "wall time"):
         page.figure(draw(data, x), f"error_over_{x.replace(' ', '_')}", escape(caption(data, x)), True, f"Error over {x}")
     if data["left out"]:

@@ -122,11 +122,8 @@ namespace PeriDeal
       sum += moment / (2. * dim);
       n_full += 1.;
     };
-    const auto has = [&](const unsigned int i) {
-      return !has_bonds || has_bonds(own_nodes->position(i));
-    };
     for (unsigned int i = 0; i < own_nodes->n_owned(); ++i)
-      if (has(i))
+      if (!has_bonds || has_bonds(own_nodes->position(i)))
         count(i);
     AssertThrow(
       Utilities::MPI::min(smallest_count, own_nodes->communicator()) > 0. ||
@@ -135,10 +132,6 @@ namespace PeriDeal
         "'Horizon' in section 'Peridynamics' is " + std::to_string(delta) +
         ": some node has no neighbour within it. Choose at least twice the largest cell of the " +
         (has_bonds ? "zone." : "mesh.")));
-    if (Utilities::MPI::sum(n_full, own_nodes->communicator()) == 0. && has_bonds)
-      for (unsigned int i = 0; i < own_nodes->n_owned(); ++i)
-        if (!has(i)) // a zone along the boundary
-          count(i);
     sum    = Utilities::MPI::sum(sum, own_nodes->communicator());
     n_full = Utilities::MPI::sum(n_full, own_nodes->communicator());
     if (parameters.calibration != Calibration::discrete || !members.empty())

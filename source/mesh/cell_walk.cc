@@ -17,6 +17,8 @@ namespace PeriDeal
     constexpr double apart = 1e-9; // places of a path that are told from each other
     constexpr double slack = 1e-6; // of a face: closer to its edges a crossing is unclear
     constexpr double steep = 1e-4; // least component of a start into a cell
+    constexpr double flat =
+      1e-4; // of a cell: how far beyond a side of the body a path may be that lies in it
 
     constexpr unsigned int none = numbers::invalid_unsigned_int;
 
@@ -249,8 +251,9 @@ namespace PeriDeal
               {
                 int side = side_of_edge(coordinates[k][d]);
                 // A path within a side of the body crosses the edges there.
-                if (outer != none && d == outer / 2 - (outer > face ? 1 : 0) &&
-                    std::abs(coordinates[k][d] - outer % 2) < slack)
+                if (outer != none && face / 2 != outer / 2 &&
+                    d == outer / 2 - (outer > face ? 1 : 0) &&
+                    std::abs(coordinates[k][d] - outer % 2) < flat)
                   side = 1;
                 inside = side == 0 || inside == 0 ? 0 : std::min(inside, side);
               }
@@ -308,7 +311,7 @@ namespace PeriDeal
           }
         if (lowest > steep * highest)
           return &candidate;
-        if (!(regular && std::abs(lowest) < slack * highest))
+        if (!(regular && std::abs(lowest) < flat * highest))
           continue;
         unsigned int n_flat = 0, flat = 0; // directions, and the last of them
         for (unsigned int d = 0; d < dim; ++d)
@@ -413,12 +416,8 @@ namespace PeriDeal
         const unsigned int next = beyond[numbers[cell] * n_faces + exit.face];
         if (next == none)
           return false;
-        if (outer != none)
-          {
-            outer = outer_beyond(cell, outer, exit.face);
-            if (outer == none)
-              return false;
-          }
+        if (outer != none && (outer = outer_beyond(cell, outer, exit.face)) == none)
+          return false;
         piece = {next / n_faces, {}};
         entry = next % n_faces;
         // The same values of the shape functions, seen from the other cell.

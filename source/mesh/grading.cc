@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/tria_base.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <perideal/mesh/grading.h>
 
@@ -67,12 +68,14 @@ namespace PeriDeal
     , coarsest(finest - scene.domain.coarsening)
     , end(scene.cracks.end_time)
   {
+    zone.stay_in({{scene.domain.lower, scene.domain.upper}}); // cells are merged in boxes only
     for (unsigned int d = 0; d < dim; ++d)
       spacing = std::max(spacing, scene.domain.spacing()[d]);
     const auto &models = scene.general.models;
     if (by_name)
       {
-        named   = Zone<dim>(scene.domain.fine);
+        named = Zone<dim>(scene.domain.fine);
+        named.stay_in({{scene.domain.lower, scene.domain.upper}});
         by_zone = std::find(models.begin(), models.end(), Model::coupled) != models.end();
       }
     set_time(0.);
@@ -132,6 +135,64 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /**
+     * Let all processes agree on the marks: those on copies of other processes' cells decide with which of its neighbours a cell may be merged, and the mesh
+     * would depend on how it is dealt out. Collective.
+     */
+    template <int dim>
+    void agree_on_marks(Triangulation<dim> &mesh)
+    {
+      enum Mark
+      {
+        none,
+        refine,
+        merge
+      };
+      using Cell         = typename Triangulation<dim>::active_cell_iterator;
+      const auto mark_of = [](const Cell &cell) {
+        return cell->refine_flag_set() ? refine : cell->coarsen_flag_set() ? merge : none;
+      };
+      const auto own_marks = [&] {
+        std::vector<Mark> marks;
+        for (const auto &cell : mesh.active_cell_iterators())
+          if (cell->is_locally_owned())
+            marks.push_back(mark_of(cell));
+        return marks;
+      };
+      // Preparation refines more cells and merges fewer ones, so this comes to an end.
+      for (bool changed = true; Utilities::MPI::max(changed ? 1 : 0, mesh.get_communicator()) > 0;)
+        {
+          GridTools::exchange_cell_data_to_ghosts<int, Triangulation<dim>>(
+            mesh,
+            [&](const Cell &cell) { return std_cxx17::optional<int>(mark_of(cell)); },
+            [](const Cell &cell, const int mark) {
+              cell->clear_refine_flag();
+              cell->clear_coarsen_flag();
+              if (mark == refine)
+                cell->set_refine_flag();
+              else if (mark == merge)
+                cell->set_coarsen_flag();
+            });
+          // A family is merged as a whole; of one of another process not all cells may be known here.
+          for (const auto &cell : mesh.active_cell_iterators())
+            if (cell->is_artificial())
+              cell->clear_coarsen_flag();
+          for (const auto &cell : mesh.active_cell_iterators())
+            if (cell->is_ghost() && cell->coarsen_flag_set())
+              for (unsigned int k = 0; k < cell->parent()->n_children(); ++k)
+                if (const auto sibling = cell->parent()->child(k);
+                    sibling->is_active() && sibling->is_artificial())
+                  sibling->set_coarsen_flag();
+          const std::vector<Mark> before = own_marks();
+          mesh.prepare_coarsening_and_refinement();
+          changed = own_marks() != before;
+        }
+    }
+  } // namespace
+
+
   template <int dim>
   bool Grading<dim>::mark(Triangulation<dim>        &mesh,
                           const std::vector<double> &indicators,
@@ -152,7 +213,10 @@ namespace PeriDeal
           cell->set_coarsen_flag();
         any = any || cell->refine_flag_set() || cell->coarsen_flag_set();
       }
-    return Utilities::MPI::max(any ? 1 : 0, mesh.get_communicator()) > 0;
+    any = Utilities::MPI::max(any ? 1 : 0, mesh.get_communicator()) > 0;
+    if (any)
+      agree_on_marks(mesh);
+    return any;
   }
 
 

@@ -94,8 +94,12 @@ namespace PeriDeal
       if (may_join[i])
         ends.push_back(nodes.position(i));
     const bool regular =
-      !nodes.has_doubled_nodes() &&
-      std::none_of(hanging.begin(), hanging.end(), [](const bool h) { return h; });
+      Utilities::MPI::min(
+        nodes.has_doubled_nodes() ||
+            std::any_of(hanging.begin(), hanging.end(), [](const bool h) { return h; }) ?
+          0 :
+          1,
+        nodes.communicator()) > 0;
     paths = std::make_unique<CellPaths<dim>>(cells, ends, bonds.reach() * (1. + 1e-6), regular);
   }
 
@@ -110,6 +114,17 @@ namespace PeriDeal
                           nodes.crack_point(i)};
     };
     return paths->follow(end(bond.nodes[0]), end(bond.nodes[1]), way);
+  }
+
+
+  template <int dim>
+  bool MeshExchange<dim>::starts_at(const unsigned int one, const unsigned int other) const
+  {
+    const Point<dim> &p = bonds.nodes().position(one), &q = bonds.nodes().position(other);
+    for (unsigned int d = dim; d-- > 0;)
+      if (p[d] != q[d])
+        return p[d] < q[d];
+    return one < other; // twins across a crack, which have no bond
   }
 
 
@@ -132,7 +147,8 @@ namespace PeriDeal
         bonds.known_bonds_of(i, family);
         for (const Bond &bond : family)
           {
-            if (bond.neighbor < i || !joined[bond.neighbor] || bonds.is_parted(i, bond.neighbor))
+            if (!joined[bond.neighbor] || !starts_at(i, bond.neighbor) ||
+                bonds.is_parted(i, bond.neighbor))
               continue;
             ZoneBond zone_bond{{i, bond.neighbor}, bond.intact};
             if (!follow(zone_bond, way))
@@ -356,12 +372,14 @@ namespace PeriDeal
   template <int dim>
   double MeshExchange<dim>::kept_share() const
   {
-    double all = 0., kept = 0.;
-    for (const ZoneBond &bond : zone_bonds)
-      {
-        all += bond.intact;
-        kept += bond.intact * bond.scale;
-      }
+    double all  = 0.,
+           kept = 0.; // each bond once at each of its ends, by the process that has the end
+    for (const auto &numbers : bonds_of_node)
+      for (const unsigned int number : numbers)
+        {
+          all += zone_bonds[number].intact;
+          kept += zone_bonds[number].intact * zone_bonds[number].scale;
+        }
     all  = Utilities::MPI::sum(all, bonds.nodes().communicator());
     kept = Utilities::MPI::sum(kept, bonds.nodes().communicator());
     return all > 0. ? kept / all : 1.;
@@ -383,9 +401,20 @@ namespace PeriDeal
   template <int dim>
   std::size_t MeshExchange<dim>::memory_consumption() const
   {
-    return bonds.memory_consumption() + paths->memory_consumption() +
-           cells.capacity() * (sizeof(PathCell<dim>) + sizeof(CellState)) +
-           zone_bonds.capacity() * sizeof(ZoneBond);
+    std::size_t memory = bonds.memory_consumption() + paths->memory_consumption() +
+                         cells.capacity() * (sizeof(PathCell<dim>) + sizeof(CellState)) +
+                         zone_bonds.capacity() * sizeof(ZoneBond) +
+                         taken.capacity() * sizeof(taken[0]) +
+                         bonds_of_node.capacity() * sizeof(bonds_of_node[0]) +
+                         cell_of_index.capacity() * sizeof(cell_of_index[0]);
+    for (const auto &matrix : taken)
+      memory += matrix.capacity() * sizeof(double);
+    for (const auto &numbers : bonds_of_node)
+      memory += numbers.capacity() * sizeof(unsigned int);
+    for (const auto *const lists : {&sent, &received})
+      for (const auto &[rank, list] : *lists)
+        memory += list.capacity() * sizeof(unsigned int);
+    return memory;
   }
 
 

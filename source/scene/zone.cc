@@ -107,6 +107,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Zone<dim>::stay_in(const BoundingBox<dim> &box)
+  {
+    body = box;
+  }
+
+
+  template <int dim>
   void Zone<dim>::set_cracks(std::vector<CrackPiece<dim>> pieces)
   {
     cracks = std::move(pieces);
@@ -121,19 +128,22 @@ namespace PeriDeal
   {
     if (formula.value(p) > 0.)
       return 0.;
+    const auto is_in = [&](const Point<dim> &q) {
+      return (!body || body->point_inside(q)) && formula.value(q) > 0.;
+    };
     constexpr unsigned int n_steps = 8, n_halvings = 12;
     double                 nearest = farthest;
     for (const Tensor<1, dim> &direction : directions)
       {
         const double step = farthest / n_steps;
         for (double r = step; r - step < nearest; r += step)
-          if (formula.value(p + r * direction) > 0.)
+          if (is_in(p + r * direction))
             {
               double outside = r - step, inside = r;
               for (unsigned int k = 0; k < n_halvings; ++k)
                 {
-                  const double middle = 0.5 * (outside + inside);
-                  (formula.value(p + middle * direction) > 0. ? inside : outside) = middle;
+                  const double middle                                = 0.5 * (outside + inside);
+                  (is_in(p + middle * direction) ? inside : outside) = middle;
                 }
               nearest = std::min(nearest, inside);
               break;

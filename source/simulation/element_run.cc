@@ -284,7 +284,12 @@ namespace PeriDeal
           for (unsigned int d = 0; d < dim; ++d)
             center[d] = centers[d].local_element(i) / volumes.local_element(i);
           if (on_surface.local_element(i) == 0. && center.distance(p) > apart)
-            u.local_element(i) = mean.local_element(i) + initial(p) - initial(center);
+            {
+              // At a jump of the initial value it stays between the mean and the value there.
+              const double here = initial(p), old = mean.local_element(i);
+              u.local_element(i) =
+                std::clamp(old + here - initial(center), std::min(old, here), std::max(old, here));
+            }
         });
       }
 
@@ -327,11 +332,12 @@ namespace PeriDeal
                                                     scene.domain,
                                                     scene.cracks,
                                                     NodalVolume::partial);
-            coupling = make_coupling(
-              *node_set,
-              scene,
-              model == Model::coupled ? Zone<dim>(scene.coupling, scene.horizon()) : Zone<dim>(),
-              scheme());
+            Zone<dim> zone;
+            if (model == Model::coupled)
+              zone = Zone<dim>(scene.coupling, scene.horizon());
+            if (scene.domain.shape != Shape::mesh_file)
+              zone.stay_in({{scene.domain.lower, scene.domain.upper}});
+            coupling = make_coupling(*node_set, scene, zone, scheme());
           }
         fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling), start);
       }

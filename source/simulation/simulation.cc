@@ -144,9 +144,10 @@ namespace PeriDeal
     if (const CouplingCertificate *c = model.examined())
       {
         std::ostringstream text;
+        text.precision(3);
+        text << "  coupling: " << 100. * c->zone_share << " % of the body; patch errors ";
         text.precision(2);
-        text << "  coupling: " << 100. * c->zone_share << " % of the body; patch errors "
-             << c->linear << " (linear), " << c->quadratic << " (quadratic), " << c->cubic
+        text << c->linear << " (linear), " << c->quadratic << " (quadratic), " << c->cubic
              << " (cubic)";
         progress.line(text.str());
       }

@@ -58,6 +58,16 @@ namespace PeriDeal
   } // namespace
 
 
+  std::string mistake_in_overrides(const UserError &error)
+  {
+    std::string       message      = error.message();
+    const std::string command_line = "command line: "; // what overrides are called elsewhere
+    if (message.compare(0, command_line.size(), command_line) == 0)
+      message.erase(0, command_line.size());
+    return message;
+  }
+
+
   CheckedRow check_row(const Study       &study,
                        const StudyRow    &row,
                        const std::string &folder,
@@ -83,10 +93,7 @@ namespace PeriDeal
       }
     catch (const UserError &error)
       {
-        std::string       message      = error.message();
-        const std::string command_line = "command line: "; // what overrides are called elsewhere
-        if (message.compare(0, command_line.size(), command_line) == 0)
-          message.erase(0, command_line.size());
+        const std::string message = mistake_in_overrides(error);
         AssertThrow(row.fails,
                     UserError(study.source + ": row '" + row.name + "' (scene '" + row.scene +
                               "'): " + message));

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/user_error.h>
 #include <perideal/scene/scene.h>
 #include <perideal/study/study_file.h>
 
@@ -23,6 +24,9 @@ namespace PeriDeal
     std::map<std::string, std::string>
       entries; // every entry of the scene and its text, defaults included
   };
+
+  /** What is wrong with the entries of a row: the message without the words for overrides, which stand on no command line there. */
+  std::string mistake_in_overrides(const UserError &error);
 
   /**
    * Read and parse the scene of a row. Throws UserError with the study, the row and the scene's own message, unless the row is one that

@@ -111,7 +111,14 @@ namespace PeriDeal
       order = result.beyond > farthest_extrapolation ? 0. : final_order(family);
     else
       order = std::log(family[last].error / b.error) / std::log(b.cost / family[last].cost);
-    if (!(b.error > 0.) || !(order > 1e-2) || !std::isfinite(order))
+    const bool steady = b.error > 0. && order > 1e-2 && std::isfinite(order);
+    if (!steady && !beyond)
+      {
+        // The good point is hardly dearer than the one before.
+        result.kind = CostAtError::Kind::at_most;
+        result.cost = b.cost;
+      }
+    if (!steady)
       return result;
     result.kind = beyond ? CostAtError::Kind::extrapolated : CostAtError::Kind::interpolated;
     result.cost = b.cost * std::pow(b.error / error, 1. / order);

@@ -30,6 +30,8 @@ namespace PeriDeal
                          {"Peridynamics/Surface correction", correction},
                          {"Peridynamics/Boundary treatment", "auto"},
                          {"Peridynamics/Horizon", ""},
+                         {"Coupling/Zone", "cracks: 1"},
+                         {"Coupling/Adaptive tolerance", "0.02"},
                          {"Domain/Coarsening", "0"},
                          {"Domain/Fine where", "auto"}};
       result.on_faces = mesh == "faces";
@@ -92,10 +94,7 @@ namespace PeriDeal
       family.multiple = 1u << k;
       set(family, "Domain/Coarsening", std::to_string(k));
       if (family.model == elements)
-        {
-          set(family, "Peridynamics/Horizon ratio", "3");
-          set(family, "Coupling/Zone", "cracks: 1");
-        }
+        set(family, "Peridynamics/Horizon ratio", "3");
       return family;
     }
 

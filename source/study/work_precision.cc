@@ -7,6 +7,8 @@
 #include <perideal/output/result_files.h>
 #include <perideal/study/work_precision.h>
 
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include "work_tables.h"
@@ -47,6 +49,12 @@ namespace PeriDeal
           who +
           "'Transmission' in section 'Cracks' is a share of bonds of one horizon, another crack on each "
           "lattice. Give 'Contact conductance' in its place."));
+      AssertThrow(
+        !scene.cracks.conduct() || !scene.reference.solution.empty(),
+        UserError(
+          who +
+          "the cracks conduct ('Contact conductance' in section 'Cracks'), and cannot be cut into the mesh of the reference then. Give "
+          "'Solution' in section 'Reference'."));
       SceneFacts facts;
       facts.title         = scene.general.title;
       facts.exact         = !scene.reference.solution.empty();
@@ -71,21 +79,24 @@ namespace PeriDeal
     }
 
 
+    /** Unknowns of multigrid's coarsest level: so few that iterations compare on coarse lattices, too. On those that have no more it has another level. */
+    constexpr unsigned int most_direct = 100, most_direct_of_few = 10;
+
+
     /** What is the same in all rows, stronger than the scene. */
     std::vector<Setting> common_settings()
     {
-      return {
-        {"Domain/Node spacing", ""},
-        {"Domain/Nodes", "vertices"},
-        {"Peridynamics/Flux treatment", "natural"},
-        {"Finite elements/Degree", "1"},
-        {"Coupling/Certificate", "false"},
-        {"Solver/Direct solver up to", "100"}, // so that iterations compare on coarse lattices, too
-        {"Output/Fields", "none"},
-        {"Output/Write at", ""},
-        {"Output/Write every", ""},
-        {"Output/Probes", ""},
-        {"Output/Line", ""}};
+      return {{"Domain/Node spacing", ""},
+              {"Domain/Nodes", "vertices"},
+              {"Peridynamics/Flux treatment", "natural"},
+              {"Finite elements/Degree", "1"},
+              {"Coupling/Certificate", "false"},
+              {"Solver/Direct solver up to", std::to_string(most_direct)},
+              {"Output/Fields", "none"},
+              {"Output/Write at", ""},
+              {"Output/Write every", ""},
+              {"Output/Probes", ""},
+              {"Output/Line", ""}};
     }
 
 
@@ -115,6 +126,41 @@ namespace PeriDeal
     }
 
 
+    /** Take families out of the plan whose settings the scene cannot have, with what is wrong. Collective. */
+    void leave_out_impossible(WorkPlan                       &plan,
+                              const std::string              &scene,
+                              const std::vector<std::string> &overrides,
+                              const MPI_Comm                  communicator)
+    {
+      std::map<const WorkFamily *, std::string> faults;
+      for (const WorkPlan::Row &row : plan.rows)
+        {
+          if (row.family == nullptr || faults.count(row.family) > 0)
+            continue;
+          std::vector<std::string> all = overrides;
+          all.push_back("Domain/Cells=" + to_text(row.cells));
+          for (const auto &[entry, value] : row.family->settings)
+            all.push_back(entry + "=" + value);
+          std::string &fault = faults[row.family];
+          try
+            {
+              with_scene(read_scene(scene, all, communicator), [](const auto &) {});
+            }
+          catch (const UserError &error)
+            {
+              fault = mistake_in_overrides(error);
+            }
+          if (!fault.empty())
+            plan.left_out.push_back(row.family->name + ": " + fault);
+        }
+      const auto impossible = [&](const WorkPlan::Row &row) {
+        return row.family != nullptr && !faults[row.family].empty();
+      };
+      plan.rows.erase(std::remove_if(plan.rows.begin(), plan.rows.end(), impossible),
+                      plan.rows.end());
+    }
+
+
     void add_rows(Study &study, const WorkPlan &plan, const std::string &scene)
     {
       for (const WorkPlan::Row &planned : plan.rows)
@@ -126,6 +172,13 @@ namespace PeriDeal
           row.group    = planned.family == nullptr ? "reference" : planned.family->model;
           row.settings = common_settings();
           row.settings.emplace_back("Domain/Cells", to_text(planned.cells));
+          double n_nodes = 1.;
+          for (const unsigned int n : planned.cells)
+            n_nodes *= n + 1.;
+          if (n_nodes <= most_direct)
+            for (Setting &setting : row.settings)
+              if (setting.first == "Solver/Direct solver up to")
+                setting.second = std::to_string(most_direct_of_few);
           auto own = planned.family == nullptr ? reference_settings(plan) :
                                                  planned.family->settings;
           if (planned.family != nullptr)
@@ -177,15 +230,17 @@ namespace PeriDeal
     std::vector<std::string> overrides = options.overrides;
     for (const auto &[entry, value] : common_settings())
       overrides.push_back(entry + "=" + value);
+    overrides.push_back("Models=finite elements"); // those of the rows may be others
     SceneFacts facts;
     with_scene(read_scene(scene, overrides, communicator),
                [&](const auto &parsed) { facts = facts_of(parsed); });
-    const WorkPlan plan = plan_work(facts.box,
-                                    facts.exact,
-                                    facts.moving_cracks,
-                                    options.cells,
-                                    options.reference,
-                                    options.budget);
+    WorkPlan plan = plan_work(facts.box,
+                              facts.exact,
+                              facts.moving_cracks,
+                              options.cells,
+                              options.reference,
+                              options.budget);
+    leave_out_impossible(plan, scene, overrides, communicator);
     study.rows.clear();
     study.title  = facts.title + ": work and precision";
     study.output = options.output.empty() ? study.output + "_work_precision" : options.output;

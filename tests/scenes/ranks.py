@@ -263,6 +263,10 @@ def coupled():
     compare("plate, graded, chebyshev", PLATE, {**FIXED["chebyshev"], **graded}, {"coupled": 1e-12})
     compare("plate, adaptive, growing", PLATE,
             {**FIXED["chebyshev"], **graded, **growing, "Coupling/Zone": "adaptive"}, {"coupled": 1e-12})
+    # Here cells that might be merged lie on both sides of the processes' borders.
+    compare("square, adaptive, growing", "prm/coupling/adaptive_zone.prm",
+            {"Domain/Cells": "40, 40", "Domain/Coarsening": "2", "Time/End time": "1", "Output/Write at": "0.38, 0.6", "Output/Line": "-0.9, -0.7 ; 0.9, 0.8 ; 41", "Output/Fields": "none",
+             "Solver/Tolerance": "1e-13"}, {"coupled": 1e-12}, ranks=(3, 4))
     solved = {"coupled": 1e-8, "peridynamics": 1e-8}
     compare("plate, coupled, steady", PLATE, {**ADAPTIVE["steady"], **exchange}, solved)
     compare("plate, splice, steady", PLATE, {**ADAPTIVE["steady"], "Coupling/Scheme": "splice"}, {"coupled": 1e-8})

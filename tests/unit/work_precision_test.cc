@@ -78,6 +78,13 @@ namespace
     cost = cost_at_error({{1., 0.01}, {10., 0.2}, {100., 0.02}}, 0.05);
     EXPECT_EQ(cost.kind, Kind::interpolated);
     EXPECT_GT(cost.cost, 10.);
+    // Two that cost the same, as wall times may; one that costs less.
+    for (const double first : {10., 12.})
+      {
+        cost = cost_at_error({{first, 0.2}, {10., 0.05}, {40., 0.02}}, 0.1);
+        EXPECT_EQ(cost.kind, Kind::at_most);
+        EXPECT_EQ(cost.cost, 10.);
+      }
     // No gain at the end, one point, none.
     EXPECT_EQ(cost_at_error({{1., 0.2}, {10., 0.2}}, 0.1).kind, Kind::none);
     EXPECT_EQ(cost_at_error({{1., 0.2}}, 0.1).kind, Kind::none);

@@ -58,7 +58,7 @@ namespace PeriDeal
       double strain = 0.;     // lambda_c
     };
 
-    /** Between two nodes known here, the first one of a smaller local number. */
+    /** Between two nodes known here, the first one of them where the bond starts. */
     struct ZoneBond
     {
       unsigned int nodes[2];
@@ -74,6 +74,10 @@ namespace PeriDeal
     void scale_bonds(const std::vector<unsigned int> &way_cells,
                      const std::vector<std::size_t>  &way_ends);
     bool follow(const ZoneBond &bond, std::vector<PathPiece<dim>> &way);
+
+    /** Which end of a bond it is followed from: a matter of round-off on the surface of the body, so it is that of lower coordinates, on any process. */
+    bool starts_at(const unsigned int one, const unsigned int other) const;
+
     void take(const double weight, const std::vector<PathPiece<dim>> &way);
     void find_strains();
 

@@ -9,6 +9,7 @@
 #include <perideal/scene/coupling_control.h>
 #include <perideal/scene/crack_geometry.h>
 
+#include <optional>
 #include <vector>
 
 namespace PeriDeal
@@ -29,6 +30,9 @@ namespace PeriDeal
 
     /** Where a formula is greater than 0. */
     explicit Zone(const Expression &formula);
+
+    /** Formulas need no values outside of this box, the body's: no part of the zone is looked for there. */
+    void stay_in(const dealii::BoundingBox<dim> &body);
 
     /** The cracks from whose pieces the distance counts. */
     void set_cracks(std::vector<CrackPiece<dim>> pieces);
@@ -52,12 +56,13 @@ namespace PeriDeal
   private:
     double distance_to_formula(const dealii::Point<dim> &p, const double farthest) const;
 
-    ZoneKind                              kind  = ZoneKind::everywhere;
-    double                                reach = 0.;
-    Expression                            formula;
-    std::vector<dealii::Tensor<1, dim>>   directions; // to look for the zone of a formula
-    std::vector<CrackPiece<dim>>          cracks;
-    std::vector<dealii::BoundingBox<dim>> boxes; // around each piece
+    ZoneKind                                kind  = ZoneKind::everywhere;
+    double                                  reach = 0.;
+    Expression                              formula;
+    std::optional<dealii::BoundingBox<dim>> body;
+    std::vector<dealii::Tensor<1, dim>>     directions; // to look for the zone of a formula
+    std::vector<CrackPiece<dim>>            cracks;
+    std::vector<dealii::BoundingBox<dim>>   boxes; // around each piece
   };
 
 

@@ -41,7 +41,7 @@ namespace PeriDeal
     {
       interpolated, // between two points of the family
       extrapolated, // beyond its finest point, with the slope of its last three
-      at_most,      // the coarsest point is already better: its cost is an upper bound
+      at_most, // the cost of a point that is better: of the coarsest, or of one no dearer than the point before
       none // fewer than two points, too far beyond them, or the error does not become smaller
     };
 
