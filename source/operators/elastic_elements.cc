@@ -105,6 +105,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ElasticElements<dim>::multiply(Vector &y, const Vector &x) const
+  {
+    stiffness.vmult(y, x);
+  }
+
+
+  template <int dim>
   void ElasticElements<dim>::apply(Vector &y, const Vector &x) const
   {
     ++this->applications;

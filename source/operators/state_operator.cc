@@ -102,12 +102,13 @@ namespace PeriDeal
             if (bond.cut || bond.intact == 0.)
               continue;
             const Tensor<1, dim> xi = bonds.bond_vector(i, bond.neighbor);
+            const double         w  = bond.intact / bonds.bond_conductivity(i, bond.neighbor);
             neighbors.push_back(bond.neighbor);
-            moments.push_back(bond.intact * xi);
-            weights.push_back(bond.intact * xi.norm_square());
+            moments.push_back(w * xi);
+            weights.push_back(w * xi.norm_square());
             q += weights.back() / nodes.volume(i);
-            shape += bond.intact * symmetrize(outer_product(xi, xi));
-            n_bonds += bond.neighbor < nodes.n_owned() ? 0.5 : 0.5;
+            shape += w * symmetrize(outer_product(xi, xi));
+            n_bonds += 0.5; // at each end
           }
         starts.push_back(neighbors.size());
         weighted.local_element(i) = q;

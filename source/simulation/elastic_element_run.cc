@@ -186,15 +186,14 @@ namespace PeriDeal
 
   template <int dim>
   std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Triangulation<dim> &mesh,
-                                                                const Scene<dim>         &scene)
+                                                            const Scene<dim>         &scene)
   {
     return std::make_unique<ElementRun<dim>>(mesh, scene);
   }
 
-#define PERIDEAL_INSTANTIATE(dim)                                         \
-  template std::unique_ptr<ElasticRun<dim>> make_elastic_element_run( \
-    const Triangulation<dim> &,                                           \
-    const Scene<dim> &);
+#define PERIDEAL_INSTANTIATE(dim)                                                                \
+  template std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Triangulation<dim> &, \
+                                                                     const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -40,8 +40,8 @@ namespace PeriDeal
 
   template <int dim>
   std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model               model,
-                                                        const Triangulation<dim> &mesh,
-                                                        const Scene<dim>         &scene)
+                                                    const Triangulation<dim> &mesh,
+                                                    const Scene<dim>         &scene)
   {
     Assert(model != Model::coupled, ExcNotImplemented()); // refused when the scene is read
     return model == Model::peridynamics ? make_state_run(mesh, scene) :
@@ -49,10 +49,10 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                            \
+#define PERIDEAL_INSTANTIATE(dim)                                                        \
   template std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model,                \
-                                                                 const Triangulation<dim> &, \
-                                                                 const Scene<dim> &);
+                                                             const Triangulation<dim> &, \
+                                                             const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -39,9 +39,46 @@ namespace PeriDeal
   ElasticSimulation<dim>::~ElasticSimulation() = default;
 
 
+  namespace
+  {
+    /** What cannot be computed, so that no scene is silently taken for another. */
+    template <int dim>
+    void refuse_what_is_not_computed(const Scene<dim> &scene)
+    {
+      const auto require = [](const bool ok, const std::string &what) {
+        AssertThrow(ok, UserError(what));
+      };
+      require(scene.elasticity.solver == ElasticSolver::linear,
+              "'Solver = " + scene.elasticity.solver_name() +
+                "' in section 'Elasticity' cannot be run yet; use 'linear'.");
+      const auto &models = scene.general.models;
+      require(std::find(models.begin(), models.end(), Model::coupled) == models.end(),
+              "'Models = coupled' cannot be run with 'Physics = elasticity' yet.");
+      require(
+        std::find(models.begin(), models.end(), Model::finite_elements) == models.end() ||
+          scene.cracks.cracks.empty() || scene.cracks.mesh == CrackMesh::faces,
+        "'Mesh' in section 'Cracks' has to be 'faces' for finite elements with 'Physics = elasticity'.");
+      require(scene.domain.coarsening == 0,
+              "'Coarsening' in section 'Domain' cannot be used with 'Physics = elasticity' yet.");
+      require(
+        scene.boundary_conditions.traction_layer < 0.,
+        "'Traction layer' in section 'Boundary conditions' cannot be used yet; leave it empty.");
+      require(
+        !scene.material.fracture_energy && !scene.material.critical_stretch,
+        "'Fracture energy' and 'Critical stretch' in section 'Material' cannot be used yet; leave them empty.");
+      require(
+        scene.peridynamics.treatment == BoundaryTreatment::none,
+        "'Boundary treatment' in section 'Peridynamics' has to be 'none' with 'Physics = elasticity'.");
+      require(scene.reference.solution.empty(),
+              "'Solution' in section 'Reference' cannot be used with 'Physics = elasticity' yet.");
+    }
+  } // namespace
+
+
   template <int dim>
   void ElasticSimulation<dim>::build()
   {
+    refuse_what_is_not_computed(scene);
     const unsigned int n_proc = Utilities::MPI::n_mpi_processes(communicator);
     progress.line(scene.general.title + "  (" + text.file_name + ", " + std::to_string(n_proc) +
                   (n_proc == 1 ? " process)" : " processes)"));
@@ -55,7 +92,7 @@ namespace PeriDeal
       {
         models.push_back(make_elastic_run(kind, *mesh, scene));
         const ElasticRun<dim> &model = *models.back();
-        const OperatorSize       size  = model.op().size();
+        const OperatorSize     size  = model.op().size();
         std::string line = model.name() + ": " + readable_count(size.unknowns) + " unknowns";
         if (size.bonds > 0)
           line += ", " + readable_count(size.bonds) + " bonds";

@@ -34,9 +34,7 @@ namespace PeriDeal
     , progress(communicator, quiet)
     , record(std::make_unique<ResultRecord>())
   {
-    AssertThrow(
-      scene.general.physics != Physics::elasticity,
-      UserError("'Physics = elasticity' can be described by a scene, but not be run yet."));
+    Assert(scene.general.physics != Physics::elasticity, ExcMessage("see ElasticSimulation"));
   }
 
 

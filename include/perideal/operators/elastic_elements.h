@@ -49,6 +49,9 @@ namespace PeriDeal
     ForceBalance        forces(const Vector &u, const double t) const override;
     double              energy(const Vector &u) const override;
 
+    /** y = K x without conditions. Collective. */
+    void multiply(Vector &y, const Vector &x) const;
+
     /** Place of a node of this process, by local number. */
     const dealii::Point<dim> &position(const unsigned int node) const;
 
