@@ -107,24 +107,24 @@ namespace PeriDeal
     const double tiny           = 1e-10 * own_nodes->smallest_spacing();
     double       smallest_count = std::numeric_limits<double>::max(), sum = 0., n_full = 0.;
     std::vector<std::pair<unsigned int, double>> found;
-    const auto                                   count = [&](const unsigned int i) {
-      search->within(own_nodes->position(i), farthest, found);
-      smallest_count = std::min(smallest_count, static_cast<double>(found.size()) - 1.);
-      const bool full = std::none_of(found.begin(), found.end(), [&](const auto &f) {
-        return at_boundary.local_element(f.first) > 0.;
-      });
-      if (!full || !members.empty())
-        return;
-      double moment = 0.;
-      for (const auto &[neighbor, square] : found)
-        if (square > tiny * tiny) // not the node itself, nor its twin across a crack
-          moment += off_lattice_weight(std::sqrt(square)) * own_nodes->volume(neighbor) * square;
-      sum += moment / (2. * dim);
-      n_full += 1.;
-    };
     for (unsigned int i = 0; i < own_nodes->n_owned(); ++i)
-      if (!has_bonds || has_bonds(own_nodes->position(i)))
-        count(i);
+      {
+        if (has_bonds && !has_bonds(own_nodes->position(i)))
+          continue;
+        search->within(own_nodes->position(i), farthest, found);
+        smallest_count  = std::min(smallest_count, static_cast<double>(found.size()) - 1.);
+        const bool full = std::none_of(found.begin(), found.end(), [&](const auto &f) {
+          return at_boundary.local_element(f.first) > 0.;
+        });
+        if (!full || !members.empty())
+          continue;
+        double moment = 0.;
+        for (const auto &[neighbor, square] : found)
+          if (square > tiny * tiny) // not the node itself, nor its twin across a crack
+            moment += off_lattice_weight(std::sqrt(square)) * own_nodes->volume(neighbor) * square;
+        sum += moment / (2. * dim);
+        n_full += 1.;
+      }
     AssertThrow(
       Utilities::MPI::min(smallest_count, own_nodes->communicator()) > 0. ||
         own_nodes->is_graded(), // nodes of merged cells are in no zone

@@ -17,8 +17,7 @@ namespace PeriDeal
     constexpr double apart = 1e-9; // places of a path that are told from each other
     constexpr double slack = 1e-6; // of a face: closer to its edges a crossing is unclear
     constexpr double steep = 1e-4; // least component of a start into a cell
-    constexpr double flat =
-      1e-4; // of a cell: how far beyond a side of the body a path may be that lies in it
+    constexpr double flat  = 1e-4; // of a face: paths so near to a side of the body lie in it
 
     constexpr unsigned int none = numbers::invalid_unsigned_int;
 
@@ -230,9 +229,10 @@ namespace PeriDeal
           seen.across[d][v] = x * line.across[d];
       }
     // What counts as close to an edge, with some room.
-    const double tolerance = 20. * slack * (corners[n_corners - 1] - corners[0]).norm();
-    Step         result    = Step::stays;
-    unsigned int faces     = faces_to_cross(seen, tolerance);
+    const double tolerance =
+      (outer == none ? 20. * slack : 2. * flat) * (corners[n_corners - 1] - corners[0]).norm();
+    Step         result = Step::stays;
+    unsigned int faces  = faces_to_cross(seen, tolerance);
     if (entry != none)
       faces &= ~(1u << entry);
     if (outer != none)

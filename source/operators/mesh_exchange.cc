@@ -33,7 +33,6 @@ namespace PeriDeal
     }
 
 
-
     /** The zone when all cracks have grown. */
     template <int dim>
     Zone<dim> zone_at_end(Zone<dim> zone, const Scene<dim> &scene)

@@ -14,7 +14,7 @@ import sys
 
 from scene_test import Comparison, check, finish, observed_orders, print_table, run_scene
 
-SCENES = {dim: f"prm/heat/harmonic_{dim}d.prm" for dim in (1, 2, 3)}
+SCENES = {1: "prm/heat/harmonic_1d.prm", 2: "prm/heat/harmonic_2d.prm", 3: "prm/heat/harmonic_3d.prm"}
 
 # Rates of an independent program on 20 cells, horizon ratio m, all wave numbers 1: (dimension, m, kernel): exponents 0, 1, 2.
 # Beyond the horizon the constant and the gaussian kernel go on as far as the linear volume fraction does.

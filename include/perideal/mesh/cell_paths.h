@@ -45,8 +45,9 @@ namespace PeriDeal
    * Follows straight lines from vertex to vertex through the cells on their way.
    *
    * A path that passes from cell to cell through the inside of faces walks so: where it crosses a face the two coordinates of the face give the shape
-   * functions of both cells. So do paths within a side of the body that is flat to 1e-4 of a cell. All others (along faces or edges, close to vertices, through hanging nodes, at cracks cut into the mesh) are cut at all
-   * faces of the cells nearby, and for each piece the cells that hold its middle are looked for.
+   * functions of both cells. So do paths within a side of the body that is flat to 1e-4 of a cell, and those that are one edge of a cell. All others
+   * (within faces of the inside, close to vertices, through hanging nodes, at cracks cut into the mesh) are cut at all faces of the cells nearby, and for
+   * each piece the cells that hold its middle are looked for.
    */
   template <int dim>
   class CellPaths
