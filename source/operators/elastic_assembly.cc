@@ -77,8 +77,13 @@ namespace PeriDeal
           for (const auto row : data.unknowns)
             pattern.add_entries(row, data.unknowns.begin(), data.unknowns.end());
         }
+    if (coupling)
+      add_bond_pattern(pattern);
     pattern.compress();
     stiffness.reinit(pattern);
+    if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling && coupling &&
+        !scene.cracks.cracks.empty())
+      find_crack_factors();
     initialize_vector(mass);
     volumes.reinit(nodes);
     double energy = 0.;
@@ -88,6 +93,7 @@ namespace PeriDeal
           data.values.reinit(cell);
           data.set_indices(cell);
           assemble_cell(data);
+          change_cell(cell, data);
           energy += data.thermal_energy;
           for (unsigned int i = 0; i < data.unknowns.size(); ++i)
             {
@@ -101,17 +107,24 @@ namespace PeriDeal
           for (unsigned int i = 0; i < data.indices.size(); ++i)
             volumes(data.indices[i]) += data.volume(i);
         }
+    thermal_energy = Utilities::MPI::sum(energy, dofs.get_communicator());
+    if (coupling)
+      {
+        add_bonds(stiffness, false);
+        add_thermal_bonds();
+        count_bonds();
+      }
     stiffness.compress(VectorOperation::add);
     mass.compress(VectorOperation::add);
     volumes.compress(VectorOperation::add);
     thermal_loads.compress(VectorOperation::add);
-    thermal_energy = Utilities::MPI::sum(energy, dofs.get_communicator());
     initialize_vector(stiffness_diagonal);
     for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
       if (column == unknowns->local_to_global(i))
         stiffness_diagonal.local_element(i) = value;
     });
     conditions->mask(stiffness_diagonal, 1.);
+    throw_if_isolated();
   }
 
 

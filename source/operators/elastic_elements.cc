@@ -21,15 +21,20 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  ElasticElements<dim>::ElasticElements(const DoFHandler<dim> &dof_handler, const Scene<dim> &scene)
+  ElasticElements<dim>::ElasticElements(const DoFHandler<dim>                &dof_handler,
+                                        const Scene<dim>                     &scene,
+                                        std::unique_ptr<ElasticCoupling<dim>> given_coupling)
     : dofs(dof_handler)
     , scene(scene)
+    , coupling(std::move(given_coupling))
   {
     IndexSet relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
-    nodes    = std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
-                                                                relevant,
-                                                                dofs.get_communicator());
+    nodes    = coupling ?
+                 coupling->families().nodes().partitioner() :
+                 std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
+                                                                  relevant,
+                                                                  dofs.get_communicator());
     unknowns = interleaved(*nodes, dim);
     find_positions();
     find_conditions();
@@ -42,6 +47,7 @@ namespace PeriDeal
     initialize_vector(scratch);
     initialize_vector(constant_loads);
     initialize_vector(thermal_loads);
+    find_cut_cells();
     assemble();
     if (!loads_vary)
       assemble_loads(constant_loads, 0.);
@@ -56,6 +62,12 @@ namespace PeriDeal
   void ElasticElements<dim>::find_positions()
   {
     positions.resize(nodes->locally_owned_size() + nodes->n_ghost_indices());
+    if (coupling)
+      {
+        for (unsigned int i = 0; i < positions.size(); ++i)
+          positions[i] = coupling->families().nodes().position(i);
+        return;
+      }
     const MappingQ1<dim>                 mapping;
     std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
     for (const auto &cell : dofs.active_cell_iterators())
@@ -240,8 +252,11 @@ namespace PeriDeal
     OperatorSize size;
     size.unknowns = unknowns->size();
     size.nonzeros = stiffness.n_nonzero_elements();
+    size.bonds    = n_bonds;
     size.memory   = stiffness.memory_consumption() + positions.capacity() * sizeof(Point<dim>);
-    size.form     = "matrix";
+    if (coupling)
+      size.memory += coupling->memory_consumption();
+    size.form = "matrix";
     return size;
   }
 

@@ -96,7 +96,7 @@ namespace PeriDeal
       "What finite elements and the mesh do with a crack: in cut cells the conductances of the "
       "node "
       "pairs that the crack does not separate; the crack lies on cell faces, which are doubled; "
-      "or cut cells conduct nothing.",
+      "or cut cells conduct nothing. With `Physics = elasticity` the default is removed, and pairs are not defined.",
       {"pairs", "faces", "removed"});
     declare(
       "Transmission",
@@ -165,13 +165,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Cracks<dim>::parse()
+  void Cracks<dim>::parse(const Physics physics)
   {
     cracks.clear();
     tips.clear();
     parse_segments();
     parse_polygons();
-    mesh         = choice<CrackMesh>("Mesh");
+    mesh         = physics == Physics::elasticity && !is_given("Mesh") ? CrackMesh::removed :
+                                                                         choice<CrackMesh>("Mesh");
     through_tips = choice<ThroughTips>("Bonds through tips");
     parse_conductance();
     parse_growth();

@@ -68,12 +68,14 @@ namespace PeriDeal
     {
       if (!runs(scene, Model::coupled))
         return;
-      if (scene.coupling.scheme == CouplingScheme::exchange &&
-          scene.elasticity.model == ElasticModel::state_based)
+      if (scene.coupling.zone == ZoneKind::adaptive)
         entry_error(
-          scene.coupling.where("Scheme"),
-          "'exchange' exchanges bond by bond and has no place for the nonlocal dilatation of 'Model = state-based' in section "
-          "'Elasticity'. Use 'splice' or 'blending', or 'Model = bond-based'.");
+          scene.coupling.where("Zone"),
+          "'adaptive' is for what diffuses; with 'Physics = elasticity' use 'cracks: 1' or a formula.");
+      if (scene.domain.shape == Shape::mesh_file)
+        entry_error(
+          scene.domain.where("Shape"),
+          "'mesh file' is not for 'Models = coupled' with 'Physics = elasticity', whose bonds lie on a lattice. Use 'box' or 'plate with hole'.");
       if (scene.elasticity.kinematics == Kinematics::full)
         entry_error(
           scene.elasticity.where("Kinematics"),
@@ -143,6 +145,10 @@ namespace PeriDeal
         material.thermal_expansion.value(Point<dim>()) == 0.)
       entry_error(elasticity.where("Temperature change"),
                   "has no effect: 'Thermal expansion' in section 'Material' is 0.");
+    if (cracks.mesh == CrackMesh::pairs && !cracks.cracks.empty())
+      entry_error(
+        cracks.where("Mesh"),
+        "'pairs' conduct what diffuses; with 'Physics = elasticity' use 'removed' or 'faces'.");
     if (cracks.conduct())
       entry_error(
         cracks.where(cracks.contact_conductance < 0. ? "Transmission" : "Contact conductance"),

@@ -304,7 +304,7 @@ namespace PeriDeal
     boundary_conditions.parse(domain.shape != Shape::mesh_file,
                               domain.shape == Shape::plate_with_hole,
                               general.physics);
-    cracks.parse();
+    cracks.parse(general.physics);
     peridynamics.parse();
     coupling.parse();
     finite_elements.parse();

@@ -20,21 +20,34 @@ namespace PeriDeal
     class ElementRun : public ElasticRun<dim>
     {
     public:
-      ElementRun(const Triangulation<dim> &mesh, const Scene<dim> &scene)
+      /** @param model finite elements or coupled */
+      ElementRun(const Model model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
         : scene(scene)
+        , model(model)
         , handler(mesh)
       {
         {
           Timings::Scope scope(this->timings, "unknowns");
-          handler.distribute_dofs(FE_Q<dim>(scene.finite_elements.degree));
+          handler.distribute_dofs(FE_Q<dim>(degree()));
+          if (model == Model::coupled)
+            number_along_lattice(handler, scene.domain);
         }
-        Timings::Scope scope(this->timings, "operator");
-        elements = std::make_unique<ElasticElements<dim>>(handler, scene);
+        Timings::Scope                        scope(this->timings, "operator");
+        std::unique_ptr<ElasticCoupling<dim>> coupling;
+        if (model == Model::coupled)
+          {
+            node_set = std::make_unique<Nodes<dim>>(handler,
+                                                    scene.domain,
+                                                    scene.cracks,
+                                                    NodalVolume::partial);
+            coupling = make_elastic_coupling(*node_set, scene);
+          }
+        elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
       }
 
       std::string name() const override
       {
-        return to_string(Model::finite_elements);
+        return to_string(model);
       }
 
       const DoFHandler<dim> &dofs() const override
@@ -97,8 +110,10 @@ namespace PeriDeal
         double                volume = 0.;
         visit_cells(QGauss<dim>(handler.get_fe().degree + 1),
                     [&](const auto &values, const unsigned int q, const auto &, const auto &e) {
-                      sum += values.JxW(q) * stress_of_strain(e, scene, values.quadrature_point(q));
                       volume += values.JxW(q);
+                      if (!elements->cut_cells()[values.get_cell()->active_cell_index()])
+                        sum +=
+                          values.JxW(q) * stress_of_strain(e, scene, values.quadrature_point(q));
                     });
         return Utilities::MPI::sum(sum, handler.get_communicator()) /
                Utilities::MPI::sum(volume, handler.get_communicator());
@@ -106,10 +121,32 @@ namespace PeriDeal
 
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
-        return {{"elements", "Q" + std::to_string(scene.finite_elements.degree)}};
+        std::vector<std::pair<std::string, std::string>> list{
+          {"elements", "Q" + std::to_string(degree())}};
+        if (model == Model::coupled)
+          {
+            list.emplace_back("coupling", "exchange");
+            list.emplace_back("zone", scene.coupling.zone_text());
+            list.emplace_back("share of the body in the zone",
+                              to_text(100. * elements->bonds().zone_share()) + " %");
+            list.emplace_back("horizon", to_text(scene.horizon()));
+            list.emplace_back("surface correction",
+                              scene.peridynamics.surface_correction ==
+                                  SurfaceCorrection::crack_scaling ?
+                                "crack scaling" :
+                                "none");
+          }
+        if (!scene.cracks.cracks.empty())
+          list.emplace_back("cracks", scene.cracks.mesh == CrackMesh::faces ? "faces" : "removed");
+        return list;
       }
 
     private:
+      unsigned int degree() const
+      {
+        return model == Model::coupled ? 1 : scene.finite_elements.degree;
+      }
+
       /** Call visit(values, point, index of the node or point, strain) at the points of all own cells. */
       template <typename Visit>
       void visit_cells(const Quadrature<dim> &points, const Visit &visit) const
@@ -150,7 +187,9 @@ namespace PeriDeal
         visit_cells(
           Quadrature<dim>(fe.get_unit_support_points()),
           [&](const auto &values, const unsigned int q, const auto &indices, const auto &e) {
-            const auto  &cell = values.get_cell();
+            const auto &cell = values.get_cell();
+            if (elements->cut_cells()[cell->active_cell_index()])
+              return; // it carries nothing
             const double size = cell->measure();
             // The material inside the cell, not at its edge.
             const Point<dim> p =
@@ -170,6 +209,8 @@ namespace PeriDeal
         for (unsigned int i = 0; i < n; ++i)
           {
             const double v = sums[n_stresses].local_element(i);
+            if (v == 0.)
+              continue; // all cells around are cut
             for (unsigned int k = 0; k < n_stresses; ++k)
               stress[i].access_raw_entry(k) = sums[k].local_element(i) / v;
             for (unsigned int k = 0; k < n_strains; ++k)
@@ -178,21 +219,25 @@ namespace PeriDeal
       }
 
       const Scene<dim>                     &scene;
+      const Model                           model;
       DoFHandler<dim>                       handler;
+      std::unique_ptr<Nodes<dim>>           node_set; // of the coupled model
       std::unique_ptr<ElasticElements<dim>> elements;
     };
   } // namespace
 
 
   template <int dim>
-  std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Triangulation<dim> &mesh,
+  std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Model               model,
+                                                            const Triangulation<dim> &mesh,
                                                             const Scene<dim>         &scene)
   {
-    return std::make_unique<ElementRun<dim>>(mesh, scene);
+    return std::make_unique<ElementRun<dim>>(model, mesh, scene);
   }
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                \
-  template std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Triangulation<dim> &, \
+  template std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Model,                \
+                                                                     const Triangulation<dim> &, \
                                                                      const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -88,11 +88,11 @@ namespace PeriDeal
                   std::vector<double>                 &rows);
 
   template <int dim>
-  std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(
-    const dealii::Triangulation<dim> &mesh,
-    const Scene<dim>                 &scene);
+  std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Model                       model,
+                                                            const dealii::Triangulation<dim> &mesh,
+                                                            const Scene<dim> &scene);
 
   template <int dim>
   std::unique_ptr<ElasticRun<dim>> make_state_run(const dealii::Triangulation<dim> &mesh,
-                                                      const Scene<dim>                 &scene);
+                                                  const Scene<dim>                 &scene);
 } // namespace PeriDeal

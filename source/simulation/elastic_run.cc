@@ -43,9 +43,8 @@ namespace PeriDeal
                                                     const Triangulation<dim> &mesh,
                                                     const Scene<dim>         &scene)
   {
-    Assert(model != Model::coupled, ExcNotImplemented()); // refused when the scene is read
     return model == Model::peridynamics ? make_state_run(mesh, scene) :
-                                          make_elastic_element_run(mesh, scene);
+                                          make_elastic_element_run(model, mesh, scene);
   }
 
 

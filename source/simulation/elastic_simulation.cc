@@ -52,12 +52,10 @@ namespace PeriDeal
               "'Solver = " + scene.elasticity.solver_name() +
                 "' in section 'Elasticity' cannot be run yet; use 'linear'.");
       const auto &models = scene.general.models;
-      require(std::find(models.begin(), models.end(), Model::coupled) == models.end(),
-              "'Models = coupled' cannot be run with 'Physics = elasticity' yet.");
       require(
-        std::find(models.begin(), models.end(), Model::finite_elements) == models.end() ||
-          scene.cracks.cracks.empty() || scene.cracks.mesh == CrackMesh::faces,
-        "'Mesh' in section 'Cracks' has to be 'faces' for finite elements with 'Physics = elasticity'.");
+        std::find(models.begin(), models.end(), Model::coupled) == models.end() ||
+          scene.coupling.scheme == CouplingScheme::exchange,
+        "'Scheme' in section 'Coupling' has to be 'exchange' with 'Physics = elasticity' so far.");
       require(scene.domain.coarsening == 0,
               "'Coarsening' in section 'Domain' cannot be used with 'Physics = elasticity' yet.");
       require(

@@ -8,9 +8,15 @@
 
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/displacement_conditions.h>
+#include <perideal/operators/elastic_coupling.h>
 #include <perideal/operators/elastic_operator.h>
 
 #include <memory>
+
+namespace dealii::TrilinosWrappers
+{
+  class SparsityPattern;
+}
 
 namespace PeriDeal
 {
@@ -20,13 +26,21 @@ namespace PeriDeal
    * alpha dT (in plane strain (1 + nu) alpha dT) makes the load int grad_a (dim lambda + 2 mu) alpha dT.
    *
    * One scalar DoFHandler numbers the nodes; each has dim unknowns, interleaved.
+   *
+   * With a coupling its bonds are added and the cells changed (ElasticCoupling). Cells that a crack cuts carry nothing (`Mesh = removed`), so that in a zone the
+   * bonds around the crack alone hold what they do; unless the crack is cut into the mesh. Thermal strains of bonds are the means of both ends.
+   *
+   * Crack-side scaling: at nodes with broken bonds and on cut cells g_i = V_i C_abab/(-(1/2) sum_j tr K_ij r_ij^2), C_abab = dim lambda + dim (dim + 1) mu, clipped
+   * to [0.5, 4]; elsewhere g = 1. Bonds are multiplied by the mean of both ends, cells by that of their vertices.
    */
   template <int dim>
   class ElasticElements : public ElasticOperator
   {
   public:
     /** @param dof_handler FE_Q(p) with dofs distributed. Collective. Throws UserError. */
-    ElasticElements(const dealii::DoFHandler<dim> &dof_handler, const Scene<dim> &scene);
+    ElasticElements(const dealii::DoFHandler<dim>        &dof_handler,
+                    const Scene<dim>                     &scene,
+                    std::unique_ptr<ElasticCoupling<dim>> coupling = nullptr);
     ~ElasticElements() override;
 
     void                initialize_vector(Vector &vector) const override;
@@ -61,29 +75,58 @@ namespace PeriDeal
     /** Volume of a node: its share of the lumped integral of 1. */
     double volume(const unsigned int node) const;
 
+    /** Only in the model `coupled`. */
+    const ElasticCoupling<dim> &bonds() const;
+
+    /** Cells of this process that a crack cuts, by active cell index. */
+    const std::vector<bool> &cut_cells() const;
+
+    /**
+     * K of the body without its cracks and conditions, with the bonds of the zone or without any. Collective.
+     */
+    void assemble_intact(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                         const bool                              with_bonds) const;
+
+    /** Lowest eigenvalue of what the coupling leaves of any cell, in units of its shear modulus times h^(dim-2). Collective. */
+    double lowest_remainder() const;
+
   private:
     struct CellData;
+    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
-    void find_positions();
-    void find_conditions();
-    void assemble();
-    void assemble_cell(CellData &data) const;
-    void assemble_loads(Vector &loads, const double t) const;
+    void   find_positions();
+    void   find_conditions();
+    void   assemble();
+    void   assemble_cell(CellData &data) const;
+    void   change_cell(const Cell &cell, CellData &data) const;
+    void   find_cut_cells();
+    void   find_crack_factors();
+    void   add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
+    void   add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
+    void   add_thermal_bonds();
+    void   count_bonds();
+    double thermal_strain(const dealii::Point<dim> &p) const;
+    void   throw_if_isolated() const;
+    void   assemble_loads(Vector &loads, const double t) const;
     template <typename Visit>
     void for_each_load(const double t, const Visit &visit) const;
 
-    const dealii::DoFHandler<dim>                             &dofs;
-    const Scene<dim>                                          &scene;
+    const dealii::DoFHandler<dim>        &dofs;
+    const Scene<dim>                     &scene;
+    std::unique_ptr<ElasticCoupling<dim>> coupling; // null: finite elements alone
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> nodes, unknowns;
     std::vector<dealii::Point<dim>>                            positions;
     std::unique_ptr<DisplacementConditions<dim>>               conditions;
     dealii::TrilinosWrappers::SparseMatrix                     stiffness;
     std::unique_ptr<CellData>                                  cell_data;
     Vector                                                     mass, volumes, stiffness_diagonal;
-    double         thermal_energy = 0.; // of a body that is held everywhere
-    bool           loads_vary     = false;
-    Vector         constant_loads, thermal_loads;
-    mutable Vector scratch;
+    std::vector<bool>                                          cut; // by active cell index
+    Vector             crack_factors;                               // of nodes; empty: none
+    unsigned long long n_bonds        = 0;
+    double             thermal_energy = 0.; // of a body that is held everywhere
+    bool               loads_vary     = false;
+    Vector             constant_loads, thermal_loads;
+    mutable Vector     scratch;
   };
 
 
