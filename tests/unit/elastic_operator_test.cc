@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/user_error.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 
 #include "elastic_body.h"
@@ -294,5 +296,32 @@ TEST(ElasticOperator, free_thermal_expansion)
       expand_freely<2>(model, {});
       expand_freely<2>(model, {{"Elasticity/Plane", "strain"}}, 1.2); // 1 + nu
       expand_freely<3>(model, {});
+    }
+}
+
+
+TEST(ElasticOperator, linear_solver_says_why_it_stopped)
+{
+  for (const Model model : {Model::finite_elements, Model::peridynamics})
+    {
+      const Body<2> body(box<2>(), model);
+      Vector        x, rhs = body.values(bumpy_vector<2>);
+      body.op().initialize_vector(x);
+      body.op().clear_constrained(rhs);
+      const auto message = [&](const unsigned int most) -> std::string {
+        try
+          {
+            LinearSolver(body.op(), 1e-12, most, 50).solve(0., 1., x, rhs);
+          }
+        catch (const UserError &error)
+          {
+            return error.what();
+          }
+        return "";
+      };
+      EXPECT_NE(message(3).find("Maximum iterations"), std::string::npos);
+      rhs = std::numeric_limits<double>::quiet_NaN();
+      x   = 0.;
+      EXPECT_NE(message(100).find("loads are not finite"), std::string::npos);
     }
 }
