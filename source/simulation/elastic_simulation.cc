@@ -278,6 +278,7 @@ namespace PeriDeal
     json summary         = describe_scene(scene, text, *mesh, communicator);
     summary["cracks"]    = corners_of(scene.cracks.pieces(scene.cracks.end_time));
     summary["steady"]    = true;
+    summary["end time"]  = 0.;
     summary["notes"]     = record->notes;
     summary["fields"]    = record->fields;
     summary["wall time"] = timings.all();
