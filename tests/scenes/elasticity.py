@@ -106,7 +106,7 @@ def cells():
 def plates():
     """A hole against Kirsch, a cantilever against Timoshenko's beam."""
     table = Comparison("Plates against closed forms")
-    run = run_quietly("plate_with_hole")
+    run = run_quietly("hole_in_tension")
     # Measured: finite elements 1.0, 4.3, 2.6, 1.5 %; peridynamics 0.3, 0.3 and 0.5 % away from the hole, 13.5 % at the second row above it.
     for model, bounds in ((FEM, (0.015, 0.064, 0.04, 0.023)), (PD, (0.2, 0.0045, 0.0045, 0.0075))):
         for row, bound in zip(run.rows(model), bounds):
@@ -133,7 +133,7 @@ def crack():
     shape = -0.071 - 0.535 * a + 0.169 * a ** 2 + 0.02 * a ** 3 - 1.071 / a * math.log(1 - a)
     # Measured: finite elements -2.4 and -1.6 %, peridynamics 1.8 and 0.3 %.
     for number, bounds in (("40, 200", (0.036, 0.027)), ("80, 400", (0.024, 0.0045))):
-        run = run_quietly("crack", {"Domain/Cells": number})
+        run = run_quietly("crack_in_tension", {"Domain/Cells": number})
         for model, bound in zip((FEM, PD), bounds):
             stress = run.model(model)["boundary force"]["top"][1]
             above, below = (run.probe(model, (0, y), column="uy") for y in (1e-6, -1e-6))
