@@ -47,12 +47,14 @@ namespace PeriDeal
     for (const FamilyMember<dim> &member : members)
       for (unsigned int d = 0; d < dim; ++d)
         reach_in_sites[d] = std::max(reach_in_sites[d], member.offset[d]);
+    // A symmetry plane of an elastic body holds its nodes, and families end at it.
+    const bool mirrors = scene.general.physics != Physics::elasticity;
     AssertThrow(
-      on_lattice || scene.boundary_conditions.symmetry.empty(),
+      on_lattice || scene.boundary_conditions.symmetry.empty() || !mirrors,
       UserError(
         "'Symmetry' in section 'Boundary conditions' needs the lattice of a box without doubled nodes."));
     // Beside finite elements a symmetry side is an insulated one, and that exactly.
-    if (halo == HaloAround::nodes)
+    if (halo == HaloAround::nodes && mirrors)
       outside = make_fictitious_nodes(nodes,
                                       scene.boundary_conditions,
                                       parameters.treatment,

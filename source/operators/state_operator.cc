@@ -101,6 +101,7 @@ namespace PeriDeal
           {
             if (bond.cut || bond.intact == 0.)
               continue;
+            AssertIndexRange(bond.neighbor, nodes.n_local()); // no fictitious nodes
             const Tensor<1, dim> xi = bonds.bond_vector(i, bond.neighbor);
             const double         w  = bond.intact / bonds.bond_conductivity(i, bond.neighbor);
             neighbors.push_back(bond.neighbor);

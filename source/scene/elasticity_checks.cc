@@ -36,9 +36,10 @@ namespace PeriDeal
           entry_error(pd.where(entry), what + " with 'Physics = elasticity'; " + remedy);
       };
       const std::string no_effect = "has no effect";
+      // On square cells any factor cancels; on others the factors of `discrete` make theta exact (doc/elasticity.md).
       refuse(pd.calibration != Calibration::discrete,
              "Calibration",
-             no_effect,
+             "'analytic' is not for use",
              "bonds are scaled by the sums over their own families. Leave the entry out.");
       refuse(pd.self_term != SelfTerm::none, "Self term", no_effect, "use 'none'.");
       refuse(pd.flux_treatment != FluxTreatment::natural,

@@ -8,6 +8,7 @@
 #include <perideal/laws/elasticity.h>
 #include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
+#include <perideal/scene/lists.h>
 #include <perideal/simulation/elastic_simulation.h>
 #include <perideal/solvers/linear_solver.h>
 
@@ -70,6 +71,40 @@ namespace PeriDeal
       require(scene.reference.solution.empty(),
               "'Solution' in section 'Reference' cannot be used with 'Physics = elasticity' yet.");
     }
+
+
+    /** Bonds alone have a Poisson ratio of their own, and keep the bulk modulus. Collective. */
+    template <int dim>
+    void note_own_poisson_ratio(const Scene<dim>         &scene,
+                                const Triangulation<dim> &mesh,
+                                std::vector<std::string> &notes)
+    {
+      const auto &models = scene.general.models;
+      if (dim == 1 || scene.elasticity.model != ElasticModel::bond_based ||
+          std::find(models.begin(), models.end(), Model::peridynamics) == models.end())
+        return;
+      const double own    = bond_based_poisson(dim, scene.elasticity.plane);
+      double       lowest = 1., highest = -1.;
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const double nu = scene.material.moduli(cell->center()).poisson();
+            lowest          = std::min(lowest, nu);
+            highest         = std::max(highest, nu);
+          }
+      lowest  = Utilities::MPI::min(lowest, mesh.get_communicator());
+      highest = Utilities::MPI::max(highest, mesh.get_communicator());
+      if (std::max(highest - own, own - lowest) < 1e-3)
+        return;
+      std::string found = number_text(lowest);
+      if (highest > lowest)
+        found += " to " + number_text(highest);
+      notes.push_back(
+        "'Model = bond-based' in section 'Elasticity' has a Poisson ratio of " + number_text(own) +
+        " whatever 'Material' says, which is " + found +
+        ": only the stiffness against equal strains in all directions is that of the material. "
+        "Use 'state-based', or that Poisson ratio.");
+    }
   } // namespace
 
 
@@ -85,6 +120,7 @@ namespace PeriDeal
       mesh = build_mesh(scene, communicator, record->notes);
       set_material_ids(*mesh, scene.material.phases.all());
     }
+    note_own_poisson_ratio(scene, *mesh, record->notes);
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
     for (const Model kind : scene.general.models)
       {
@@ -240,6 +276,7 @@ namespace PeriDeal
     json summary         = describe_scene(scene, text, *mesh, communicator);
     summary["cracks"]    = corners_of(scene.cracks.pieces(scene.cracks.end_time));
     summary["steady"]    = true;
+    summary["end time"]  = 0.;
     summary["notes"]     = record->notes;
     summary["fields"]    = record->fields;
     summary["wall time"] = timings.all();

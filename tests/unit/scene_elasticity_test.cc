@@ -437,7 +437,9 @@ end
            "Cracks/Transmission",
            {"no force"});
 
-    expect(elastic_fault({pd + "Calibration=analytic"}), pd + "Calibration", {"has no effect"});
+    expect(elastic_fault({pd + "Calibration=analytic"}),
+           pd + "Calibration",
+           {"not for use", "own families"});
     expect(elastic_fault({pd + "Self term=paper"}), pd + "Self term", {"has no effect"});
     expect(elastic_fault({pd + "Flux treatment=extrapolation"}),
            pd + "Flux treatment",
