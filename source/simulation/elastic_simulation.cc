@@ -13,6 +13,7 @@
 
 #include <algorithm>
 
+#include "elastic_summary.h"
 #include "result_record.h"
 #include "summary_parts.h"
 
@@ -213,11 +214,14 @@ namespace PeriDeal
     build();
     for (const auto &model : models)
       solve(*model);
-    Timings::Scope scope(timings, "output");
-    write_points();
-    write_fields();
-    for (const auto &model : models)
-      add_totals(*model);
+    {
+      Timings::Scope scope(timings, "output");
+      write_points();
+      write_fields();
+      for (const auto &model : models)
+        add_totals(*model);
+      compare_displacements(models, 0., record->comparison);
+    }
     for (const std::string &note : record->notes)
       progress.note(note);
     write_summary();
@@ -241,10 +245,13 @@ namespace PeriDeal
     using json           = nlohmann::ordered_json;
     json summary         = describe_scene(scene, text, *mesh, communicator);
     summary["cracks"]    = corners_of(scene.cracks.pieces(scene.cracks.end_time));
+    summary["sides"]     = describe_elastic_sides(scene);
     summary["steady"]    = true;
     summary["notes"]     = record->notes;
     summary["fields"]    = record->fields;
     summary["wall time"] = timings.all();
+    summary["memory of mesh"] =
+      Utilities::MPI::sum(static_cast<double>(mesh->memory_consumption()), communicator);
     for (const auto &model : models)
       {
         const OperatorSize size = model->op().size();
@@ -268,6 +275,15 @@ namespace PeriDeal
         entry.update(record->balances.at(model->name()));
         summary["models"][model->name()] = entry;
       }
+    if (!record->comparison.empty())
+      summary["comparison"] = record->comparison;
+    Point<dim> lower, upper;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        lower[d] = summary["domain"]["lower"][d];
+        upper[d] = summary["domain"]["upper"][d];
+      }
+    summary["values on sides"] = values_on_sides(scene, lower, upper);
     std::vector<std::pair<std::string, std::string>> files;
     if (!scene.output.probes.empty())
       files.emplace_back("probes.csv", probes.text());
