@@ -25,6 +25,10 @@ ROUND_OFF = 1e-9
 class ElasticSections:
     """Takes the place of some methods of a Report."""
 
+    def kind(self):
+        """What kind of a run it is."""
+        return "static" if self.steady else "dynamic"
+
     def units(self):
         """Units that the page uses: a body at rest has no time."""
         return [u for u in (self.words.length, "" if self.steady else self.words.time) if u]
@@ -39,9 +43,9 @@ class ElasticSections:
         texts = " ".join(self.run.sides().values())
         legend = []
         if "traction" in texts:
-            legend.append("tractions in orange")
+            legend.append("tractions t in orange")
         if "displacement" in texts:
-            legend.append("displacements in red (hatched: held, circles: free to slide)")
+            legend.append("displacements u in red (hatched: held, circles: free to slide)")
         if "symmetry" in texts:
             legend.append("symmetry planes in violet")
         return legend

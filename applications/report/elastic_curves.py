@@ -46,10 +46,10 @@ def line_figure(run, words, cracks, at_most=6):
         times = [times[int(round(i))] for i in np.linspace(0, len(times) - 1, at_most)]
     colors, models = curves.time_colors(len(times)), run.line.models()
     rows = -(-len(shown) // 2)
-    height = 2.45 * rows + 0.45
+    height = 2.6 * rows + 0.45
     figure = style.figure(10, height)
     for k, column in enumerate(shown):
-        bottom = height - 0.3 - 2.45 * (k // 2) - 1.75
+        bottom = height - 0.45 - 2.6 * (k // 2) - 1.75
         axes = figure.add_axes([(0.75 + 5.0 * (k % 2)) / 10, bottom / height, 4.1 / 10,
                                 1.75 / height])
         table = run.line_columns[column]

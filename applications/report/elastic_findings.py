@@ -11,8 +11,9 @@ def what_ran(run, words):
     """The problem and the models."""
     models = [findings.counts(m, run.summary["models"][m]) for m in run.models]
     joined = models[0] if len(models) == 1 else ", ".join(models[:-1]) + " and by " + models[-1]
-    kind = {1: "a bar", 2: "a plate", 3: "a body"}[run.dimension]
     plane = run.scene_entry("Elasticity", "Plane") if run.dimension == 2 else ""
+    kind = {1: "a bar", 2: "a body" if plane == "strain" else "a plate", 3: "a body"}[
+        run.dimension]
     state = f" in plane {plane}" if plane else ""
     n = len(run.cracks())
     cracks = "" if not n else " with a crack" if n == 1 else f" with {n} cracks"

@@ -70,7 +70,7 @@ class Report:
     def header(self, title):
         """Title and the facts of the run in one line."""
         facts = [self.run.get("scene file"), self.run.get("program"),
-                 f"{self.run.dimension}D, " + ("steady" if self.steady else "transient")]
+                 f"{self.run.dimension}D, " + self.kind()]
         processes = self.run.get("processes")
         if processes:
             facts.append(f"{plain(processes)} process" + ("es" if processes != 1 else ""))
@@ -78,6 +78,10 @@ class Report:
             facts.append("units: " + ", ".join(self.units()))
         spans = "".join(f"<span>{escape(str(f))}</span>" for f in facts if f)
         return f"<h1>{escape(title)}</h1><p>{spans}</p>"
+
+    def kind(self):
+        """What kind of a run it is."""
+        return "steady" if self.steady else "transient"
 
     def units(self):
         """The units that the page uses."""

@@ -151,7 +151,9 @@ class Words:
         return self.flux.name, f"{self.flux.name}_one_sided"
 
     def condition(self, text, brief=False):
-        """The condition of a side; brief: without the name of a Dirichlet side."""
+        """The condition of a side; brief: as the sketch has it, without the name of a Dirichlet side."""
+        if self.elastic and brief:
+            return str(text).replace("displacement ", "u = ").replace("traction ", "t = ")
         text = re.sub(r"\binsulated\b", self.closed, str(text))
         named = self.held and not brief and "dirichlet" in text.lower()
         return f"{self.held}, {text}" if named else text
