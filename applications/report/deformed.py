@@ -46,6 +46,12 @@ def factor_text(factor):
         f"displacements magnified {style.plain(factor)} times"
 
 
+def left_of(segment):
+    """Unit normal to the left of a segment."""
+    along = segment[1] - segment[0]
+    return np.array([-along[1], along[0]]) / max(np.hypot(*along), 1e-300)
+
+
 class Shape:
     """The deformed cells of a 2D model at one time.
 
@@ -72,6 +78,7 @@ class Shape:
         self.visible = visible
         self.rest = corners[self.source]
         self.anchor = self.mean_of_visible(self.rest)
+        self.slack = shift[self.source, 0]
         self.divided = np.zeros(len(self.source), bool)
         self.divided[cut] = self.divided[len(mesh.cells):] = True
         moved = self.rest + self.completed(moves[self.source])
@@ -82,10 +89,8 @@ class Shape:
         """(M x 4): the vertices that a crack separates from the first one of their cell."""
         hidden = np.zeros(corners.shape[:2], bool)
         for segment in self.segments:
-            along = segment[1] - segment[0]
-            left = np.array([-along[1], along[0]]) / max(np.hypot(*along), 1e-300)
-            moved = corners + shift * (self.centers[:, None] - corners) if on_faces \
-                else corners + shift * left
+            moved = corners + 1e-6 * (self.centers[:, None] - corners) if on_faces \
+                else corners + shift * left_of(segment)
             for v in range(1, 4):
                 hidden[:, v] |= crosses(moved[:, v], moved[:, 0], segment)
         return hidden
@@ -109,10 +114,9 @@ class Shape:
         hidden = np.zeros(len(corner), np.int64)
         for segment in self.segments:
             inner = corner + 1e-6 * (centers - corner)
-            along = segment[1] - segment[0]
-            left = np.array([-along[1], along[0]]) / max(np.hypot(*along), 1e-300)
-            hidden |= crosses(corner + 1e-6 * np.linalg.norm(centers - corner, axis=1)[:, None]
-                              * left, inner, segment) | crosses(inner, centers, segment)
+            size = np.linalg.norm(centers - corner, axis=1)[:, None]
+            hidden |= crosses(corner + 1e-6 * size * left_of(segment), inner, segment) \
+                | crosses(inner, centers, segment)
         flat = (key[:, 0] * (key[:, 1].max() + 1) + key[:, 1]) * 2 + hidden
         _, group = np.unique(flat, return_inverse=True)
         of_cells = values[mesh.cells].ravel()
@@ -133,8 +137,9 @@ class Shape:
         checked = np.flatnonzero(self.divided[cell])
         points = np.einsum("pv,pvd->pd", self.map.weights[checked], self.rest[cell[checked]])
         wrong = np.zeros(len(checked), bool)
-        for segment in self.segments:
-            wrong |= crosses(points, self.anchor[cell[checked]], segment)
+        for segment in self.segments:  # what lies on a crack belongs to its left side
+            anchor = self.anchor + self.slack * left_of(segment)
+            wrong |= crosses(points, anchor[cell[checked]], segment)
         kept = np.ones(len(cell), bool)
         kept[checked[wrong]] = False
         self.map.pixels, self.map.nodes, self.map.weights = (

@@ -45,7 +45,7 @@ def all_moduli(given):
             bulk = young / (3 * (1 - 2 * poisson)) if poisson != 0.5 else float("inf")
     except ZeroDivisionError:
         return {}
-    return dict(zip(MODULI, (bulk, shear, young, poisson)))
+    return {m: float(f"{v:.12g}") for m, v in zip(MODULI, (bulk, shear, young, poisson))}
 
 
 def of_phases(text):
@@ -159,7 +159,8 @@ def probe_table(run, words, at_most=90):
                          float(values.at(m, time)[1][k]) for m in models}
                 gap = [found[PD] - found[FEM]] if both and None not in found.values() else \
                     [None] if both else []
-                rows.append([escape(words.column(column).label(column))]
+                title = column.replace("von_mises", "von Mises").replace("_", " ")
+                rows.append([escape(words.column(column).label(title))]
                             + [cell(found[m], 6) for m in models] + [cell(g, 3) for g in gap])
     header = [""] + [name(m) for m in models] + ["PD − FEM"] * both
     return table(header, rows, "numbers"), cut and len(times) > 1
