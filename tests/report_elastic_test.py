@@ -91,6 +91,7 @@ class Pages(ReportCase):
                        f"{style.plain(largest, 6)} at (−1, −1)",
                        f"{style.plain(1.02 * largest, 6)} at (−1, −1)"], rows)
         self.assertIn(["Solver iterations", "21", "21"], rows)
+        self.assertIn(["At rest", "0.02", "2.1×10⁻⁵"], rows)
         self.assertIn(["Force imbalance", "2×10⁻¹²", "2×10⁻¹²"], rows)
         self.assertIn(["Von Mises stress of the mean stress", "0.2123", "0.2123"], rows)
 

@@ -169,5 +169,5 @@ class Words:
     def at_time(self, time, steady=False):
         """'t = 0.5 s', or 'steady state'."""
         if steady:
-            return "steady state"
+            return "at rest" if self.elastic else "steady state"
         return f"t = {style.plain(time)} {self.time}".strip()

@@ -283,7 +283,11 @@ namespace PeriDeal
         lower[d] = summary["domain"]["lower"][d];
         upper[d] = summary["domain"]["upper"][d];
       }
-    summary["values on sides"] = values_on_sides(scene, lower, upper);
+    summary["values on sides"] = values_on_sides(
+      scene,
+      lower,
+      upper,
+      scene.elasticity.solver == ElasticSolver::dynamics ? scene.time.end_time : 0.);
     std::vector<std::pair<std::string, std::string>> files;
     if (!scene.output.probes.empty())
       files.emplace_back("probes.csv", probes.text());
