@@ -15,7 +15,7 @@ import elastic_findings
 import elastic_tables
 import series
 import solids
-from style import is_nothing, name, plain
+from style import is_nothing
 
 STRESSES = {1: ("stress_xx",), 2: ("stress_xx", "stress_yy", "stress_xy"),
             3: ("stress_xx", "stress_yy", "stress_zz", "stress_xy")}

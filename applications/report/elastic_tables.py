@@ -7,7 +7,7 @@ from html import escape
 import numpy as np
 
 from curves import probe_name, probe_points
-from style import minus, name, plain
+from style import minus, name
 from tables import cell, entry, table
 
 FEM, PD = "finite elements", "peridynamics"

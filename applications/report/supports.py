@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.patches import FancyArrowPatch
 
 import solids
-import style
 
 DISPLACEMENT, TRACTION, SYMMETRY = "#c0392b", "#d98200", "#5e60ce"
 NORMALS = {"left": (0, -1), "right": (0, 1), "bottom": (1, -1), "top": (1, 1), "back": (2, -1),
