@@ -13,7 +13,7 @@ namespace PeriDeal
         {"heat", "temperature", "heat_flux", "heat content", "heat flow", "heat"},
         {"moisture", "wetness", "moisture_flux", "weight", "moisture flow", "moisture"},
         {"electricity", "potential", "current_density", "charge", "current", "charge"},
-        {"elasticity", "displacement", "stress", "strain energy", "force", "momentum"}};
+        {"elasticity", "displacement", "stress", "strain energy", "force", "force"}};
       return names;
     }
   } // namespace

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 
+#include "elastic_summary.h"
 #include "result_record.h"
 #include "summary_parts.h"
 
@@ -247,11 +248,14 @@ namespace PeriDeal
     build();
     for (const auto &model : models)
       solve(*model);
-    Timings::Scope scope(timings, "output");
-    write_points();
-    write_fields();
-    for (const auto &model : models)
-      add_totals(*model);
+    {
+      Timings::Scope scope(timings, "output");
+      write_points();
+      write_fields();
+      for (const auto &model : models)
+        add_totals(*model);
+      compare_displacements(models, 0., record->comparison);
+    }
     for (const std::string &note : record->notes)
       progress.note(note);
     write_summary();
@@ -275,11 +279,14 @@ namespace PeriDeal
     using json           = nlohmann::ordered_json;
     json summary         = describe_scene(scene, text, *mesh, communicator);
     summary["cracks"]    = corners_of(scene.cracks.pieces(scene.cracks.end_time));
+    summary["sides"]     = describe_elastic_sides(scene);
     summary["steady"]    = true;
     summary["end time"]  = 0.;
     summary["notes"]     = record->notes;
     summary["fields"]    = record->fields;
     summary["wall time"] = timings.all();
+    summary["memory of mesh"] =
+      Utilities::MPI::sum(static_cast<double>(mesh->memory_consumption()), communicator);
     for (const auto &model : models)
       {
         const OperatorSize size = model->op().size();
@@ -303,6 +310,19 @@ namespace PeriDeal
         entry.update(record->balances.at(model->name()));
         summary["models"][model->name()] = entry;
       }
+    if (!record->comparison.empty())
+      summary["comparison"] = record->comparison;
+    Point<dim> lower, upper;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        lower[d] = summary["domain"]["lower"][d];
+        upper[d] = summary["domain"]["upper"][d];
+      }
+    summary["values on sides"] = values_on_sides(
+      scene,
+      lower,
+      upper,
+      scene.elasticity.solver == ElasticSolver::dynamics ? scene.time.end_time : 0.);
     std::vector<std::pair<std::string, std::string>> files;
     if (!scene.output.probes.empty())
       files.emplace_back("probes.csv", probes.text());
