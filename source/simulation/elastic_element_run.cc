@@ -108,15 +108,43 @@ namespace PeriDeal
       {
         SymmetricTensor<2, 3> sum;
         double                volume = 0.;
-        visit_cells(QGauss<dim>(handler.get_fe().degree + 1),
-                    [&](const auto &values, const unsigned int q, const auto &, const auto &e) {
-                      volume += values.JxW(q);
-                      if (!elements->cut_cells()[values.get_cell()->active_cell_index()])
-                        sum +=
-                          values.JxW(q) * stress_of_strain(e, scene, values.quadrature_point(q));
-                    });
+        visit_cells(
+          QGauss<dim>(handler.get_fe().degree + 1),
+          [&](const auto &values, const unsigned int q, const auto &, const auto &gradient) {
+            volume += values.JxW(q);
+            if (!elements->cut_cells()[values.get_cell()->active_cell_index()])
+              sum += values.JxW(q) *
+                     stress_of_strain(symmetrize(gradient), scene, values.quadrature_point(q));
+          });
         return Utilities::MPI::sum(sum, handler.get_communicator()) /
                Utilities::MPI::sum(volume, handler.get_communicator());
+      }
+
+      std::vector<StressIntensity> stress_intensities() const override
+      {
+        std::vector<StressIntensity> list;
+        if constexpr (dim == 2)
+          {
+            std::vector<CrackEndIntegral> ends = crack_end_integrals(scene);
+            if (!ends.empty())
+              visit_cells(
+                QGauss<dim>(handler.get_fe().degree + 1),
+                [&](const auto &values, const unsigned int q, const auto &, const auto &gradient) {
+                  if (elements->cut_cells()[values.get_cell()->active_cell_index()])
+                    return;
+                  const Point<2>             &p = values.quadrature_point(q);
+                  const SymmetricTensor<2, 3> s = stress_of_strain(symmetrize(gradient), scene, p);
+                  SymmetricTensor<2, 2>       in_plane;
+                  for (unsigned int a = 0; a < 2; ++a)
+                    for (unsigned int b = a; b < 2; ++b)
+                      in_plane[a][b] = s[a][b];
+                  for (CrackEndIntegral &end : ends)
+                    end.add(p, values.JxW(q), gradient, in_plane);
+                });
+            for (const CrackEndIntegral &end : ends)
+              list.push_back(end.result(handler.get_communicator()));
+          }
+        return list;
       }
 
       std::vector<std::pair<std::string, std::string>> settings() const override
@@ -147,7 +175,7 @@ namespace PeriDeal
         return model == Model::coupled ? 1 : scene.finite_elements.degree;
       }
 
-      /** Call visit(values, point, index of the node or point, strain) at the points of all own cells. */
+      /** Call visit(values, point, indices of the nodes, gradient of the displacement) at the points of all own cells. */
       template <typename Visit>
       void visit_cells(const Quadrature<dim> &points, const Visit &visit) const
       {
@@ -168,7 +196,7 @@ namespace PeriDeal
                     for (unsigned int d = 0; d < dim; ++d)
                       gradient[d] +=
                         this->displacement(dim * indices[i] + d) * values.shape_grad(i, q);
-                  visit(values, q, indices, symmetrize(gradient));
+                  visit(values, q, indices, gradient);
                 }
             }
         this->displacement.set_ghost_state(false);
@@ -186,8 +214,9 @@ namespace PeriDeal
           sum.reinit(elements->node_layout());
         visit_cells(
           Quadrature<dim>(fe.get_unit_support_points()),
-          [&](const auto &values, const unsigned int q, const auto &indices, const auto &e) {
-            const auto &cell = values.get_cell();
+          [&](const auto &values, const unsigned int q, const auto &indices, const auto &gradient) {
+            const SymmetricTensor<2, dim> e    = symmetrize(gradient);
+            const auto                   &cell = values.get_cell();
             if (elements->cut_cells()[cell->active_cell_index()])
               return; // it carries nothing
             const double size = cell->measure();

@@ -232,12 +232,22 @@ namespace PeriDeal
             row("mean stress " + name, mean[a][b]);
             stress[name] = mean[a][b];
           }
-    stress["von mises"]            = von_mises(mean);
+    stress["von mises"]         = von_mises(mean);
+    nlohmann::ordered_json ends = nlohmann::ordered_json::object();
+    for (const StressIntensity &end : model.stress_intensities())
+      {
+        row("J-integral at " + end.name, end.j);
+        row("stress intensity I at " + end.name, end.mode_1);
+        row("stress intensity II at " + end.name, end.mode_2);
+        ends[end.name] = {{"J-integral", end.j}, {"I", end.mode_1}, {"II", end.mode_2}};
+      }
     record->balances[model.name()] = {
       {"boundary force", balance.sides},
       {"force balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}},
       {"strain energy", energy},
       {"mean stress", stress}};
+    if (!ends.empty())
+      record->balances[model.name()]["stress intensity"] = ends;
   }
 
 

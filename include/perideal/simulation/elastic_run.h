@@ -7,6 +7,7 @@
 
 #include <perideal/analysis/elastic_stress.h>
 #include <perideal/analysis/point_evaluator.h>
+#include <perideal/analysis/stress_intensity.h>
 #include <perideal/base/timing.h>
 #include <perideal/mesh/nodes.h>
 #include <perideal/operators/elastic_operator.h>
@@ -47,6 +48,12 @@ namespace PeriDeal
 
     /** The mean stress over the volume of the body: what the body as a whole carries. */
     virtual dealii::SymmetricTensor<2, 3> mean_stress() const = 0;
+
+    /** At the ends of cracks, where the model has a local stress (crack_end_integrals()). */
+    virtual std::vector<StressIntensity> stress_intensities() const
+    {
+      return {};
+    }
 
     /** What was chosen, for the report: name and value. */
     virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
