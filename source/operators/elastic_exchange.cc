@@ -15,6 +15,10 @@ namespace PeriDeal
 
   namespace
   {
+    /** Part of what bonds could carry that they get in three dimensions: the rest keeps the remainder positive. */
+    constexpr double kept = 0.95;
+
+
     /** The integral of d(phi_a)/dx_c d(phi_b)/dx_e over a brick with bilinear shape functions. */
     template <int dim>
     double brick_integral(const Tensor<1, dim> &spacing,
@@ -134,36 +138,95 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** Fields on the corners of a brick: the first columns span the linear ones, the others are orthogonal to these. All are orthonormal. */
+    template <int dim>
+    Eigen::MatrixXd cell_modes()
+    {
+      constexpr unsigned int n      = GeometryInfo<dim>::vertices_per_cell;
+      Eigen::MatrixXd        linear = Eigen::MatrixXd::Zero(dim * n, dim * (dim + 1));
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int c = 0; c < dim; ++c)
+          {
+            linear(dim * a + c, c * (dim + 1)) = 1.;
+            for (unsigned int d = 0; d < dim; ++d)
+              linear(dim * a + c, c * (dim + 1) + 1 + d) = ((a >> d) & 1) ? 1. : -1.;
+          }
+      return Eigen::HouseholderQR<Eigen::MatrixXd>(linear).householderQ();
+    }
+
+
+    /** The cell matrix of the stiffness dd + dd + dd: int (dd + dd + dd)_cgeh dphi_a/dx_g dphi_b/dx_h. */
+    template <int dim>
+    Eigen::MatrixXd unit_stiffness(const Tensor<1, dim> &spacing)
+    {
+      constexpr unsigned int n = GeometryInfo<dim>::vertices_per_cell;
+      Eigen::MatrixXd        matrix(dim * n, dim * n);
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int b = 0; b < n; ++b)
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int e = 0; e < dim; ++e)
+              {
+                double value =
+                  brick_integral(spacing, a, b, c, e) + brick_integral(spacing, a, b, e, c);
+                for (unsigned int g = 0; g < dim && c == e; ++g)
+                  value += brick_integral(spacing, a, b, g, g);
+                matrix(dim * a + c, dim * b + e) = value;
+              }
+      return matrix;
+    }
+
+
+    /** The inverse of a positive semidefinite matrix, zero on its null space. */
+    Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd &matrix)
+    {
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+      Eigen::VectorXd                                      values = solver.eigenvalues();
+      const double                                         zero   = 1e-10 * values.maxCoeff();
+      for (double &value : values)
+        value = value > zero ? 1. / value : 0.;
+      return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+    }
+  } // namespace
+
+
   template <int dim>
   void ElasticExchange<dim>::find_surplus()
   {
-    constexpr unsigned int      n = GeometryInfo<dim>::vertices_per_cell;
-    std::array<double, dim * n> scratch;
-    surplus.reinit(dim * n, dim * n);
+    constexpr unsigned int n        = dim * GeometryInfo<dim>::vertices_per_cell;
+    constexpr unsigned int n_linear = dim * (dim + 1), n_others = n - n_linear;
+    std::array<double, n>  scratch;
+    FullMatrix<double>     full(n, n);
     bonds.for_each_full_passage([&](const auto &passage, const double strength) {
       add_bond_to(strength,
                   passage.change,
                   vector_of(bonds.offsets[passage.offset]),
                   scratch,
-                  surplus);
+                  full);
     });
-    // Q_(ac)(be) = int (dd + dd + dd)_cgeh dphi_a/dx_g dphi_b/dx_h
-    const Tensor<1, dim> &spacing = bonds.families.nodes().lattice()->spacing;
-    for (unsigned int a = 0; a < n; ++a)
-      for (unsigned int b = 0; b < n; ++b)
-        for (unsigned int c = 0; c < dim; ++c)
-          for (unsigned int e = 0; e < dim; ++e)
-            {
-              double value =
-                brick_integral(spacing, a, b, c, e) + brick_integral(spacing, a, b, e, c);
-              for (unsigned int g = 0; g < dim && c == e; ++g)
-                value += brick_integral(spacing, a, b, g, g);
-              if (dim * b + e <= dim * a + c)
-                surplus(dim * a + c, dim * b + e) -= value;
-            }
-    for (unsigned int i = 0; i < dim * n; ++i)
-      for (unsigned int j = 0; j < i; ++j)
-        surplus(j, i) = surplus(i, j);
+    Eigen::MatrixXd M(n, n);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        M(i, j) = full(std::max(i, j), std::min(i, j));
+    const Eigen::MatrixXd modes = cell_modes<dim>(), linear = modes.leftCols(n_linear),
+                          others = modes.rightCols(n_others);
+    const Eigen::MatrixXd Q      = unit_stiffness<dim>(bonds.families.nodes().lattice()->spacing);
+    // Bonds in cells of three dimensions couple shear to the mode x y z of the corners.
+    const Eigen::MatrixXd mixed  = linear.transpose() * M * others;
+    Eigen::MatrixXd       excess = others.transpose() * (M - Q) * others;
+    if (n_others > 0 && mixed.norm() > 1e-12 * M.norm())
+      {
+        excess = kept * excess + kept * kept / (1. - kept) * mixed.transpose() *
+                                   pseudo_inverse(linear.transpose() * Q * linear) * mixed;
+        for (auto &offset : bonds.offsets)
+          offset.weight *= kept;
+      }
+    const Eigen::MatrixXd result = others * excess * others.transpose();
+    surplus.reinit(n, n);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        surplus(i, j) = result(i, j);
   }
 
 

@@ -16,11 +16,13 @@ namespace PeriDeal
    * d the Kronecker symbols, and k (dd + dd + dd) the largest stiffness of this kind that leaves a positive semidefinite remainder (bond_part()); k is
    * the smallest of the cells on the bond's way. What finite elements carry along that very bond is taken away from the cells that it passes,
    *
-   *   R_c = K_c + k_c (M - Q) - sum of active bonds W_b share L_b (x) xi xi^T,
+   *   R_c = K_c + k_c S - sum of active bonds W_b share L_b (x) xi xi^T,
    *
-   * with L_b as in LatticeExchange, M = sum over the full family of w V^2 share L (x) xi xi^T, Q the cell matrix of the stiffness dd + dd + dd; M = Q on linear fields.
-   * So a linear field has the same forces with and without bonds, for any set of them, the matrix is symmetric, momentum is conserved, and the remainder is
-   * positive semidefinite.
+   * with L_b as in LatticeExchange. S is zero on linear fields, so that these have the same forces with and without bonds, for any set of them; the matrix is
+   * symmetric and momentum is conserved. With M = sum over the full family of w V^2 share L (x) xi xi^T and Q the cell matrix of the stiffness dd + dd + dd, S is
+   * M - Q in one and two dimensions, where M = Q on linear fields, and R_c is positive semidefinite. In three dimensions the pieces of a bond in one cell also push the corners
+   * in the mode x y z, which only the cells around a node together take back: M has a block B between linear fields and the others. Bonds then get the part eta = 0.95 of k, and
+   * S = eta (M - Q) + eta^2/(1 - eta) B^T Q^+ B on the others, with which R_c again is positive semidefinite (Schur complement).
    *
    * w is the influence function kernel/r^n times the volume fraction over r^2, times sum_{a <= b} s_ab xi_a^2 xi_b^2/r^4 with the s for which the sum above
    * holds on the lattice.
@@ -48,6 +50,6 @@ namespace PeriDeal
     dealii::Tensor<1, dim> vector_of(const typename LatticeBonds<dim>::Offset &offset) const;
 
     LatticeBonds<dim>          bonds;
-    dealii::FullMatrix<double> surplus; // M - Q
+    dealii::FullMatrix<double> surplus; // S
   };
 } // namespace PeriDeal
