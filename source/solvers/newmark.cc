@@ -66,7 +66,7 @@ namespace PeriDeal
             if (!op.nonlinear())
               break;
             find_residual(u, factor);
-            if (is_small(size, round, t))
+            if (is_small(size, u, round, t))
               break;
           }
         // Also to the solver's tolerance the acceleration of the forces, so that the next step starts from them.
@@ -87,11 +87,17 @@ namespace PeriDeal
                 factor * (u.local_element(i) - predicted.local_element(i)) / inverse_mass[i];
       }
 
-      bool is_small(const double size, const unsigned int round, const double t) const
+      bool is_small(const double size, const Vector &u, const unsigned int round, const double t)
       {
         constexpr unsigned int most = 30;
         const double           now  = residual.l2_norm();
         if (now <= std::max(10. * tolerance, 1e-12) * size || size == 0.)
+          return true;
+        // After large rotations round-off leaves more than that of small forces.
+        const double last_change = change.l2_norm();
+        change                   = u;
+        change -= last;
+        if (last_change <= std::max(tolerance, 1e-11) * change.l2_norm())
           return true;
         std::ostringstream message;
         message << "Newton's iterations of the stepper 'newmark' did not converge at t = " << t

@@ -86,14 +86,15 @@ def statics():
     """One displacement from all solvers; what they cost."""
     table = []
     reference, growth = None, []
-    for size in (8, 16, 32, 64):
+    for size in (4, 8, 16, 32, 64):
         cells = {"Domain/Cells": f"{3 * size}, {3 * size}"}
         run = run_scene(PLATE, cells)
         reference = displacements(run)
         row = [f"{size}", run.model(PD)["iterations"]]
-        growth.append(row[1])
+        if size >= 8:
+            growth.append(row[1])
         for name, largest, more in (("conjugate gradients", 64, {}), ("conjugate gradients", 64, {"Elasticity/Preconditioner": "none"}),
-                                    ("adaptive dynamic relaxation", 16, {}), ("dynamic relaxation", 8, {})):
+                                    ("adaptive dynamic relaxation", 16, {}), ("dynamic relaxation", 4, {})):
             if size > largest:
                 row.append("-")
                 continue
@@ -132,12 +133,12 @@ def frequency(wave_number, ratio=3.0):
 def waves():
     """Speed, dispersion, orders and energies."""
     run = run_scene("prm/elasticity/wave_in_bar.prm", {"Output/Fields": "none"})
-    for model, apart in ((FEM, 0.006), (PD, 0.03)):
+    for model, apart in ((FEM, 0.011), (PD, 0.04)):
         centres = []
         for t in (0, 5e-5, 1e-4):
             values = run.along_line(model, time=t, column="ux")
             centres.append(sum(k / 400 * u for k, u in enumerate(values)) / sum(values))
-        check_close((centres[2] - centres[0]) / 1e-4, 5000, relative=1e-6, what=f"{model}: speed of the pulse")
+        check_close((centres[2] - centres[0]) / 1e-4, 5000, relative=1e-12, what=f"{model}: speed of the pulse")
         exact = [1e-6 * math.exp(-((k / 400 - 0.75) / 0.03) ** 2) for k in range(401)]
         check_close(run.along_line(model, time=1e-4, column="ux"), exact, relative=apart, what=f"{model}: pulse after 0.5 m")
         energy = run.model(model)["energy balance"]

@@ -123,7 +123,7 @@ namespace PeriDeal
       EXPECT_LT(dense.asymmetry, 1e-13);
       const Spectrum spectrum = op.spectrum();
       EXPECT_LE(dense.largest, spectrum.safe * (1. + 1e-12));
-      EXPECT_LE(dense.largest, spectrum.sharp * 1.01);
+      EXPECT_LE(dense.largest, spectrum.sharp * 1.02);
     }
 
 
@@ -303,7 +303,7 @@ namespace PeriDeal
           for (unsigned int k = 0; k < 2; ++k)
             {
               const auto stepper =
-                make_motion_stepper(name, body.op(), with_step((k == 0 ? 0.25 : 0.125) * limit));
+                make_motion_stepper(name, body.op(), with_step((k == 0 ? 0.125 : 0.0625) * limit));
               start_motion(body, u, v);
               stepper->advance(u, v, 0., 0.7);
               stepper->advance(u, v, 0.7, t_end);
@@ -319,10 +319,7 @@ namespace PeriDeal
             }
           EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2., 0.15) << name;
           EXPECT_LT(errors[1], 0.1 * exact.linfty_norm());
-          if (name == "newmark")
-            EXPECT_LT(lost[0], 1e-11);
-          else
-            EXPECT_LT(lost[1], 0.01);
+          EXPECT_LT(lost[1], name == "newmark" ? 1e-14 : 5e-4);
           if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
             std::cout << dim << "D, " << name << ": order " << std::log2(errors[0] / errors[1])
                       << ", energy lost " << lost[0] << ", " << lost[1] << std::endl;
@@ -440,17 +437,21 @@ namespace PeriDeal
     const Settings loads{{"Boundary conditions/Displacement", "left: 0, 0; right: free, 0.01*x"},
                          {"Boundary conditions/Traction", "right: 0.1, 0"},
                          {"Initial and source/Body force", "x, y"}};
+    // Relaxation with viscosity takes (L/h)^2 steps.
+    const std::vector<std::string> quick{"linear",
+                                         "conjugate gradients",
+                                         "adaptive dynamic relaxation"};
     for (const Model model : {Model::finite_elements, Model::peridynamics})
       {
         check_statics<1>({{"Initial and source/Body force", "x"}, {"Domain/Cells", "12"}},
                          model,
                          static_solver_names());
-        check_statics<2>(loads + Settings{{"Domain/Cells", "12, 9"}}, model, static_solver_names());
+        check_statics<2>(loads + Settings{{"Domain/Cells", "12, 9"}}, model, quick);
       }
     check_statics<3>(
       {{"Domain/Cells", "6, 4, 3"}, {"Boundary conditions/Traction", "right: 0, 1, 0"}},
       Model::peridynamics,
-      static_solver_names());
+      quick);
   }
 
 
@@ -461,8 +462,7 @@ namespace PeriDeal
                         {"Domain/Upper corner", "1, 0.25"},
                         {"Domain/Cells", "24, 6"},
                         {"Boundary conditions/Displacement", "left: 0, 0; right: free, 0.4"}};
-    const std::vector<std::string> names(static_solver_names().begin() + 1,
-                                         static_solver_names().end());
+    const std::vector<std::string> names{"conjugate gradients", "adaptive dynamic relaxation"};
     check_statics<2>(bent, Model::peridynamics, names);
     check_statics<2>(Settings{{"Elasticity/Kinematics", "full"},
                               {"Domain/Cells", "12, 9"},
@@ -535,7 +535,7 @@ namespace PeriDeal
             }
           if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
             std::cout << name << ": energy lost " << lost[0] << ", " << lost[1] << std::endl;
-          EXPECT_LT(lost[1], name == "newmark" ? 1e-10 : 2e-3);
+          EXPECT_LT(lost[1], name == "newmark" ? 1e-13 : 3e-5);
         }
   }
 
@@ -569,10 +569,10 @@ namespace PeriDeal
           make_motion_stepper(name, body.op(), with_step(0.5 * stable_motion_step(body.op())));
         stepper->advance(u, v, 0., 6.); // half a turn
         EXPECT_GT(u.linfty_norm(), 1.);
-        if (name == "verlet")
-          EXPECT_NEAR(momentum(), before, 1e-12 * before);
+        // Verlet keeps it.
+        EXPECT_NEAR(momentum(), before, (name == "verlet" ? 1e-12 : 2e-4) * before);
         const MotionEnergy energy = stepper->energy(u, v);
-        EXPECT_LT(std::abs(energy.imbalance()), 2e-3 * energy.start) << name;
+        EXPECT_LT(std::abs(energy.imbalance()), 5e-4 * energy.start) << name;
         if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
           std::cout << name << ": moment " << momentum() / before - 1. << ", energy "
                     << energy.imbalance() / energy.start << std::endl;
