@@ -191,7 +191,7 @@ def scene_mistakes(folder):
         ("full kinematics by a linear solver", {**ELASTIC, "Elasticity/Kinematics": "full"}, ["'Kinematics'", "'linear'", "'conjugate gradients'"]),
         ("full kinematics of finite elements", {**ELASTIC, "Elasticity/Kinematics": "full", "Elasticity/Solver": "conjugate gradients"},
          ["'Kinematics'", "'Models = peridynamics'"]),
-        ("preconditioner of the linear solver", {**ELASTIC, "Elasticity/Preconditioner": "none"}, ["'Preconditioner'", "'conjugate gradients'", "'linear'"]),
+        ("preconditioner of the linear solver", {**ELASTIC, "Elasticity/Preconditioner": "none"}, ["'Preconditioner'", "conjugate gradients", "'linear'"]),
         ("too few iterations", {**ELASTIC, "Boundary conditions/Traction": "right: 1, 0", "Elasticity/Solver": "dynamic relaxation",
                                 "Solver/Maximum iterations": "20"}, ["'Solver = dynamic relaxation'", "20 iterations", "'Maximum iterations'"]),
         # expressions
