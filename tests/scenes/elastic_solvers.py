@@ -167,11 +167,11 @@ def ranks():
               "Initial and source/Initial velocity": "0, 0.01*x"}
     bend = {"Domain/Upper corner": "1, 0.25", "Domain/Cells": "48, 12", "Elasticity/Kinematics": "full", "Elasticity/Solver": "conjugate gradients",
             "Boundary conditions/Displacement": "left: 0, 0; right: free, 0.4", "Output/Line": "0,0.1 ; 1,0.2 ; 25"}
-    for what, overrides, models, allowed in (("verlet", motion, (FEM, PD), 1e-11), ("newmark", {**motion, "Time/Stepper": "newmark"}, (FEM, PD), 1e-8),
+    for what, overrides, models, allowed in (("verlet", motion, (FEM, PD), 1e-13), ("newmark", {**motion, "Time/Stepper": "newmark"}, (FEM, PD), 1e-10),
                                              ("full kinematics, newmark", {**motion, "Models": PD, "Elasticity/Kinematics": "full",
-                                                                           "Time/Stepper": "newmark"}, (PD,), 1e-8),
-                                             ("full kinematics", bend, (PD,), 1e-7),
-                                             ("relaxation", {**bend, "Elasticity/Solver": "adaptive dynamic relaxation"}, (PD,), 1e-7)):
+                                                                           "Time/Stepper": "newmark"}, (PD,), 1e-10),
+                                             ("full kinematics", bend, (PD,), 5e-10),
+                                             ("relaxation", {**bend, "Elasticity/Solver": "adaptive dynamic relaxation"}, (PD,), 5e-10)):
         runs = [run_scene(PLATE, overrides, ranks=n) for n in (1, 2, 4)]
         for model in models:
             for n, run in zip((2, 4), runs[1:]):
