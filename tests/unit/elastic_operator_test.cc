@@ -9,7 +9,7 @@
 #include "elastic_test_tools.h"
 
 using namespace PeriDeal;
-using namespace PeriDeal::ElasticTests;
+using namespace PeriDeal::OperatorTests;
 
 namespace
 {

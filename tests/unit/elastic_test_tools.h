@@ -10,11 +10,8 @@
 
 namespace PeriDeal
 {
-  /** What the tests of elastic bodies share. */
-  namespace ElasticTests
+  namespace OperatorTests
   {
-    using namespace OperatorTests;
-
     /** An elastic body with one of its models. */
     template <int dim>
     struct Body
@@ -117,5 +114,5 @@ namespace PeriDeal
         }
       return value;
     }
-  } // namespace ElasticTests
+  } // namespace OperatorTests
 } // namespace PeriDeal
