@@ -186,6 +186,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ElasticElements<dim>::mechanical_loads(Vector &loads, const double t) const
+  {
+    assemble_loads(loads, t);
+    loads -= thermal_loads;
+  }
+
+
+  template <int dim>
   ForceBalance ElasticElements<dim>::forces(const Vector &u, const double t) const
   {
     Vector loads, reactions;
@@ -203,10 +211,11 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                           \
-  template void         ElasticElements<dim>::assemble_cell(CellData &) const;              \
-  template void         ElasticElements<dim>::assemble();                                   \
-  template void         ElasticElements<dim>::assemble_loads(Vector &, const double) const; \
+#define PERIDEAL_INSTANTIATE(dim)                                                             \
+  template void         ElasticElements<dim>::assemble_cell(CellData &) const;                \
+  template void         ElasticElements<dim>::assemble();                                     \
+  template void         ElasticElements<dim>::assemble_loads(Vector &, const double) const;   \
+  template void         ElasticElements<dim>::mechanical_loads(Vector &, const double) const; \
   template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -12,6 +12,7 @@
 #include <perideal/operators/spectrum.h>
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 #include "elastic_cell_data.h"
@@ -135,12 +136,19 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::residual(Vector &r, const Vector &u, const double t) const
   {
+    unbalanced(r, u, t);
+    conditions->mask(r);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::unbalanced(Vector &r, const Vector &u, const double t) const
+  {
     ++this->applications;
     stiffness.vmult(r, u);
     if (loads_vary)
       assemble_loads(scratch, t);
     r.sadd(-1., 1., loads_vary ? scratch : constant_loads);
-    conditions->mask(r);
   }
 
 
@@ -185,10 +193,25 @@ namespace PeriDeal
     for (unsigned int i = 0; i < row_sums.size(); ++i)
       bound = std::max(bound, row_sums[i] / mass.local_element(i));
     bound = Utilities::MPI::max(bound, dofs.get_communicator());
-    return {bound, sharp_bound(*this, bound, [&](Vector &vector) {
-              for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
-                vector.local_element(i) = position_noise(positions[i / dim]) * (1. + i % dim);
-            })};
+    return {bound, sharp_bound(*this, bound, [&](Vector &vector) { fill_noise(vector); })};
+  }
+
+  template <int dim>
+  double ElasticElements<dim>::scaled_bound() const
+  {
+    return sharp_bound(
+      *this,
+      std::numeric_limits<double>::max(),
+      [&](Vector &vector) { fill_noise(vector); },
+      0.,
+      &stiffness_diagonal);
+  }
+
+  template <int dim>
+  void ElasticElements<dim>::fill_noise(Vector &vector) const
+  {
+    for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+      vector.local_element(i) = position_noise(positions[i / dim]) * (1. + i % dim);
   }
 
   template <int dim>

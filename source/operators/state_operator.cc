@@ -22,6 +22,7 @@ namespace PeriDeal
     : scene(scene)
     , bonds(nodes, scene)
     , unknowns(interleaved(*nodes.partitioner(), dim))
+    , full(scene.elasticity.kinematics == Kinematics::full)
   {
     std::vector<NodeOnSide<dim>> on_sides;
     for (const BoundaryShare &share : nodes.boundary_shares())
@@ -43,7 +44,7 @@ namespace PeriDeal
     find_laws();
     store_bonds();
     find_diagonal();
-    if (any_thermal)
+    if (any_thermal && !full) // with full kinematics it is in the extensions
       {
         sum_forces(thermal_loads, scratch, true);
         thermal_loads *= -1.;
@@ -133,6 +134,11 @@ namespace PeriDeal
                         laws[j].law.extension / weighted.local_element(j)) /
                        weights[k];
         }
+    if (!full)
+      return;
+    across.resize(neighbors.size(), 0.);
+    for (const Tensor<1, dim> &p : moments)
+      lengths.push_back(p.norm());
   }
 
 
@@ -203,6 +209,8 @@ namespace PeriDeal
   {
     x.update_ghost_values();
     sum_forces(y, x, false);
+    if (full)
+      add_geometric_forces(y, x);
     x.set_ghost_state(false);
   }
 
@@ -226,12 +234,27 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
   {
+    unbalanced(r, u, t);
+    conditions->mask(r);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::unbalanced(Vector &r, const Vector &u, const double t) const
+  {
     ++this->applications;
-    multiply(r, u);
+    find_forces(r, u);
     if (loads_vary)
       find_loads(scratch, t);
     r.sadd(-1., 1., loads_vary ? scratch : constant_loads);
-    conditions->mask(r);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::mechanical_loads(Vector &loads, const double t) const
+  {
+    find_loads(loads, t);
+    loads -= thermal_loads;
   }
 
 
@@ -372,7 +395,7 @@ namespace PeriDeal
     initialize_vector(loads);
     initialize_vector(reactions);
     find_loads(loads, t);
-    multiply(reactions, u);
+    find_forces(reactions, u);
     reactions -= loads;
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     conditions->add_reactions(reactions, sums);

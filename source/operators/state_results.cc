@@ -80,15 +80,14 @@ namespace PeriDeal
                    source.local_element(neighbors[k]) * moments[k].norm();
             sum += moments[k];
           }
+        for (std::size_t k = starts[i]; full && k < starts[i + 1]; ++k)
+          row += 2. * std::abs(across[k]);
         row += source.local_element(i) * sum.norm();
         bound =
           std::max(bound, std::sqrt(static_cast<double>(dim)) * row / mass.local_element(dim * i));
       }
     bound = Utilities::MPI::max(bound, nodes.communicator());
-    return {bound, sharp_bound(*this, bound, [&](Vector &vector) {
-              for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
-                vector.local_element(i) = position_noise(nodes.position(i / dim)) * (1. + i % dim);
-            })};
+    return {bound, sharp_bound(*this, bound, [&](Vector &vector) { fill_noise(vector); })};
   }
 
 
@@ -97,19 +96,16 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes = bonds.nodes();
     u.update_ghost_values();
-    if (volumetric)
+    if (volumetric && full)
+      find_deformed_dilatation_forces(u);
+    else if (volumetric)
       find_dilatation_forces(u, any_thermal);
     double sum = 0.;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
           {
-            const unsigned int j       = neighbors[k];
-            double             product = 0.;
-            for (unsigned int d = 0; d < dim; ++d)
-              product += moments[k][d] * (u.begin()[dim * j + d] - u.begin()[dim * i + d]);
-            product -=
-              0.5 * (laws[i].thermal + laws[j].thermal) * (moments[k] * bonds.bond_vector(i, j));
+            const double product = extension_moment(u.begin(), i, k);
             sum += 0.25 * springs[k] * product * product;
           }
         const StateLaw &law = laws[i].law;
@@ -133,13 +129,7 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          {
-            const unsigned int j = neighbors[k];
-            for (unsigned int d = 0; d < dim; ++d)
-              theta[i] += moments[k][d] * (u.begin()[dim * j + d] - u.begin()[dim * i + d]);
-            theta[i] -=
-              0.5 * (laws[i].thermal + laws[j].thermal) * (moments[k] * bonds.bond_vector(i, j));
-          }
+          theta[i] += extension_moment(u.begin(), i, k);
         theta[i] *= laws[i].law.dilatation / (weighted.local_element(i) * nodes.volume(i));
       }
     u.set_ghost_state(false);
@@ -154,7 +144,9 @@ namespace PeriDeal
     result.stress.resize(nodes.n_owned());
     result.strain.resize(nodes.n_owned());
     u.update_ghost_values();
-    if (volumetric)
+    if (volumetric && full)
+      find_deformed_dilatation_forces(u);
+    else if (volumetric)
       find_dilatation_forces(u, any_thermal);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
@@ -166,22 +158,30 @@ namespace PeriDeal
             Tensor<1, dim>       eta;
             for (unsigned int d = 0; d < dim; ++d)
               eta[d] = u.begin()[dim * j + d] - u.begin()[dim * i + d];
-            const double x2     = xi.norm_square();
-            const double weight = (moments[k] * xi) / x2; // W
-            const double product =
-              weight * (eta * xi - 0.5 * (laws[i].thermal + laws[j].thermal) * x2); // W x e
+            const double x2      = xi.norm_square();
+            const double weight  = full ? lengths[k] / std::sqrt(x2) : (moments[k] * xi) / x2; // W
+            const double product = extension_moment(u.begin(), i, k); // W x e
             gradient += weight * outer_product(eta, xi);
             shape += weight * outer_product(xi, xi);
             // V_i V_j t/x, of this end or the mean of both
-            const double own   = laws[i].law.extension / weighted.local_element(i);
-            const double force = several_phases ?
-                                   0.5 * (weight * (tau.local_element(i) + tau.local_element(j)) +
+            const double         own   = laws[i].law.extension / weighted.local_element(i);
+            const double         force = several_phases ?
+                                           0.5 * (weight * (tau.local_element(i) + tau.local_element(j)) +
                                           springs[k] * weight * product) :
-                                   weight * tau.local_element(i) + own * product / x2;
-            stress += force * outer_product(xi, xi);
+                                           weight * tau.local_element(i) + own * product / x2;
+            const Tensor<1, dim> y     = xi + eta;
+            if (full)
+              stress += force * std::sqrt(x2) / y.norm() * outer_product(y, y);
+            else
+              stress += force * outer_product(xi, xi);
           }
-        result.strain[i] = symmetrize(gradient * invert(shape));
-        result.stress[i] = symmetrize(stress) / nodes.volume(i);
+        const Tensor<2, dim> slopes = gradient * invert(shape);
+        result.strain[i]            = symmetrize(slopes);
+        result.stress[i]            = symmetrize(stress) / nodes.volume(i);
+        if (!full)
+          continue;
+        result.strain[i] += 0.5 * symmetrize(transpose(slopes) * slopes);
+        result.stress[i] /= determinant(Tensor<2, dim>(unit_symmetric_tensor<dim>()) + slopes);
       }
     u.set_ghost_state(false);
     return result;

@@ -84,17 +84,29 @@ namespace PeriDeal
     }
 
 
+    bool is_for_motion(const std::string &stepper)
+    {
+      return stepper == "verlet" || stepper == "newmark";
+    }
+
+
     /** An equilibrium has no time. */
     template <int dim>
     void check_time(const Scene<dim> &scene)
     {
-      const BoundaryConditions<dim> &bc    = scene.boundary_conditions;
-      const InitialAndSource        &loads = scene.initial_and_source;
-      if (scene.time.stepper != "auto")
+      const BoundaryConditions<dim> &bc      = scene.boundary_conditions;
+      const InitialAndSource        &loads   = scene.initial_and_source;
+      const std::string             &stepper = scene.time.stepper;
+      if (stepper != "auto" && !is_for_motion(stepper))
         entry_error(
           scene.time.where("Stepper"),
-          "'" + scene.time.stepper +
-            "' is for what diffuses; with 'Physics = elasticity' the 'Solver' in section 'Elasticity' decides. Use 'auto'.");
+          "'" + stepper +
+            "' is for what diffuses; with 'Physics = elasticity' the 'Solver' in section 'Elasticity' decides. Use 'auto', and with "
+            "'dynamics' also 'verlet' or 'newmark'.");
+      if (stepper != "auto" && scene.elasticity.is_static())
+        entry_error(scene.time.where("Stepper"),
+                    "'" + stepper + "' is for motion, but 'Solver' in section 'Elasticity' is '" +
+                      scene.elasticity.solver_name() + "'. Use 'Solver = dynamics'.");
       if (!scene.elasticity.is_static())
         {
           if (scene.time.steady)
@@ -116,6 +128,15 @@ namespace PeriDeal
       for (const VectorCondition &condition : bc.traction)
         refuse(condition.depends_on_time(),
                bc.where("Traction") + ", side '" + condition.name + "'");
+      const auto has_start = [&](const std::vector<Expression> &list, const std::string &entry) {
+        if (!list.empty())
+          entry_error(loads.where(entry),
+                      "has no effect: 'Solver' in section 'Elasticity' is '" +
+                        scene.elasticity.solver_name() +
+                        "', which finds an equilibrium. Use 'dynamics', or leave the entry out.");
+      };
+      has_start(loads.initial_displacement, "Initial displacement");
+      has_start(loads.initial_velocity, "Initial velocity");
       for (const Expression &force : loads.body_force)
         refuse(force.depends_on_time(), loads.where("Body force"));
     }
@@ -140,7 +161,14 @@ namespace PeriDeal
   void Scene<dim>::check_elasticity() const
   {
     if (general.physics != Physics::elasticity)
-      return;
+      {
+        if (is_for_motion(time.stepper))
+          entry_error(time.where("Stepper"),
+                      "'" + time.stepper +
+                        "' is for motion ('Physics = elasticity'); 'Physics' is '" +
+                        names_of(general.physics).physics + "'. Use 'auto'.");
+        return;
+      }
     const bool changes_temperature = !is_zero(elasticity.temperature_change);
     if (changes_temperature && material.thermal_expansion.is_constant() &&
         material.thermal_expansion.value(Point<dim>()) == 0.)

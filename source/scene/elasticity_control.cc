@@ -42,12 +42,19 @@ namespace PeriDeal
       "linear",
       "",
       "Equilibrium by the linear system, by nonlinear conjugate gradients, or by dynamic relaxation with given or adaptive damping; or "
-      "`dynamics`, the motion from rest until `End time`. The displacement of an equilibrium does not depend on section `Time`.",
+      "`dynamics`, the motion until `End time`. The displacement of an equilibrium does not depend on section `Time`.",
       {"linear",
        "conjugate gradients",
        "dynamic relaxation",
        "adaptive dynamic relaxation",
        "dynamics"});
+    declare(
+      "Preconditioner",
+      EntryType::choice,
+      "multigrid",
+      "",
+      "Of `Solver = conjugate gradients`: multigrid on springs between nearest neighbours, or none as published (Le 2014).",
+      {"multigrid", "none"});
     parse();
   }
 
@@ -70,6 +77,7 @@ namespace PeriDeal
     plane              = choice<PlaneState>("Plane");
     kinematics         = choice<Kinematics>("Kinematics");
     solver             = choice<ElasticSolver>("Solver");
+    multigrid          = choice_name("Preconditioner") == "multigrid";
     temperature_change = Expression(text("Temperature change"), where("Temperature change"));
     if (physics != Physics::elasticity)
       for (const Entry &entry : entries())
@@ -84,6 +92,9 @@ namespace PeriDeal
             "found '" + text("Plane") + "', but 'Dimension' is " + std::to_string(dim) +
               (dim == 1 ? ": a bar has no plane." : ": a body in space has no plane.") +
               " Leave the entry out.");
+    if (is_given("Preconditioner") && solver != ElasticSolver::conjugate_gradients)
+      error("Preconditioner",
+            "is for 'Solver = conjugate gradients'; 'Solver' is '" + solver_name() + "'.");
     if (kinematics == Kinematics::full && solver == ElasticSolver::linear)
       error(
         "Kinematics",

@@ -183,6 +183,19 @@ namespace PeriDeal
       "",
       "force/length^3",
       "Elasticity: force per volume, one formula of x, y, z, t per direction, separated by commas. Empty: none.");
+    declare(
+      "Initial displacement",
+      EntryType::list,
+      "",
+      "length",
+      "Elasticity with `Solver = dynamics`: at time 0, one formula of x, y, z per direction, separated by commas. Empty: none. Sides in "
+      "`Displacement` have theirs from the beginning.");
+    declare("Initial velocity",
+            EntryType::list,
+            "",
+            "length/time",
+            "Elasticity with `Solver = dynamics`: at time 0, one formula of x, y, z per direction, "
+            "separated by commas. Empty: at rest.");
     parse();
   }
 
@@ -198,9 +211,27 @@ namespace PeriDeal
         body_force.push_back(*value);
 
     const bool elastic = physics == Physics::elasticity;
+    for (auto *const list : {&initial_displacement, &initial_velocity})
+      {
+        const std::string entry = list == &initial_displacement ? "Initial displacement" :
+                                                                  "Initial velocity";
+        list->clear();
+        if (text(entry).empty())
+          continue;
+        if (!elastic)
+          error(entry,
+                "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");
+        for (const auto &value : parse_components(text(entry), dim, false, where(entry)))
+          {
+            if (value->depends_on_time())
+              error(entry, "'" + value->text() + "' depends on t; known variables here: x, y, z.");
+            list->push_back(*value);
+          }
+      }
     if (elastic && is_given("Initial value"))
-      error("Initial value",
-            "is for what diffuses; with 'Physics = elasticity' bodies start at rest.");
+      error(
+        "Initial value",
+        "is for what diffuses; with 'Physics = elasticity' bodies start at rest, or with 'Initial displacement' and 'Initial velocity'.");
     if (elastic && is_given("Source"))
       error("Source", "is for what diffuses; with 'Physics = elasticity' use 'Body force'.");
     if (!elastic && !text("Body force").empty())

@@ -65,6 +65,11 @@ namespace PeriDeal
         return *elements;
       }
 
+      Point<dim> position(const unsigned int node) const override
+      {
+        return elements->position(node);
+      }
+
       std::vector<double> at_points(const PointEvaluator<dim>              &reader,
                                     const std::vector<std::vector<double>> &points) const override
       {
@@ -99,6 +104,8 @@ namespace PeriDeal
         find_nodal_tensors(stress, strain);
         ElasticFields<dim> list(elements->node_layout());
         list.add_vector("displacement", this->displacement);
+        if (this->stepper)
+          list.add_vector("velocity", this->velocity);
         list.add_stress(stress);
         list.add_strain(strain);
         return list.take();

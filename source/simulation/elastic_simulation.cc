@@ -10,7 +10,7 @@
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/elastic_simulation.h>
-#include <perideal/solvers/linear_solver.h>
+#include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
 
@@ -50,10 +50,14 @@ namespace PeriDeal
       const auto require = [](const bool ok, const std::string &what) {
         AssertThrow(ok, UserError(what));
       };
-      require(scene.elasticity.solver == ElasticSolver::linear,
-              "'Solver = " + scene.elasticity.solver_name() +
-                "' in section 'Elasticity' cannot be run yet; use 'linear'.");
       const auto &models = scene.general.models;
+      require(
+        scene.elasticity.kinematics == Kinematics::linear ||
+          std::find(models.begin(), models.end(), Model::finite_elements) == models.end(),
+        "'Kinematics' in section 'Elasticity': 'full' is for 'Models = peridynamics' alone; finite elements have small displacements. "
+        "Leave them out, or use 'linear'.");
+      require(scene.cracks.tips.empty(),
+              "'Growth' in section 'Cracks' cannot be used with 'Physics = elasticity' yet.");
       require(
         std::find(models.begin(), models.end(), Model::coupled) == models.end() ||
           scene.coupling.scheme == CouplingScheme::exchange,
@@ -143,76 +147,75 @@ namespace PeriDeal
   {
     Timings::Scope   scope(model.timings, "solving");
     ElasticOperator &op = model.op();
-    op.initialize_vector(model.displacement);
-    op.distribute(model.displacement, 0.);
-    Vector rhs, change;
-    op.initialize_vector(rhs);
-    op.initialize_vector(change);
-    op.residual(rhs, model.displacement, 0.);
-    LinearSolver solver(op,
-                        scene.solver.tolerance,
-                        scene.solver.max_iterations,
-                        scene.solver.direct_up_to);
-    model.n_iterations = solver.solve(0., 1., change, rhs);
-    model.displacement += change;
-    AssertThrow(
-      std::isfinite(model.displacement.l1_norm()),
-      UserError(
-        "The displacement is not finite. Check the material, the boundary values and whether every part of the body is held."));
+    StaticOptions    options;
+    options.tolerance      = scene.solver.tolerance;
+    options.max_iterations = scene.solver.most_iterations(scene.elasticity.solver);
+    options.direct_up_to   = scene.solver.direct_up_to;
+    options.multigrid      = scene.elasticity.multigrid;
+    const double size      = start_statics(op, model.displacement, 0., options);
+    const auto   solver    = make_static_solver(scene.elasticity.solver_name(), op, options);
+    model.n_iterations     = solver->solve(model.displacement, 0., size);
+    op.linearize(model.displacement);
     progress.line(model.name() + ": " + std::to_string(model.n_iterations) + " iterations");
   }
 
 
   template <int dim>
-  void ElasticSimulation<dim>::write_points()
+  void ElasticSimulation<dim>::write_points(const double t)
   {
-    const auto add = [&](const std::vector<std::vector<double>> &points,
-                         const std::string                      &entry,
-                         PointTable                             &table) {
+    const auto add = [&](const std::vector<std::vector<double>>            &points,
+                         const std::string                                 &entry,
+                         std::vector<std::unique_ptr<PointEvaluator<dim>>> &readers,
+                         PointTable                                        &table) {
       if (points.empty())
         return;
-      for (const auto &model : models)
-        {
-          const PointEvaluator<dim> reader(model->dofs(),
-                                           model->nodes(),
-                                           scene.cracks,
-                                           points,
-                                           entry);
-          table.add(0., model->name(), model->at_points(reader, points));
-        }
+      if (readers.empty())
+        for (const auto &model : models)
+          readers.push_back(std::make_unique<PointEvaluator<dim>>(model->dofs(),
+                                                                  model->nodes(),
+                                                                  scene.cracks,
+                                                                  points,
+                                                                  entry));
+      for (unsigned int k = 0; k < models.size(); ++k)
+        table.add(t, models[k]->name(), models[k]->at_points(*readers[k], points));
     };
-    add(scene.output.probes, "Probes", probes);
-    add(scene.output.line, "Line", line);
+    add(scene.output.probes, "Probes", probe_readers, probes);
+    add(scene.output.line, "Line", line_readers, line);
   }
 
 
   template <int dim>
-  void ElasticSimulation<dim>::write_fields()
+  void ElasticSimulation<dim>::write_fields(const double t)
   {
     if (!scene.output.vtu && !scene.output.hdf5)
       return;
     nlohmann::ordered_json files = nlohmann::ordered_json::object();
-    for (const auto &model : models)
+    for (unsigned int k = 0; k < models.size(); ++k)
       {
-        std::string series = model->name();
+        const ElasticRun<dim> &model  = *models[k];
+        std::string            series = model.name();
         std::replace(series.begin(), series.end(), ' ', '_');
-        FieldWriter<dim>  writer(model->dofs(), scene.general.output_directory, series);
+        if (writers.size() == k)
+          writers.push_back(std::make_unique<FieldWriter<dim>>(model.dofs(),
+                                                               scene.general.output_directory,
+                                                               series));
         const std::string name =
-          writer.write(model->fields(), 0., scene.output.vtu, scene.output.hdf5);
+          writers[k]->write(model.fields(), t, scene.output.vtu, scene.output.hdf5);
         if (!name.empty())
-          files[model->name()] = name;
+          files[model.name()] = name;
       }
-    record->fields.push_back({{"time", 0.}, {"files", files}});
+    record->fields.push_back({{"time", t}, {"files", files}});
   }
 
 
   template <int dim>
-  void ElasticSimulation<dim>::add_totals(const ElasticRun<dim> &model)
+  void ElasticSimulation<dim>::add_totals(const ElasticRun<dim> &model, const double t)
   {
     const auto row = [&](const std::string &quantity, const double value) {
-      record->totals += "0," + model.name() + "," + quantity + "," + full_precision(value) + "\n";
+      record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
+                        full_precision(value) + "\n";
     };
-    const ForceBalance balance = model.op().forces(model.displacement, 0.);
+    const ForceBalance balance = model.op().forces(model.displacement, t);
     const double       energy  = model.op().energy(model.displacement);
     row("strain energy", energy);
     for (const auto &[side, force] : balance.sides)
@@ -221,7 +224,8 @@ namespace PeriDeal
     for (unsigned int d = 0; d < dim; ++d)
       row(std::string("body force in ") + "xyz"[d], balance.body[d]);
     row("throughput", balance.throughput());
-    row("imbalance", balance.imbalance());
+    if (!model.stepper) // of a motion it is the rate of its momentum
+      row("imbalance", balance.imbalance());
     const SymmetricTensor<2, 3> mean   = model.mean_stress();
     nlohmann::ordered_json      stress = nlohmann::ordered_json::object();
     for (unsigned int a = 0; a < 3; ++a)
@@ -241,11 +245,14 @@ namespace PeriDeal
         row("stress intensity II at " + end.name, end.mode_2);
         ends[end.name] = {{"J-integral", end.j}, {"I", end.mode_1}, {"II", end.mode_2}};
       }
-    record->balances[model.name()] = {
-      {"boundary force", balance.sides},
-      {"force balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}},
-      {"strain energy", energy},
-      {"mean stress", stress}};
+    record->balances[model.name()] = {{"boundary force", balance.sides},
+                                      {"strain energy", energy},
+                                      {"mean stress", stress}};
+    if (model.stepper)
+      record->balances[model.name()]["energy balance"] = add_energies(model, t);
+    else
+      record->balances[model.name()]["force balance"] = {{"throughput", balance.throughput()},
+                                                         {"imbalance", balance.imbalance()}};
     if (!ends.empty())
       record->balances[model.name()]["stress intensity"] = ends;
   }
@@ -256,16 +263,17 @@ namespace PeriDeal
   {
     prepare_directory(scene.general.output_directory, text.file_name, communicator);
     build();
-    for (const auto &model : models)
-      solve(*model);
-    {
-      Timings::Scope scope(timings, "output");
-      write_points();
-      write_fields();
-      for (const auto &model : models)
-        add_totals(*model);
-      compare_displacements(models, 0., record->comparison);
-    }
+    if (scene.elasticity.is_static())
+      {
+        for (const auto &model : models)
+          solve(*model);
+        write_output(0.);
+      }
+    else
+      {
+        make_steppers();
+        move();
+      }
     for (const std::string &note : record->notes)
       progress.note(note);
     write_summary();
@@ -274,9 +282,23 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ElasticSimulation<dim>::write_output(const double t)
+  {
+    Timings::Scope scope(timings, "output");
+    write_points(t);
+    write_fields(t);
+    for (const auto &model : models)
+      add_totals(*model, t);
+    compare_displacements(models, t, record->comparison);
+  }
+
+
+  template <int dim>
   void ElasticSimulation<dim>::dry_run()
   {
     build();
+    if (!scene.elasticity.is_static())
+      make_steppers();
     for (const std::string &note : record->notes)
       progress.note(note);
     progress.line("The scene is valid. Nothing was computed.");
@@ -286,12 +308,13 @@ namespace PeriDeal
   template <int dim>
   void ElasticSimulation<dim>::write_summary()
   {
-    using json           = nlohmann::ordered_json;
-    json summary         = describe_scene(scene, text, *mesh, communicator);
-    summary["cracks"]    = corners_of(scene.cracks.pieces(scene.cracks.end_time));
-    summary["sides"]     = describe_elastic_sides(scene);
-    summary["steady"]    = true;
-    summary["end time"]  = 0.;
+    using json        = nlohmann::ordered_json;
+    json summary      = describe_scene(scene, text, *mesh, communicator);
+    summary["cracks"] = corners_of(scene.cracks.pieces(scene.cracks.end_time));
+    summary["steady"] = scene.elasticity.is_static();
+    summary["solver"] = scene.elasticity.solver_name();
+    summary["end time"] = scene.elasticity.is_static() ? 0. : scene.time.end_time;
+    summary["sides"]    = describe_elastic_sides(scene);
     summary["notes"]     = record->notes;
     summary["fields"]    = record->fields;
     summary["wall time"] = timings.all();
@@ -304,8 +327,17 @@ namespace PeriDeal
         entry["unknowns"] = size.unknowns;
         if (size.bonds > 0)
           entry["bonds"] = size.bonds;
-        entry["nonzeros"]              = size.nonzeros;
-        entry["iterations"]            = model->n_iterations;
+        entry["nonzeros"]   = size.nonzeros;
+        entry["iterations"] = model->n_iterations;
+        if (model->stepper)
+          {
+            entry["stepper"]     = model->stepper->name();
+            entry["steps"]       = model->stepper->cost().steps;
+            entry["iterations"]  = model->stepper->cost().iterations;
+            entry["time step"]   = model->stepper->current_step();
+            entry["stable step"] = {{"sharp", stable_motion_step(model->op())},
+                                    {"method", "verlet"}};
+          }
         entry["operator applications"] = model->op().n_applications();
         entry["operator form"]         = size.form;
         entry["settings"]              = json::object();

@@ -61,6 +61,11 @@ namespace PeriDeal
         return *states;
       }
 
+      Point<dim> position(const unsigned int node) const override
+      {
+        return node_set->position(node);
+      }
+
       std::vector<double> at_points(const PointEvaluator<dim>              &reader,
                                     const std::vector<std::vector<double>> &points) const override
       {
@@ -100,6 +105,8 @@ namespace PeriDeal
         states->dilatations(this->displacement, theta);
         ElasticFields<dim> list(node_set->partitioner());
         list.add_vector("displacement", this->displacement);
+        if (this->stepper)
+          list.add_vector("velocity", this->velocity);
         list.add_stress(nodal_stress(tensors));
         list.add_strain(tensors.strain);
         list.add("dilatation", [&](const unsigned int i) { return theta[i]; });

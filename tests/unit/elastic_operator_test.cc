@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "elastic_body.h"
+#include "elastic_test_tools.h"
 
 using namespace PeriDeal;
 using namespace PeriDeal::OperatorTests;
@@ -19,22 +19,6 @@ namespace
   double trace_of(const dealii::Tensor<2, dim> &g)
   {
     return trace(g);
-  }
-
-
-  /** Some vector that depends on places only. */
-  template <int dim>
-  dealii::Tensor<1, dim> bumpy_vector(const dealii::Point<dim> &p)
-  {
-    dealii::Tensor<1, dim> value;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        double phase = d + 1.;
-        for (unsigned int e = 0; e < dim; ++e)
-          phase += (3. + 2. * e + d) * p[e];
-        value[d] = std::sin(phase);
-      }
-    return value;
   }
 
 

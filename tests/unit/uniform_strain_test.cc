@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "elastic_body.h"
+#include "elastic_test_tools.h"
 
 using namespace PeriDeal;
 using namespace PeriDeal::OperatorTests;

@@ -62,9 +62,10 @@ namespace PeriDeal
     unsigned int        n_components() const override;
     ForceBalance        forces(const Vector &u, const double t) const override;
     double              energy(const Vector &u) const override;
-
-    /** y = K x without conditions. Collective. */
-    void multiply(Vector &y, const Vector &x) const;
+    void                multiply(Vector &y, const Vector &x) const override;
+    void                unbalanced(Vector &r, const Vector &u, const double t) const override;
+    void                mechanical_loads(Vector &loads, const double t) const override;
+    double              scaled_bound() const override;
 
     /** Place of a node of this process, by local number. */
     const dealii::Point<dim> &position(const unsigned int node) const;
@@ -108,6 +109,7 @@ namespace PeriDeal
     double thermal_strain(const dealii::Point<dim> &p) const;
     void   throw_if_isolated() const;
     void   assemble_loads(Vector &loads, const double t) const;
+    void   fill_noise(Vector &vector) const;
     template <typename Visit>
     void for_each_load(const double t, const Visit &visit) const;
 

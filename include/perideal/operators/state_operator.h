@@ -22,7 +22,7 @@ namespace PeriDeal
 
 
   /**
-   * Linear peridynamic solid with linear bond kinematics (Silling 2007; in 2D Le 2014 section 2 in the corrected form of doc/elasticity.md), and the bond-based
+   * Linear peridynamic solid (Silling 2007; in 2D Le 2014 section 2 in the corrected form of doc/elasticity.md), and the bond-based
    * solid as the same without dilatation. With xi the bond, x its length, M = xi/x, the extension e = M . (u_j - u_i) - s x, s the mean thermal strain of
    * both ends, and W_ij = V_i V_j omega f (f the volume fraction) over unbroken bonds:
    *
@@ -31,6 +31,11 @@ namespace PeriDeal
    *
    * with d, c, b the factors dilatation, volumetric and extension of StateLaw. The prefactor of omega drops out. An application takes two passes over
    * the bonds, the dilatations first. Each bond is stored at both ends: W xi, one number, a column.
+   *
+   * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a rotation makes none. q is that of the undeformed body. The tangent
+   * of linearize() has W x Y/|Y| in the place of W xi, and across the bond the stiffness force/|Y|.
+   *
+   * Viscosity is in the bonds and parallel to them (Le 2014 eq 2.43): D is K without the dilatations.
    */
   template <int dim>
   class StateOperator : public ElasticOperator
@@ -58,18 +63,24 @@ namespace PeriDeal
     unsigned int        n_components() const override;
     ForceBalance        forces(const Vector &u, const double t) const override;
     double              energy(const Vector &u) const override;
+    void                multiply(Vector &y, const Vector &x) const override;
+    void                unbalanced(Vector &r, const Vector &u, const double t) const override;
+    void                mechanical_loads(Vector &loads, const double t) const override;
+    void                damping_force(Vector &y, const Vector &v) const override;
+    double              damping_bound() const override;
+    double              scaled_bound() const override;
+    bool                nonlinear() const override;
+    void                linearize(const Vector &u) override;
 
     const Families<dim> &families() const;
-
-    /** y = K x without conditions. Collective. */
-    void multiply(Vector &y, const Vector &x) const;
 
     /** theta at the owned nodes, thermal extension taken off. Collective. */
     void dilatations(const Vector &u, std::vector<double> &theta) const;
 
     /**
      * The collapsed stress of the owned nodes, sum_j t_ij M (x) xi V_j (Le 2014 eq 1.26), or the mean with that of the bonds' other ends (eq 3.1) where there are
-     * several phases, and the strain of the nonlocal deformation gradient (eq 1.25). Collective.
+     * several phases, and the strain of the nonlocal deformation gradient F (eq 1.25). With full kinematics the stress is Cauchy's, sum t_ij M (x) Y V_j/det F, and the
+     * strain Green's, (F^T F - I)/2. Collective.
      */
     NodalTensors<dim> tensors(const Vector &u) const;
 
@@ -89,6 +100,19 @@ namespace PeriDeal
     void for_each_load(const double t, const Visit &visit) const;
     void find_dilatation_forces(const Vector &x, const bool thermal) const;
     void sum_forces(Vector &y, const Vector &x, const bool thermal) const;
+    void add_geometric_forces(Vector &y, const Vector &x) const;
+    void find_deformed_dilatation_forces(const Vector &u) const;
+    void sum_deformed_forces(Vector &y, const Vector &u) const;
+    void find_forces(Vector &y, const Vector &u) const;
+    void fill_noise(Vector &vector) const;
+
+    /** xi + u_j - u_i. */
+    dealii::Tensor<1, dim> deformed_bond(const double      *u,
+                                         const unsigned int i,
+                                         const std::size_t  k) const;
+
+    /** W x e of a bond of an owned node, thermal extension taken off. */
+    double extension_moment(const double *u, const unsigned int i, const std::size_t k) const;
 
     const Scene<dim>                                          &scene;
     Families<dim>                                              bonds;
@@ -98,8 +122,11 @@ namespace PeriDeal
     Vector                                                     weighted; // q_i; ghosts up to date
     std::vector<std::size_t>            starts{0}; // of the bonds of each owned node
     std::vector<unsigned int>           neighbors;
-    std::vector<dealii::Tensor<1, dim>> moments; // W xi
+    std::vector<dealii::Tensor<1, dim>> moments; // W xi, of the tangent W x Y/|Y|
     std::vector<double>                 springs; // (b_i/q_i + b_j/q_j)/(W x^2)
+    std::vector<double>                 lengths,
+      across; // full kinematics: W x, and the tangent's stiffness across the bond
+    bool           full       = false;
     bool           volumetric = false, any_thermal = false, several_phases = false;
     double         n_bonds = 0.;
     Vector         mass, stiffness_diagonal, thermal_loads, constant_loads;

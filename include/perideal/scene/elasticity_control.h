@@ -23,7 +23,8 @@ namespace PeriDeal
     Kinematics   kinematics = Kinematics::linear;
     Expression
       temperature_change; // of x, y, z; what strains the body is this times `Thermal expansion`
-    ElasticSolver solver = ElasticSolver::linear;
+    ElasticSolver solver    = ElasticSolver::linear;
+    bool          multigrid = true; // entry `Preconditioner`
 
     /** All solvers but `dynamics` find the equilibrium, in which there is no time. */
     bool is_static() const;

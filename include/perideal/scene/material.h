@@ -92,6 +92,8 @@ namespace PeriDeal
     Expression initial_value, source;
     std::vector<Expression>
       body_force; // elasticity: one formula of x, y, z, t per component, or none
+    std::vector<Expression> initial_displacement,
+      initial_velocity; // of x, y, z per component, or none
 
     void parse(const Physics physics = Physics::heat, const unsigned int dim = 2);
   };

@@ -13,6 +13,7 @@
 #include <perideal/operators/elastic_operator.h>
 #include <perideal/output/field_writer.h>
 #include <perideal/scene/scene.h>
+#include <perideal/solvers/motion_stepper.h>
 
 #include <memory>
 #include <string>
@@ -39,6 +40,9 @@ namespace PeriDeal
 
     virtual ElasticOperator &op() const = 0;
 
+    /** Place of an owned node. Not collective. */
+    virtual dealii::Point<dim> position(const unsigned int node) const = 0;
+
     /** Displacement and stress at points, in the order of elastic_columns(), one point after the other. */
     virtual std::vector<double> at_points(const PointEvaluator<dim>              &reader,
                                           const std::vector<std::vector<double>> &points) const = 0;
@@ -58,9 +62,11 @@ namespace PeriDeal
     /** What was chosen, for the report: name and value. */
     virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
 
-    Vector       displacement;
-    unsigned int n_iterations = 0;
-    Timings      timings;
+    Vector                         displacement;
+    Vector                         velocity; // of a motion
+    std::unique_ptr<MotionStepper> stepper;  // null in equilibrium
+    unsigned int                   n_iterations = 0;
+    Timings                        timings;
   };
 
 
@@ -70,6 +76,6 @@ namespace PeriDeal
   /** Builds a model's nodes and operator. The time goes into its timings. */
   template <int dim>
   std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model                       model,
-                                                        const dealii::Triangulation<dim> &mesh,
-                                                        const Scene<dim>                 &scene);
+                                                    const dealii::Triangulation<dim> &mesh,
+                                                    const Scene<dim>                 &scene);
 } // namespace PeriDeal

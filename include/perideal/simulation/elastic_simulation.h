@@ -10,15 +10,19 @@
 #include <perideal/output/result_files.h>
 #include <perideal/simulation/elastic_run.h>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace PeriDeal
 {
   struct ResultRecord;
 
   /**
-   * Owns and wires the members of a run with `Physics = elasticity`: mesh, models, solvers, output. All models of the scene are solved one after the other and
-   * compared. No discretisation here. All functions are collective and throw UserError.
+   * Owns and wires the members of a run with `Physics = elasticity`: mesh, models, solvers, output. All models of the scene are solved one after the other, or
+   * move from one output time to the next together, and are compared. No discretisation here. All functions are collective and throw UserError.
    */
   template <int dim>
   class ElasticSimulation
@@ -38,21 +42,28 @@ namespace PeriDeal
     void dry_run();
 
   private:
-    void build();
-    void solve(ElasticRun<dim> &model);
-    void write_points();
-    void write_fields();
-    void add_totals(const ElasticRun<dim> &model);
-    void write_summary();
+    void                   build();
+    void                   solve(ElasticRun<dim> &model);
+    void                   make_steppers();
+    void                   set_start(ElasticRun<dim> &model) const;
+    void                   move();
+    void                   write_output(const double t);
+    void                   write_points(const double t);
+    void                   write_fields(const double t);
+    void                   add_totals(const ElasticRun<dim> &model, const double t);
+    nlohmann::ordered_json add_energies(const ElasticRun<dim> &model, const double t);
+    void                   write_summary();
 
-    const Scene<dim>                               &scene;
-    const SceneText                                &text;
-    MPI_Comm                                        communicator;
-    mutable Progress                                progress;
-    Timings                                         timings;
-    std::unique_ptr<dealii::Triangulation<dim>>     mesh;
-    std::vector<std::unique_ptr<ElasticRun<dim>>> models;
-    PointTable                                      probes, line;
-    std::unique_ptr<ResultRecord>                   record;
+    const Scene<dim>                                 &scene;
+    const SceneText                                  &text;
+    MPI_Comm                                          communicator;
+    mutable Progress                                  progress;
+    Timings                                           timings;
+    std::unique_ptr<dealii::Triangulation<dim>>       mesh;
+    std::vector<std::unique_ptr<ElasticRun<dim>>>     models;
+    PointTable                                        probes, line;
+    std::unique_ptr<ResultRecord>                     record;
+    std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers; // of the models
+    std::vector<std::unique_ptr<FieldWriter<dim>>>    writers;
   };
 } // namespace PeriDeal

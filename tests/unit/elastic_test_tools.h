@@ -26,10 +26,20 @@ namespace PeriDeal
         std::vector<std::string> notes;
         mesh = build_mesh(scene, communicator, notes);
         handler.reinit(*mesh);
-        if (model == Model::finite_elements)
+        if (model != Model::peridynamics)
           {
             handler.distribute_dofs(dealii::FE_Q<dim>(scene.finite_elements.degree));
-            elements = std::make_unique<ElasticElements<dim>>(handler, scene);
+            std::unique_ptr<ElasticCoupling<dim>> coupling;
+            if (model == Model::coupled)
+              {
+                number_along_lattice(handler, scene.domain);
+                nodes    = std::make_unique<Nodes<dim>>(handler,
+                                                     scene.domain,
+                                                     scene.cracks,
+                                                     NodalVolume::partial);
+                coupling = make_elastic_coupling(*nodes, scene);
+              }
+            elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
           }
         else
           {
@@ -110,6 +120,22 @@ namespace PeriDeal
         for (unsigned int b = 0; b < dim; ++b)
           gradient[a][b] = g[3 * a + b];
       return gradient;
+    }
+
+
+    /** Some vector that depends on places only. */
+    template <int dim>
+    dealii::Tensor<1, dim> bumpy_vector(const dealii::Point<dim> &p)
+    {
+      dealii::Tensor<1, dim> value;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          double phase = d + 1.;
+          for (unsigned int e = 0; e < dim; ++e)
+            phase += (3. + 2. * e + d) * p[e];
+          value[d] = std::sin(phase);
+        }
+      return value;
     }
   } // namespace OperatorTests
 } // namespace PeriDeal
