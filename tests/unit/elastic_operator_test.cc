@@ -355,3 +355,45 @@ TEST(ElasticOperator, same_on_all_processes)
   same_on_all<2>({{"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}}, Model::peridynamics, 1e-13);
   same_on_all<3>({}, Model::peridynamics, 1e-13);
 }
+
+
+namespace
+{
+  /** A body that no side holds back expands freely and without stress: u = alpha dT x, also where families are cut off. */
+  template <int dim>
+  void expand_freely(const Model model, const Settings &more, const double factor = 1.)
+  {
+    const Body<dim>  body(box<dim>() +
+                           Settings{{"Boundary conditions/Displacement", ""},
+                                    {"Boundary conditions/Symmetry",
+                                     dim == 1 ? "left" :
+                                      dim == 2 ? "left, bottom" :
+                                                 "left, bottom, back"},
+                                    {"Material/Thermal expansion", "0.02"},
+                                    {"Elasticity/Temperature change", "3"}} +
+                           more,
+                         model);
+    ElasticOperator &op = body.op();
+    Vector           u, rhs;
+    op.initialize_vector(u);
+    op.initialize_vector(rhs);
+    op.residual(rhs, u, 0.);
+    LinearSolver(op, 1e-13, 500).solve(0., 1., u, rhs);
+    Vector expected = body.values(
+      [&](const dealii::Point<dim> &p) { return 0.06 * factor * dealii::Tensor<1, dim>(p); });
+    expected -= u;
+    EXPECT_LT(expected.linfty_norm(), 1e-12);
+  }
+} // namespace
+
+
+TEST(ElasticOperator, free_thermal_expansion)
+{
+  for (const Model model : {Model::finite_elements, Model::peridynamics})
+    {
+      expand_freely<1>(model, {});
+      expand_freely<2>(model, {});
+      expand_freely<2>(model, {{"Elasticity/Plane", "strain"}}, 1.2); // 1 + nu
+      expand_freely<3>(model, {});
+    }
+}

@@ -6,6 +6,7 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <perideal/analysis/elastic_stress.h>
+#include <perideal/analysis/phase_statistics.h>
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/timing.h>
 #include <perideal/mesh/nodes.h>
@@ -48,6 +49,9 @@ namespace PeriDeal
     /** The mean stress over the volume of the body: what the body as a whole carries. */
     virtual dealii::SymmetricTensor<2, 3> mean_stress() const = 0;
 
+    /** The stress of each own node or cell, with its phase. */
+    virtual std::vector<StressSample> stress_samples() const = 0;
+
     /** What was chosen, for the report: name and value. */
     virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
 
@@ -63,6 +67,6 @@ namespace PeriDeal
   /** Builds a model's nodes and operator. The time goes into its timings. */
   template <int dim>
   std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model                       model,
-                                                        const dealii::Triangulation<dim> &mesh,
-                                                        const Scene<dim>                 &scene);
+                                                    const dealii::Triangulation<dim> &mesh,
+                                                    const Scene<dim>                 &scene);
 } // namespace PeriDeal
