@@ -290,14 +290,17 @@ namespace PeriDeal
                                              NodePlacement::vertices;
     lower = parse_point<dim>(text("Lower corner"), where("Lower corner"));
     upper = parse_point<dim>(text("Upper corner"), where("Upper corner"));
+    image.reset();
+    pins.clear();
+    notes.clear();
+    if (shape == Shape::image)
+      parse_image(); // the pixels may say where the upper corner is
     for (unsigned int d = 0; d < dim; ++d)
       if (!(lower[d] < upper[d]))
         error("Upper corner",
               "its coordinate " + std::to_string(d + 1) + " (" + number_text(upper[d]) +
                 ") must be greater than that of 'Lower corner' (" + number_text(lower[d]) + ").");
-    if (shape == Shape::image)
-      parse_image();
-    else
+    if (shape != Shape::image)
       {
         refuse_image_entries();
         parse_cells();

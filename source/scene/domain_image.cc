@@ -157,8 +157,6 @@ namespace PeriDeal
         image->spacing[d] = (upper[d] - lower[d]) / cells[d];
       }
     islands = choice<IslandRule>("Islands");
-    pins.clear();
-    notes.clear();
     if (picture.n_columns % block != 0 || picture.n_rows % block != 0)
       notes.push_back("'Pixels per cell' leaves out " + std::to_string(picture.n_columns % block) +
                       " columns of pixels at the right and " +

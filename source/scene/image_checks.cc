@@ -32,6 +32,14 @@ namespace PeriDeal
     }
 
 
+    std::string place_text(const Point<2> &p)
+    {
+      char text[80];
+      std::snprintf(text, sizeof text, "(%.6g, %.6g)", p[0], p[1]);
+      return text;
+    }
+
+
     std::string percent(const double share)
     {
       char text[40];
@@ -210,8 +218,8 @@ namespace PeriDeal
       std::string           text;
       for (std::size_t k = 0; k < std::min(n_named, islands.size()); ++k)
         text += (k > 0 ? ", " : "") + std::to_string(islands[k].cells.size()) +
-                (islands[k].cells.size() == 1 ? " cell at (" : " cells around (") +
-                number_text(islands[k].center[0]) + ", " + number_text(islands[k].center[1]) + ")";
+                (islands[k].cells.size() == 1 ? " cell at " : " cells around ") +
+                place_text(islands[k].center);
       if (islands.size() > n_named)
         text += " and " + std::to_string(islands.size() - n_named) + " more";
       return text;

@@ -21,12 +21,11 @@ FOLDER = tempfile.mkdtemp(prefix="perideal_images_")
 QUIET = {"Output/Fields": "none"}
 PHASES = ("silver", "bi2212")
 
-# Gaps between peridynamics and finite elements, and what was measured.
-MACROSCOPIC = 0.035
-STRAINED = 0.06
-COOLED = 0.11
-BALANCE = 1.0
-CONDUCTED = 0.05
+# Gaps between peridynamics and finite elements; measured at most 1.52 %, 1.91 % and 4.3 %.
+MACROSCOPIC = 0.023
+STRAINED = 0.029
+COOLED = 0.064
+BALANCE = 1e-8
 
 
 def write_pgm(name, rows):
@@ -125,9 +124,10 @@ def trends():
 
 def show_kinds(table, highest):
     """Le (2014): 111, and nearly 67.7, over 67.7 MPa."""
-    check(highest["void"] > 1.25, f"a void raises the largest stress in Bi2212 by {highest['void']:.3f}")
+    check(highest["void"] > 1.25,  # measured 1.359
+           f"a void raises the largest stress in Bi2212 by {highest['void']:.3f}")
     for kind in ("soft", "hard"):
-        table.add(kind, highest[kind], 1, absolute=0.1)
+        table.add(kind, highest[kind], 1, absolute=0.016)  # measured 0.0105
         check(highest["void"] > 1.2 * highest[kind], f"a void is worse than a {kind} defect: {highest['void']:.3f}, {highest[kind]:.3f}")
 
 
@@ -141,11 +141,14 @@ def check_trends(bi2212, silver):
     check(bi2212["length_31"] < 0.9 * bi2212["length_20"], "a void through the filament relieves Bi2212")
     grows(silver, ["length_13", "length_20", "length_31"], "silver with the length of a void")
     grows(silver, ["width_20", "width_10", "width_03"], "silver with a narrower slit")
-    for width in (10, 20):
-        check(silver[f"slanted_{width}"] < silver[f"width_{width}"], f"a slanted slit of {width} pixels is no worse than an upright one")
-    grows(bi2212, ["sound", "circle_06", "circle_12", "circle_18"], "Bi2212 with the diameter of a void")
+    grows(silver, ["slanted_20", "slanted_10", "slanted_05"], "silver with a narrower slanted slit")
+    for width in (10, 20):  # in Bi2212 only: the acute corners of these pixels are in silver
+        check(bi2212[f"slanted_{width}"] < bi2212[f"width_{width}"], f"a slanted slit of {width} pixels is no worse than an upright one")
+    grows(bi2212, ["circle_06", "circle_12", "circle_18"], "Bi2212 with the diameter of a void")
+    check(bi2212["circle_40"] < 0.9 * bi2212["circle_18"], "a round void wider than the filament relieves Bi2212")
     grows(silver, ["circle_12", "circle_18", "circle_40"], "silver with the diameter of a void")
     grows(bi2212, ["aspect_5_20", "aspect_10_10", "aspect_20_5"], "Bi2212 with the aspect ratio of a void")
+    check_close(bi2212["aspect_5_20"], bi2212["sound"], relative=0.01, what="a void along the filament against the sound wire")  # measured 0.7 %
 
 
 def models():
@@ -266,49 +269,53 @@ def heat():
     """Layers in series and side by side against the exact resistance; voids are insulated."""
     series, beside = ["9955999559"] * 6, ["9999999999"] * 2 + ["5555555555"] * 2 + ["9999999999"] * 2
     table = Comparison("Heat through layers of 1 and 5, over the exact one")
-    for name, rows, exact in (("in series", series, 0.6 / (0.6 / 1 + 0.4 / 5)), ("side by side", beside, 0.4 * 1 + 0.2 * 5)):
+    # Measured 0.96 and 2.8 %: families cut off at the sides.
+    for name, rows, exact, gap in (("in series", series, 0.6 / (0.6 / 1 + 0.4 / 5), 0.014),
+                                   ("side by side", beside, 0.4 * 1 + 0.2 * 5, 0.042)):
         for model in ("finite elements", "peridynamics"):
             more = {"Domain/Cells per pixel": "4", "Material/Interface rule": "harmonic"} if model == "peridynamics" else {}
             run = run_scene(small(rows)[0], {**HEAT, "Models": model, "Material/Phases/Conductivity": "fibre: 5", **more})
             heat_in = run.model(model)["boundary flux"]["right"]
-            table.add(f"{name}, {model}", heat_in / exact, 1, absolute=1e-9 if model == "finite elements" else CONDUCTED)
+            table.add(f"{name}, {model}", heat_in / exact, 1, absolute=1e-9 if model == "finite elements" else gap)
     # 1 x 0.6 with a slot of void between two strips: what conducts is the strips.
     slot = ["9999999999"] * 2 + ["0000000000"] * 2 + ["9999999999"] * 2
     run = run_scene(small(slot)[0], {**HEAT, "Models": "finite elements, peridynamics", "Peridynamics/Bonds across voids": "cut",
-                                     "Boundary conditions/Flux": "hole: 0"})
+                                     "Domain/Cells per pixel": "6", "Boundary conditions/Flux": "hole: 0"})
     table.add("two strips, finite elements", run.model("finite elements")["boundary flux"]["right"] / 0.4, 1, absolute=1e-9)
-    # On a lattice linear fields are exact between bonds of one row; strips of two rows lose those across. Values at the side's row of nodes.
-    for side in ("left", "right"):
-        check(run.model("peridynamics")["boundary flux"][side] != 0, f"peridynamics conducts at {side}")
+    kept = run_scene(small(slot)[0], {**HEAT, "Models": "peridynamics", "Domain/Cells per pixel": "6"}).model("peridynamics")["boundary flux"]["right"]
+    cut = run.model("peridynamics")["boundary flux"]["right"]
+    table.add("two strips, peridynamics, bonds cut at the slot", cut / 0.4, 1, absolute=0.066)  # families cut off: measured 4.4 %
+    check(kept > cut, f"bonds across the slot conduct, too: {kept:.6g} and {cut:.6g}")
     table.show()
 
 
 def islands():
     """Named, removed, pinned; on two processes as well."""
-    rows = ["9999999999", "9000000009", "9099909909", "9099909909", "9000000009", "9999999999"]
+    rim, air = ["99999999999999"] * 2, ["99000000000099"]
+    rows = rim + air + ["99099909999099"] * 2 + air + rim
     text = small(rows)[0]
     run = run_scene(text, ELASTIC, expect_error=True, ranks=2)
-    check_message(run, "'Islands' in section 'Domain'", "2 parts", "6 cells around (0.35, 0.3)", "4 cells around (0.7, 0.3)", "'remove' or 'pin'")
+    check_message(run, "'Islands' in section 'Domain'", "2 parts", "8 cells around (0.9, 0.4)", "6 cells around (0.45, 0.4)", "'remove' or 'pin'")
     run = run_scene(text, HEAT, expect_error=True)
     check_message(run, "'Islands' in section 'Domain'", "steady state", "'remove'")
     for physics in (ELASTIC, HEAT):
         for ranks in (1, 2):
             run = run_scene(text, {**physics, "Domain/Islands": "remove"}, ranks=ranks)
-            check(run.summary["cells"] == 28, f"28 cells are left of 38: {run.summary['cells']}")
-            check(any("6 cells around (0.35, 0.3), 4 cells around (0.7, 0.3): removed" in n for n in run.summary["notes"]), "a note on it")
+            check(run.summary["cells"] == 72, f"72 cells are left of 86: {run.summary['cells']}")
+            check(any("8 cells around (0.9, 0.4), 6 cells around (0.45, 0.4): removed" in n for n in run.summary["notes"]), "a note on it")
     removed = run_scene(text, {**ELASTIC, "Domain/Islands": "remove"})
     pinned = run_scene(text, {**ELASTIC, "Domain/Islands": "pin", "Peridynamics/Bonds across voids": "cut",
-                              "Output/Probes": "0.35,0.25 ; 0.75,0.35"}, ranks=2)
+                              "Output/Probes": "0.45,0.35 ; 0.85,0.45"}, ranks=2)
     cut = run_scene(text, {**ELASTIC, "Domain/Islands": "remove", "Peridynamics/Bonds across voids": "cut"})
     for model, reference in (("finite elements", removed), ("peridynamics", cut)):
         check_close(pinned.model(model)["strain energy"], reference.model(model)["strain energy"], relative=1e-7,
                     what=f"{model}: energy with pinned and without removed islands")
-        for point in ((0.35, 0.25), (0.75, 0.35)):
+        for point in ((0.45, 0.35), (0.85, 0.45)):
             check_close(pinned.probe(model, point, column="ux"), 0, absolute=1e-8, what=f"{model}: a pinned island rests at {point}")
     transient = run_scene(text, {"Time/End time": "0.01", "Boundary conditions/Dirichlet": "left: 0", "Initial and source/Initial value": "1",
-                                 "Peridynamics/Bonds across voids": "cut", "Output/Probes": "0.35,0.25"})
+                                 "Peridynamics/Bonds across voids": "cut", "Output/Probes": "0.45,0.35"})
     for model in ("finite elements", "peridynamics"):
-        check_close(transient.probe(model, (0.35, 0.25)), 1, absolute=1e-8, what=f"{model}: an insulated part keeps its heat")
+        check_close(transient.probe(model, (0.45, 0.35)), 1, absolute=1e-8, what=f"{model}: an insulated part keeps its heat")
 
 
 def mistakes():
