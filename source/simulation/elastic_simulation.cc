@@ -13,6 +13,7 @@
 
 #include <algorithm>
 
+#include "elastic_phases.h"
 #include "result_record.h"
 #include "summary_parts.h"
 
@@ -171,20 +172,6 @@ namespace PeriDeal
   }
 
 
-  namespace
-  {
-    /** Call visit(a, b, "xy") for the components of the stress that results have. */
-    template <int dim, typename Visit>
-    void for_each_component(const Visit &visit)
-    {
-      for (unsigned int a = 0; a < 3; ++a)
-        for (unsigned int b = a; b < 3; ++b)
-          if (b < dim || (dim == 2 && a == 2))
-            visit(a, b, std::string(1, "xyz"[a]) + "xyz"[b]);
-    }
-  } // namespace
-
-
   template <int dim>
   void ElasticSimulation<dim>::add_totals(const ElasticRun<dim> &model)
   {
@@ -203,48 +190,20 @@ namespace PeriDeal
     row("imbalance", balance.imbalance());
     const SymmetricTensor<2, 3> mean   = model.mean_stress();
     nlohmann::ordered_json      stress = nlohmann::ordered_json::object();
-    for_each_component<dim>(
-      [&](const unsigned int a, const unsigned int b, const std::string &name) {
-        row("mean stress " + name, mean[a][b]);
-        stress[name] = mean[a][b];
-      });
+    for (unsigned int a = 0; a < 3; ++a)
+      for (unsigned int b = a; b < 3; ++b)
+        if (b < dim || (dim == 2 && a == 2))
+          {
+            const std::string name = std::string(1, "xyz"[a]) + "xyz"[b];
+            row("mean stress " + name, mean[a][b]);
+            stress[name] = mean[a][b];
+          }
     stress["von mises"]            = von_mises(mean);
     record->balances[model.name()] = {
       {"boundary force", balance.sides},
       {"force balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}},
       {"strain energy", energy},
       {"mean stress", stress}};
-    add_phases(model);
-  }
-
-
-  template <int dim>
-  void ElasticSimulation<dim>::add_phases(const ElasticRun<dim> &model)
-  {
-    auto       phases = nlohmann::ordered_json::object();
-    const auto row    = [&](const std::string &quantity, const double value) {
-      record->totals += "0," + model.name() + "," + quantity + "," + full_precision(value) + "\n";
-    };
-    for (const PhaseStatistics &phase :
-         phase_statistics(model.stress_samples(), scene.material.phases.all().names, communicator))
-      {
-        auto &entry              = phases[phase.name];
-        entry["volume fraction"] = phase.volume_fraction;
-        row("volume fraction of " + phase.name, phase.volume_fraction);
-        for_each_component<dim>(
-          [&](const unsigned int a, const unsigned int b, const std::string &name) {
-            entry["mean stress"][name] = phase.mean_stress[a][b];
-            row("mean stress " + name + " in " + phase.name, phase.mean_stress[a][b]);
-          });
-        entry["von mises"] = {{"mean", phase.mean_von_mises},
-                              {"99th percentile", phase.highest_percentile},
-                              {"maximum", phase.largest_von_mises}};
-        row("mean von Mises stress in " + phase.name, phase.mean_von_mises);
-        row("99th percentile of the von Mises stress in " + phase.name, phase.highest_percentile);
-        row("largest von Mises stress in " + phase.name, phase.largest_von_mises);
-      }
-    if (!phases.empty())
-      record->balances[model.name()]["phases"] = phases;
   }
 
 
@@ -309,6 +268,9 @@ namespace PeriDeal
         entry["peak memory"] =
           1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
         entry.update(record->balances.at(model->name()));
+        if (const json phases = describe_phases(*model, scene, record->totals, communicator);
+            !phases.empty())
+          entry["phases"] = phases;
         summary["models"][model->name()] = entry;
       }
     std::vector<std::pair<std::string, std::string>> files;

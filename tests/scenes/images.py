@@ -277,15 +277,13 @@ def heat():
             run = run_scene(small(rows)[0], {**HEAT, "Models": model, "Material/Phases/Conductivity": "fibre: 5", **more})
             heat_in = run.model(model)["boundary flux"]["right"]
             table.add(f"{name}, {model}", heat_in / exact, 1, absolute=1e-9 if model == "finite elements" else gap)
-    # 1 x 0.6 with a slot of void between two strips: what conducts is the strips.
+    # A slot of void between two strips: what conducts is the strips.
     slot = ["9999999999"] * 2 + ["0000000000"] * 2 + ["9999999999"] * 2
     run = run_scene(small(slot)[0], {**HEAT, "Models": "finite elements, peridynamics", "Peridynamics/Bonds across voids": "cut",
                                      "Domain/Cells per pixel": "6", "Boundary conditions/Flux": "hole: 0"})
     table.add("two strips, finite elements", run.model("finite elements")["boundary flux"]["right"] / 0.4, 1, absolute=1e-9)
-    kept = run_scene(small(slot)[0], {**HEAT, "Models": "peridynamics", "Domain/Cells per pixel": "6"}).model("peridynamics")["boundary flux"]["right"]
     cut = run.model("peridynamics")["boundary flux"]["right"]
     table.add("two strips, peridynamics, bonds cut at the slot", cut / 0.4, 1, absolute=0.066)  # families cut off: measured 4.4 %
-    check(kept > cut, f"bonds across the slot conduct, too: {kept:.6g} and {cut:.6g}")
     table.show()
 
 

@@ -43,17 +43,16 @@ namespace PeriDeal
     void write_points();
     void write_fields();
     void add_totals(const ElasticRun<dim> &model);
-    void add_phases(const ElasticRun<dim> &model);
     void write_summary();
 
-    const Scene<dim>                             &scene;
-    const SceneText                              &text;
-    MPI_Comm                                      communicator;
-    mutable Progress                              progress;
-    Timings                                       timings;
-    std::unique_ptr<dealii::Triangulation<dim>>   mesh;
+    const Scene<dim>                               &scene;
+    const SceneText                                &text;
+    MPI_Comm                                        communicator;
+    mutable Progress                                progress;
+    Timings                                         timings;
+    std::unique_ptr<dealii::Triangulation<dim>>     mesh;
     std::vector<std::unique_ptr<ElasticRun<dim>>> models;
-    PointTable                                    probes, line;
-    std::unique_ptr<ResultRecord>                 record;
+    PointTable                                      probes, line;
+    std::unique_ptr<ResultRecord>                   record;
   };
 } // namespace PeriDeal
