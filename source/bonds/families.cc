@@ -37,6 +37,8 @@ namespace PeriDeal
         micro_conductivity(dim, parameters.kernel, parameters.kernel_exponent, delta))
     , on_lattice(nodes.lattice().has_value() && !nodes.has_doubled_nodes())
   {
+    if (parameters.across_voids == BondsAcrossVoids::cut && scene.domain.has_voids())
+      voids = &scene.domain;
     find_weights();
     // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away than any bond.
     const double layer = parameters.flux_treatment == FluxTreatment::layer_extrapolation ?
@@ -412,9 +414,10 @@ namespace PeriDeal
   {
     // Crack-side scaling changes the bonds of the nodes that have a bond cut: those reach once farther.
     const double radius = factors.empty() ? farthest : 2. * farthest;
-    return std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
-      return crack.is_near(own_nodes->position(node), radius);
-    });
+    return voids != nullptr ||
+           std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
+             return crack.is_near(own_nodes->position(node), radius);
+           });
   }
 
   template <int dim>

@@ -98,6 +98,28 @@ namespace PeriDeal
 
 
   template <int dim>
+  void DisplacementConditions<dim>::pin(const std::vector<Point<dim>> &positions,
+                                        const Scene<dim>              &scene,
+                                        const bool                     at_centers)
+  {
+    if (scene.domain.pins.empty())
+      return;
+    const double slack = 1e-6 * scene.domain.spacing().norm();
+    for (unsigned int node = 0; node < positions.size(); ++node)
+      for (const Pin<dim> &pin : scene.domain.pins)
+        if (pin.at_center == at_centers && pin.position.distance(positions[node]) < slack)
+          {
+            const unsigned int unknown = dim * node + pin.component;
+            if (std::none_of(prescribed.begin(), prescribed.end(), [&](const Prescribed &entry) {
+                  return entry.unknown == unknown;
+                }))
+              prescribed.push_back(
+                {unknown, numbers::internal_face_boundary_id, nullptr, positions[node]});
+          }
+  }
+
+
+  template <int dim>
   void DisplacementConditions<dim>::distribute(Vector &u, const double t) const
   {
     for (const Prescribed &entry : prescribed)

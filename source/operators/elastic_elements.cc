@@ -107,6 +107,9 @@ namespace PeriDeal
       }
     conditions =
       std::make_unique<DisplacementConditions<dim>>(on_sides, scene, dofs.get_communicator());
+    conditions->pin({positions.begin(), positions.begin() + nodes->locally_owned_size()},
+                    scene,
+                    false);
   }
 
 

@@ -32,6 +32,7 @@ namespace PeriDeal
                                                      "line.csv",
                                                      "grid.csv",
                                                      "totals.csv",
+                                                     "image_as_read.png",
                                                      "scene.prm"};
       const std::string                     name  = path.filename().string();
       const bool series = begins_with(name, "finite_elements") || begins_with(name, "peridynamics");
@@ -104,7 +105,7 @@ namespace PeriDeal
     const std::string unfinished = name + ".part";
     std::error_code   problem;
     {
-      std::ofstream file(unfinished);
+      std::ofstream file(unfinished, std::ios::binary);
       file << text << std::flush;
       if (!file)
         problem = std::make_error_code(std::errc::io_error);

@@ -130,9 +130,12 @@ namespace PeriDeal
   }
 
 
-  void Material::parse(const Physics physics, const unsigned int dim, const PlaneState plane)
+  void Material::parse(const Physics                          physics,
+                       const unsigned int                     dim,
+                       const PlaneState                       plane,
+                       const std::shared_ptr<const PhaseMap> &image)
   {
-    phases.parse(physics);
+    phases.parse(physics, image);
     const auto property = [&](const std::string &entry) {
       return phases.property(entry, read(entry, physics));
     };

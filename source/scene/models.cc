@@ -125,6 +125,14 @@ namespace PeriDeal
       "With `energy`: the direction of the unit gradient. `both`: one factor for each direction of space, "
       "weighted with the squares of the bond's direction cosines.",
       {"x", "y", "z", "both"});
+    declare(
+      "Bonds across voids",
+      EntryType::choice,
+      "auto",
+      "",
+      "Bonds that lead through a hole or an empty part of an image: `keep` them, so that a void narrower than the horizon is no gap, or "
+      "`cut` them. `auto`: cut with `Boundary treatment = exchange`, which never has them, else kept.",
+      {"auto", "keep", "cut"});
   }
 
 
@@ -158,6 +166,7 @@ namespace PeriDeal
     flux_treatment       = choice<FluxTreatment>("Flux treatment");
     surface_correction   = choice<SurfaceCorrection>("Surface correction");
     correction_direction = choice<CorrectionDirection>("Correction direction");
+    across_voids         = choice<BondsAcrossVoids>("Bonds across voids");
     form                 = choice<OperatorForm>("Operator form");
   }
 

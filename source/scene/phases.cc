@@ -188,6 +188,12 @@ namespace PeriDeal
           "' overlap at (" + point +
           "). Change a region so that every point belongs to one phase at most.");
       }
+    if constexpr (dim == 2)
+      if (found < 0 && image)
+        {
+          const int phase = image->at(p[0], p[1]);
+          return phase < 0 ? -1 : static_cast<int>(regions.size()) + phase;
+        }
     return found;
   }
 
@@ -301,7 +307,7 @@ namespace PeriDeal
       "z is greater than 0, or `circle(x, y, r)`, `rectangle(x0, y0, x1, y1)`, `polygon(x0, y0, x1, y1, ...)`, `sphere(x, y, z, r)`, "
       "`box(x0, y0, z0, x1, y1, z1)`, their rims included, or with a mesh file `mesh(id)`, the cells with that material id (Gmsh: physical surface, "
       "in 3D volume). Regions must not overlap; outside them the entries of section `Material` "
-      "hold.");
+      "hold. The phases of an image (section `Domain`) are phases, too; a region holds before them.");
     for (const MaterialEntry &entry : material_entries())
       declare(
         entry.name,
@@ -328,6 +334,7 @@ namespace PeriDeal
         if (found == regions->names.end())
           error(entry,
                 "there is no phase '" + name_value.first + "' in 'Regions'" +
+                  (regions->image ? " or 'Image colors' (section 'Domain')" : "") +
                   (regions->names.empty() ?
                      "." :
                      "; the phases are: " + join_names(regions->names) + ".") +
@@ -343,7 +350,7 @@ namespace PeriDeal
   }
 
 
-  void Phases::parse(const Physics physics)
+  void Phases::parse(const Physics physics, const std::shared_ptr<const PhaseMap> &image)
   {
     elastic     = physics == Physics::elasticity;
     auto list   = std::make_shared<Regions>();
@@ -360,7 +367,16 @@ namespace PeriDeal
                                    where("Regions") + ", phase '" + name_value.first + "'",
                                    list->mesh);
       }
-    regions = list;
+    if (image)
+      for (const std::string &name : image->names)
+        {
+          if (std::find(list->names.begin(), list->names.end(), name) != list->names.end())
+            error("Regions",
+                  "the phase '" + name + "' is one of 'Image colors' in section 'Domain', too.");
+          list->names.push_back(name);
+        }
+    list->image = image;
+    regions     = list;
     std::vector<bool> has_material(regions->names.size(), false);
     for (const MaterialEntry &entry : material_entries())
       {
@@ -369,7 +385,8 @@ namespace PeriDeal
           has_material[k] = has_material[k] || (values[k].has_value() &&
                                                 (elastic ? entry.elasticity : entry.diffusion));
       }
-    for (std::size_t k = 0; k < has_material.size(); ++k)
+    // What an image shows need not have a material of its own.
+    for (std::size_t k = 0; k < regions->regions.size(); ++k)
       if (!has_material[k])
         error("Regions",
               "the phase '" + regions->names[k] + "' has no material: name it in '" +

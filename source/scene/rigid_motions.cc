@@ -49,7 +49,7 @@ namespace PeriDeal
             {
               const bool up = (k >> d) % 2 == 1;
               p[d]          = up ? domain.upper[d] : domain.lower[d];
-              if (side == hole_boundary_id && d < 2)
+              if (side == hole_boundary_id && d < 2 && !domain.image)
                 p[d] = domain.hole_center[d] + (up ? 1. : -1.) * domain.hole_radius;
             }
           if (side == hole_boundary_id || (k >> (side / 2)) % 2 == side % 2)

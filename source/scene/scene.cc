@@ -299,10 +299,11 @@ namespace PeriDeal
     general.dimension = dim;
     domain.parse();
     elasticity.parse(general.physics, dim);
-    material.parse(general.physics, dim, elasticity.plane);
+    material.parse(general.physics, dim, elasticity.plane, domain.image);
     initial_and_source.parse(general.physics, dim);
     boundary_conditions.parse(domain.shape != Shape::mesh_file,
-                              domain.shape == Shape::plate_with_hole,
+                              domain.shape == Shape::plate_with_hole ||
+                                (domain.image && domain.image->has_voids()),
                               general.physics);
     cracks.parse(general.physics);
     peridynamics.parse();
@@ -346,6 +347,7 @@ namespace PeriDeal
     check_combinations(*this);
     check_steady(*this);
     crack_history(); // for its errors
+    check_image();
     check_points_of_output(*this);
   }
 

@@ -154,6 +154,27 @@ namespace PeriDeal
         return list;
       }
 
+      std::vector<StressSample> stress_samples() const override
+      {
+        std::vector<StressSample> samples;
+        visit_cells(
+          QGauss<dim>(handler.get_fe().degree + 1),
+          [&](const auto &values, const unsigned int q, const auto &, const auto &gradient) {
+            if (elements->cut_cells()[values.get_cell()->active_cell_index()])
+              return;
+            if (q == 0)
+              samples.push_back(
+                {scene.material.phases.all().at(values.get_cell()->center()), 0., {}});
+            samples.back().volume += values.JxW(q);
+            samples.back().stress +=
+              values.JxW(q) *
+              stress_of_strain(symmetrize(gradient), scene, values.quadrature_point(q));
+          });
+        for (StressSample &sample : samples)
+          sample.stress /= sample.volume;
+        return samples;
+      }
+
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
         std::vector<std::pair<std::string, std::string>> list{

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 
+#include "elastic_phases.h"
 #include "elastic_summary.h"
 #include "result_record.h"
 #include "summary_parts.h"
@@ -262,6 +263,7 @@ namespace PeriDeal
   void ElasticSimulation<dim>::run()
   {
     prepare_directory(scene.general.output_directory, text.file_name, communicator);
+    write_image_as_read(scene, communicator);
     build();
     if (scene.elasticity.is_static())
       {
@@ -308,13 +310,13 @@ namespace PeriDeal
   template <int dim>
   void ElasticSimulation<dim>::write_summary()
   {
-    using json        = nlohmann::ordered_json;
-    json summary      = describe_scene(scene, text, *mesh, communicator);
-    summary["cracks"] = corners_of(scene.cracks.pieces(scene.cracks.end_time));
-    summary["steady"] = scene.elasticity.is_static();
-    summary["solver"] = scene.elasticity.solver_name();
-    summary["end time"] = scene.elasticity.is_static() ? 0. : scene.time.end_time;
-    summary["sides"]    = describe_elastic_sides(scene);
+    using json           = nlohmann::ordered_json;
+    json summary         = describe_scene(scene, text, *mesh, communicator);
+    summary["cracks"]    = corners_of(scene.cracks.pieces(scene.cracks.end_time));
+    summary["steady"]    = scene.elasticity.is_static();
+    summary["solver"]    = scene.elasticity.solver_name();
+    summary["end time"]  = scene.elasticity.is_static() ? 0. : scene.time.end_time;
+    summary["sides"]     = describe_elastic_sides(scene);
     summary["notes"]     = record->notes;
     summary["fields"]    = record->fields;
     summary["wall time"] = timings.all();
@@ -350,6 +352,9 @@ namespace PeriDeal
         entry["peak memory"] =
           1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
         entry.update(record->balances.at(model->name()));
+        if (const json phases = describe_phases(*model, scene, record->totals, communicator);
+            !phases.empty())
+          entry["phases"] = phases;
         summary["models"][model->name()] = entry;
       }
     if (!record->comparison.empty())

@@ -128,6 +128,17 @@ namespace PeriDeal
                Utilities::MPI::sum(volume, handler.get_communicator());
       }
 
+      std::vector<StressSample> stress_samples() const override
+      {
+        const auto                stress = nodal_stress(states->tensors(this->displacement));
+        std::vector<StressSample> samples;
+        for (unsigned int i = 0; i < stress.size(); ++i)
+          samples.push_back({scene.material.phases.all().at(node_set->position(i)),
+                             node_set->volume(i),
+                             stress[i]});
+        return samples;
+      }
+
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
         return bond_settings(scene, states->families());

@@ -80,6 +80,18 @@ namespace PeriDeal
         }
       return corners;
     }
+    json describe_image(const std::string &file_name, const PhaseMap &map)
+    {
+      json       phases = json::object();
+      const auto counts = map.counts();
+      for (std::size_t k = 0; k < counts.size(); ++k)
+        if (k < map.names.size() || counts[k] > 0)
+          phases[k < map.names.size() ? map.names[k] : void_name] = {
+            {"cells", counts[k]},
+            {"area fraction", static_cast<double>(counts[k]) / map.phases.size()},
+            {"color", {map.colors[k][0], map.colors[k][1], map.colors[k][2]}}};
+      return {{"file", file_name}, {"cells", map.n_cells}, {"phases", phases}};
+    }
   } // namespace
 
 
@@ -107,13 +119,25 @@ namespace PeriDeal
                                          {"content", names.content},
                                          {"flow", names.flow},
                                          {"quantity", names.quantity}};
-    static const char *const shapes[] = {"box", "plate with hole", "mesh file"};
+    static const char *const shapes[] = {"box", "plate with hole", "mesh file", "image"};
     const auto               corners  = bounding_box(mesh, communicator);
     summary["domain"]                 = {{"lower", coordinates(corners.first)},
                                          {"upper", coordinates(corners.second)},
                                          {"shape", shapes[static_cast<int>(scene.domain.shape)]}};
     summary["cells"]                  = mesh.n_global_active_cells();
+    if (scene.domain.image)
+      summary["image"] = describe_image(scene.domain.image_file, *scene.domain.image);
     return summary;
+  }
+
+
+  template <int dim>
+  void write_image_as_read(const Scene<dim> &scene, const MPI_Comm communicator)
+  {
+    if (scene.domain.image)
+      write_files({{"image_as_read.png", encode_png(scene.domain.image->picture())}},
+                  scene.general.output_directory,
+                  communicator);
   }
 
 
@@ -146,7 +170,8 @@ namespace PeriDeal
   template json describe_scene(const Scene<dim> &,         \
                                const SceneText &,          \
                                const Triangulation<dim> &, \
-                               const MPI_Comm);
+                               const MPI_Comm);            \
+  template void write_image_as_read(const Scene<dim> &, const MPI_Comm);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -18,6 +18,10 @@ namespace PeriDeal
                                         const dealii::Triangulation<dim> &mesh,
                                         const MPI_Comm                    communicator);
 
+  /** With `Shape = image` write image_as_read.png into the output directory: one pixel per cell in the colours of the phases. Collective. */
+  template <int dim>
+  void write_image_as_read(const Scene<dim> &scene, const MPI_Comm communicator);
+
   /** Write files of these names into a directory, on rank 0. Throws UserError everywhere if one cannot be written. Collective. */
   void write_files(const std::vector<std::pair<std::string, std::string>> &files,
                    const std::string                                      &directory,

@@ -41,7 +41,7 @@ namespace
   template <int dim>
   void check_patch(const Settings &settings)
   {
-    const Body<dim> body(settings, Model::coupled);
+    const Body<dim>                        body(settings, Model::coupled);
     dealii::TrilinosWrappers::SparseMatrix with, without;
     body.elements->assemble_intact(with, true);
     body.elements->assemble_intact(without, false);
@@ -95,9 +95,9 @@ TEST(ElasticExchange, layers_stay_exact)
   // Two phases in series: the strain jumps at the interface, across which no bond is active.
   const Settings layers =
     zoned<2>("everywhere", 0.) + Settings{{"Material/Young modulus", "3"},
-                                        {"Material/Phases/Regions", "stiff: x > 0.7"},
-                                        {"Material/Phases/Young modulus", "stiff: 30"}};
-  const Body<2> body(layers, Model::coupled);
+                                          {"Material/Phases/Regions", "stiff: x > 0.7"},
+                                          {"Material/Phases/Young modulus", "stiff: 30"}};
+  const Body<2>                          body(layers, Model::coupled);
   dealii::TrilinosWrappers::SparseMatrix with;
   body.elements->assemble_intact(with, true);
   Vector y, x = body.values([](const dealii::Point<2> &p) {
@@ -114,9 +114,9 @@ TEST(ElasticExchange, layers_stay_exact)
 TEST(ElasticExchange, free_thermal_expansion)
 {
   const auto check = [](const Settings &settings, auto dimension) {
-    constexpr int    dim = decltype(dimension)::value;
-    Body<dim> body(settings, Model::coupled);
-    const double     strain =
+    constexpr int dim = decltype(dimension)::value;
+    Body<dim>     body(settings, Model::coupled);
+    const double  strain =
       0.01 *
       (settings.back().second == "strain" ? 1.3 : 1.); // alpha dT, in plane strain times 1 + nu
     Vector u = body.values([&](const dealii::Point<dim> &p) {
@@ -142,10 +142,9 @@ TEST(ElasticExchange, same_on_all_processes)
 {
   const Settings settings =
     zoned<2>("cracks: 1", 0.3) + Settings{{"Cracks/Segments", "0.4, 0.55 ; 1.0, 0.75"},
-                                        {"Peridynamics/Surface correction", "crack scaling"}};
-  const Body<2> together(settings, Model::coupled),
-      alone(settings, Model::coupled, MPI_COMM_SELF);
-  Vector               x = together.values(bumpy_vector<2>), y(x), x1 = alone.values(bumpy_vector<2>), y1(x1);
+                                          {"Peridynamics/Surface correction", "crack scaling"}};
+  const Body<2> together(settings, Model::coupled), alone(settings, Model::coupled, MPI_COMM_SELF);
+  Vector x = together.values(bumpy_vector<2>), y(x), x1 = alone.values(bumpy_vector<2>), y1(x1);
   together.elements->multiply(y, x);
   alone.elements->multiply(y1, x1);
   for (unsigned int i = 0; i < y.locally_owned_size() / 2; ++i)

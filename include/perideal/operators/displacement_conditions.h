@@ -36,6 +36,11 @@ namespace PeriDeal
                            const Scene<dim>                   &scene,
                            const MPI_Comm                      communicator);
 
+    /** Hold the pins of the scene's islands. @param positions of this process's own nodes; @param at_centers which pins are meant. Not collective. */
+    void pin(const std::vector<dealii::Point<dim>> &positions,
+             const Scene<dim>                      &scene,
+             const bool                             at_centers);
+
     /** Set the prescribed values of time t. */
     void distribute(Vector &u, const double t) const;
 

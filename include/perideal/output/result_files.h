@@ -19,7 +19,7 @@ namespace PeriDeal
                          const std::string &scene_file,
                          const MPI_Comm     communicator);
 
-  /** Write a text file whole or not at all (new file, then rename). Call it on one process. */
+  /** Write a file whole or not at all (new file, then rename). Call it on one process. */
   void write_file(const std::string &name, const std::string &text);
 
   /**

@@ -82,6 +82,14 @@ namespace PeriDeal
     stored
   };
 
+  /** Bonds whose way leads through a hole or an empty part of an image. */
+  enum class BondsAcrossVoids
+  {
+    automatic, // cut with exchange, else kept
+    keep,
+    cut
+  };
+
   enum class InterfaceRule
   {
     minimum,

@@ -59,10 +59,12 @@ namespace PeriDeal
      * the Young modulus alone will do.
      *
      * @param plane of elasticity in two dimensions: in plane stress the Poisson ratio may be 1/2
+     * @param image whose phases are phases of the material, or null
      */
-    void parse(const Physics      physics = Physics::heat,
-               const unsigned int dim     = 2,
-               const PlaneState   plane   = PlaneState::stress);
+    void parse(const Physics                          physics = Physics::heat,
+               const unsigned int                     dim     = 2,
+               const PlaneState                       plane   = PlaneState::stress,
+               const std::shared_ptr<const PhaseMap> &image   = nullptr);
 
   private:
     void declare_elasticity();

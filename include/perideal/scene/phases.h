@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/scene/expression.h>
+#include <perideal/scene/phase_map.h>
 #include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 
@@ -67,13 +68,17 @@ namespace PeriDeal
   };
 
 
-  /** The named regions of a scene. They must not overlap; where none is, the entries of section `Material` hold. */
+  /**
+   * The named regions of a scene. They must not overlap; where none is, the phases of the image hold, and where there are none either, the entries of section
+   * `Material`.
+   */
   struct Regions
   {
-    std::vector<std::string>       names;
-    std::vector<Region>            regions;
-    std::string                    where;
-    std::shared_ptr<MeshMaterials> mesh; // shared by the regions given by material ids
+    std::vector<std::string>        names;
+    std::vector<Region>             regions;
+    std::string                     where;
+    std::shared_ptr<MeshMaterials>  mesh;  // shared by the regions given by material ids
+    std::shared_ptr<const PhaseMap> image; // its phases follow those of the regions; null: none
 
     /** Some region is given by a material id. */
     bool need_mesh() const;
@@ -146,8 +151,10 @@ namespace PeriDeal
     /**
      * Throws UserError: names twice, regions without a material that the physics takes, materials of regions that do not exist, wrong
      * formulas.
+     * @param image whose phases are phases of the material, or null
      */
-    void parse(const Physics physics = Physics::heat);
+    void parse(const Physics                          physics = Physics::heat,
+               const std::shared_ptr<const PhaseMap> &image   = nullptr);
 
     /** The property of that name, with the value elsewhere from section `Material`. */
     MaterialProperty property(const std::string &entry, const Expression &elsewhere) const;

@@ -103,6 +103,7 @@ namespace PeriDeal
     void check_adaptive_zone() const;
     void check_coupling() const;
     void check_coarsening() const;
+    void check_image();
 
     /** What elasticity needs of the other sections. */
     void check_elasticity() const;
@@ -115,6 +116,7 @@ namespace PeriDeal
   struct SceneText
   {
     std::string file_name, text;
+    MPI_Comm    communicator = MPI_COMM_SELF; // of those who read it, and its image, together
   };
 
   /**

@@ -6,6 +6,7 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <perideal/analysis/elastic_stress.h>
+#include <perideal/analysis/phase_statistics.h>
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/analysis/stress_intensity.h>
 #include <perideal/base/timing.h>
@@ -58,6 +59,9 @@ namespace PeriDeal
     {
       return {};
     }
+
+    /** The stress of each own node or cell, with its phase. */
+    virtual std::vector<StressSample> stress_samples() const = 0;
 
     /** What was chosen, for the report: name and value. */
     virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
