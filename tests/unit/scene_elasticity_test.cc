@@ -460,12 +460,16 @@ end
       overrides.insert(overrides.end(), more.begin(), more.end());
       return elastic_fault(overrides);
     };
-    expect(with({}), c + "Scheme", {"dilatation", "'splice' or 'blending'"});
+    EXPECT_EQ(with({}), "");
+    expect(with({c + "Zone=adaptive", "Domain/Coarsening=1"}), c + "Zone", {"'adaptive'"});
     EXPECT_EQ(with({c + "Scheme=splice"}), "");
     EXPECT_EQ(with({e + "Model=bond-based"}), "");
     expect(with({e + "Model=bond-based", e + "Kinematics=full", e + "Solver=conjugate gradients"}),
            e + "Kinematics",
            {"coupled"});
+    expect(with({"Cracks/Segments=0.2,0.3 ; 0.6,0.3", "Cracks/Mesh=pairs"}),
+           "Cracks/Mesh",
+           {"'removed' or 'faces'"});
     expect(with({c + "Scheme=splice", "Domain/Nodes=cell centers"}), "Domain/Nodes", {"coupled"});
   }
 } // namespace PeriDeal

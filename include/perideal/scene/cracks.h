@@ -16,12 +16,13 @@
 
 namespace PeriDeal
 {
-  /** What FEM and the mesh do with a crack (entry `Mesh` of section `Cracks`). */
+  /** What FEM and the mesh do with a crack (entry `Mesh` of section `Cracks`). The scene resolves `automatic`. */
   enum class CrackMesh
   {
     pairs,
     faces,
-    removed
+    removed,
+    automatic
   };
 
   /** Entry `Bonds through tips` of section `Cracks`. */
