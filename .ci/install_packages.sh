@@ -20,6 +20,7 @@ libeigen3-dev: Eigen, small dense matrices
 libmuparser-dev: muParser, formulas in scenes
 libcli11-dev: CLI11, the command line
 nlohmann-json3-dev: JSON, the summary of a run
+libpng-dev: PNG, pictures of microstructures
 libnanoflann-dev: nanoflann, neighbour search
 libhwy-dev: Highway, vector instructions of every processor
 libgtest-dev: GoogleTest, unit tests

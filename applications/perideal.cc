@@ -5,6 +5,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
+#include <perideal/simulation/elastic_simulation.h>
 #include <perideal/simulation/simulation.h>
 #include <perideal/study/study.h>
 #include <perideal/study/work_precision.h>
@@ -23,11 +24,16 @@ namespace
   {
     Scene<dim> scene;
     parse_scene(text, scene);
-    Simulation<dim> simulation(scene, text, communicator, quiet);
-    if (dry)
-      simulation.dry_run();
+    const auto compute = [&](auto &&simulation) {
+      if (dry)
+        simulation.dry_run();
+      else
+        simulation.run();
+    };
+    if (scene.general.physics == Physics::elasticity)
+      compute(ElasticSimulation<dim>(scene, text, communicator, quiet));
     else
-      simulation.run();
+      compute(Simulation<dim>(scene, text, communicator, quiet));
   }
 
 

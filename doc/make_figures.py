@@ -7,7 +7,7 @@
     python3 doc/make_figures.py --work-precision
 
 Runs each scene (all below prm/ but those of prm/failures and those as published, if none is named), draws its report, and keeps of it
-doc/figures/NAME.png: the last temperature, scaled to a thumbnail. For prm/quick_start.prm the
+doc/figures/NAME.png: the last temperature (displacement, stress), scaled to a thumbnail. For prm/quick_start.prm the
 figure is kept in full width too, as doc/figures/quick_start_wide.png. A picture that is newer
 than its scene is left as it is, unless --all is given. The table names every scene below prm/ with
 its title and the first sentence of its comment, up to a colon or bracket; --table writes the table only.
@@ -80,9 +80,10 @@ def save(image, name, width=None, height=None):
     print(f"doc/figures/{name}.png: {(FIGURES / f'{name}.png').stat().st_size / 1000:.0f} kB")
 
 
-def picture(figures):
-    """The last figure of the temperature; of a bar its line."""
-    found = sorted(figures.glob("temperature*.png")) or [figures / "line.png"]
+def picture(figures, paper):
+    """The last figure of the temperature; of an elastic body the deformed shape, of those of papers the stress; of a bar its line."""
+    elastic = "von_mises" if paper else "displacement_magnitude"
+    found = sorted(figures.glob("temperature*.png")) or sorted(figures.glob(f"{elastic}*.png")) or [figures / "line.png"]
     image = cropped(Image.open(found[-1]))
     if image.height > image.width:  # a body in 3D: its outer faces and the first slice
         image = image.crop((0, 0, image.width, round(0.47 * image.height)))
@@ -163,7 +164,7 @@ def main():
             continue
         with tempfile.TemporaryDirectory() as folder:
             try:
-                image = picture(run(scene, options.program, Path(folder)))
+                image = picture(run(scene, options.program, Path(folder)), scene.parent.parent.name == "papers")
             except (subprocess.CalledProcessError, OSError) as fault:
                 print(f"{scene.name}: {fault}", file=sys.stderr)
                 failed = True

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Compute the published tables and figures of the diffusion papers, and write doc/reproduction.md.
+"""Compute the published tables and figures of papers, and write doc/reproduction.md.
 
     python3 doc/make_reproduction.py                 computes what is not computed yet; writes page, figures, kept values
     python3 doc/make_reproduction.py --quick         only the quick rows; the others keep the values of doc/reproduction.json
@@ -28,10 +28,11 @@ import bobaru_2010  # noqa: E402
 import bobaru_2012  # noqa: E402
 import diyaroglu_2017  # noqa: E402
 import document  # noqa: E402
+import le_2014  # noqa: E402
 import tan_2020  # noqa: E402
 from results import Missing, Study  # noqa: E402
 
-MODULES = (bobaru_2010, bobaru_2012, tan_2020, diyaroglu_2017)
+MODULES = (bobaru_2010, bobaru_2012, tan_2020, diyaroglu_2017, le_2014)
 KEPT, PAGE, FIGURES = ROOT / "doc" / "reproduction.json", ROOT / "doc" / "reproduction.md", ROOT / "doc" / "figures" / "reproduction"
 ROUND_OFF = 1e-9
 

@@ -438,8 +438,8 @@ class OtherPhysics(ReportCase):
         self.change_summary(lambda summary: summary.update(physics="magnetism"))
         status, errors = run_report(self.directory)
         self.assertEqual(status, 1)
-        self.assertIn("physics must be one of heat, moisture, electricity, found \"magnetism\"",
-                      errors)
+        self.assertIn("physics must be one of heat, moisture, electricity, elasticity, found "
+                      "\"magnetism\"", errors)
 
 
 class Parts(ReportCase):

@@ -3,7 +3,10 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Frames of a 2D run: its field at every written time, with the cracks as they are then.
 
-    python3 applications/report/animate.py RUN_DIRECTORY [--model peridynamics] [--output DIRECTORY]
+    python3 applications/report/animate.py RUN_DIRECTORY [--model peridynamics] [--field von_mises]
+                                           [--output DIRECTORY]
+
+Elastic bodies are drawn in their deformed shape, magnified by one factor in all frames.
 
 Writes frame_0000.png, frame_0001.png, ... and contact_sheet.png into RUN_DIRECTORY/animation. All
 frames have one colour scale and one size, so that a film can be made of them, for example by
@@ -18,9 +21,11 @@ from pathlib import Path
 try:
     import numpy as np
 
+    import deformed
     import style
     from contours import Maps, color_bar, draw_cells, draw_picture, segments_of, sparse_ticks
     from read_run import MODEL_ORDER, ReportError, Run
+    from words import Field
 except ImportError as fault:
     sys.exit(f"animate: a Python package is missing ({fault}); frames need numpy, matplotlib and h5py")
 
@@ -30,19 +35,39 @@ DOTS_PER_INCH = 120
 class Film:
     """The pictures of one model of a run at all written times, and their common scale."""
 
-    def __init__(self, run, model, n_pixels=480):
-        self.run, self.model = run, model
+    def __init__(self, run, model, field=None, n_pixels=480):
+        self.run, self.model, self.field = run, model, field or run.words.solution
         self.times = run.written_times()
         self.indices = [i for i in range(len(self.times)) if run.field_file(i, model) is not None]
         self.segments = {i: segments_of(run.cracks(i)) for i in self.indices}
+        self.shapes = self.deformed_shapes(n_pixels)
+        if self.shapes is not None:
+            self.view = self.shapes.view
+            self.scale = style.value_scale([self.values(i) for i in self.indices],
+                                           outliers=self.field.outliers)
+            return
         self.view = Maps(run, n_pixels).view()
         self.pictures, self.isolines = {}, {}
         for i in self.indices:
             maps = Maps(run, n_pixels)  # its weights depend on the cracks of this time
-            values = run.solution(i, model)
+            values = self.values(i)
             self.pictures[i] = maps.picture(i, model, values, self.segments[i])
             self.isolines[i] = maps.isoline_picture(i, model, values, self.segments[i])
         self.scale = style.value_scale(list(self.pictures.values()))
+
+    def values(self, index):
+        """The field of a frame at the vertices."""
+        return self.run.field(index, self.model, self.field.name)
+
+    def deformed_shapes(self, n_pixels):
+        """Of an elastic body that moves, else None."""
+        run = self.run
+        factor = deformed.magnification(run, self.indices) if run.words.elastic else None
+        if factor is None:
+            return None
+        shapes = deformed.Shapes(Maps(run, n_pixels), self.indices, [self.model], factor,
+                                 n_pixels=n_pixels)
+        return shapes if all((i, self.model) in shapes.shapes for i in self.indices) else None
 
     def time_text(self, index):
         """The time of a frame with its unit."""
@@ -51,9 +76,14 @@ class Film:
 
     def draw(self, axes, index, scale=None):
         """One frame in its axes, with its time in the corner."""
-        draw_picture(axes, self.view, self.pictures[index], scale or self.scale,
-                     self.segments[index], self.isolines[index])
-        draw_cells(axes, self.run, index, self.model)
+        if self.shapes is not None:
+            self.shapes.draw(axes, index, self.model, self.values(index), scale or self.scale)
+        else:
+            draw_picture(axes, self.view, self.pictures[index], scale or self.scale,
+                         self.segments[index], self.isolines[index])
+            draw_cells(axes, self.run, index, self.model)
+        if self.run.get("steady", default=False) and len(self.indices) < 2:
+            return
         axes.text(0.02, 0.98, self.time_text(index), transform=axes.transAxes, va="top", ha="left",
                   fontsize=8.5, zorder=9, color=style.INK,
                   bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 2})
@@ -93,7 +123,7 @@ def frame_figure(film, index):
     axes.set_xlabel(words.axis("x"), labelpad=1)
     axes.set_ylabel(words.axis("y"), labelpad=2)
     color_bar(figure, [(width + 0.78) / total[0], 0.45 / total[1], 0.13 / total[0],
-                       height / total[1]], film.scale, words.solution.label(), vertical=True)
+                       height / total[1]], film.scale, film.field.label(), vertical=True)
     return figure
 
 
@@ -115,16 +145,27 @@ def contact_sheet(film, at_most=12):
         axes.set_yticks([])
     length = min(total[0] - 0.6, 5.0)
     color_bar(figure, [(total[0] - length) / 2 / total[0], 0.45 / total[1], length / total[0], 0.12 / total[1]],
-              film.scale, film.run.words.solution.label())
+              film.scale, film.field.label())
     return figure
 
 
-def make(directory, model=None, output=None):
+def chosen_field(run, model, name):
+    """The field of that name, in words where it has some; None: the solution."""
+    if name is None:
+        return None
+    last = len(run.summary["fields"]) - 1
+    if run.field(last, model, name, required=False) is None:
+        raise ReportError(f"'{run.field_file(last, model)}' has no dataset '{name}'")
+    return getattr(run.words, "fields", {}).get(name) or Field(name)
+
+
+def make(directory, model=None, output=None, field=None):
     """Writes all frames and the contact sheet; returns the folder."""
     run = Run(directory)
     if run.dimension != 2:
         raise ReportError(f"'{directory}' is a {run.dimension}D run; frames are drawn of 2D runs")
-    film = Film(run, chosen_model(run, model))
+    model = chosen_model(run, model)
+    film = Film(run, model, chosen_field(run, model, field))
     folder = Path(output) if output else Path(directory) / "animation"
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("frame_*.png"):
@@ -140,10 +181,11 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(description="Draws the field of a 2D run at every written time.")
     parser.add_argument("directory", metavar="RUN_DIRECTORY")
     parser.add_argument("--model", choices=MODEL_ORDER)
+    parser.add_argument("--field", metavar="NAME", help="a scalar field of the files, for example von_mises")
     parser.add_argument("--output", metavar="DIRECTORY")
     options = parser.parse_args(arguments)
     try:
-        print(make(options.directory, options.model, options.output))
+        print(make(options.directory, options.model, options.output, options.field))
     except (ReportError, OSError) as fault:
         print(f"animate: {fault}".replace("\n", " "), file=sys.stderr)
         return 1

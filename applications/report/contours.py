@@ -216,8 +216,8 @@ def difference_picture(maps, index, field, segments, pictures):
 
 def value_range(run, index, field):
     """Lowest and highest value of a field of all models at one written time, or None."""
-    found = [v[np.isfinite(v)] for v in (run.field(index, m, field.name) for m in run.models)
-             if v is not None]
+    found = [v[np.isfinite(v)] for v in (run.field(index, m, field.name, not run.words.elastic)
+                                         for m in run.models) if v is not None]
     found = [v for v in found if len(v)]
     return (min(v.min() for v in found), max(v.max() for v in found)) if found else None
 
@@ -233,12 +233,20 @@ def common_scale(run, indices, field, least=0.3):
     return style.value_scale([np.array([low, high])])
 
 
+def models_with(run, index, name):
+    """The models that wrote a field at that time."""
+    written = [m for m in run.models if run.field_file(index, m) is not None]
+    if not run.words.elastic:  # there it is a fault of the files if one has not
+        return written
+    return [m for m in written if run.field(index, m, name, required=False) is not None]
+
+
 def field_figure(maps, index, words, field, largest=None, scale=None):
     """A field of all models at one written time and, if there is one, the difference."""
     run = maps.run
     segments = segments_of(run.cracks(index))
     view = maps.view()
-    models = [m for m in run.models if run.field_file(index, m) is not None]
+    models = models_with(run, index, field.name)
     pictures, smooth = {}, {}
     for model in models:
         values = run.field(index, model, field.name)
@@ -247,7 +255,7 @@ def field_figure(maps, index, words, field, largest=None, scale=None):
     difference = None if largest is not None and largest.zero else \
         difference_picture(maps, index, field, segments, pictures)
     layout = Layout(len(models) + (difference is not None), view.extent, len(models))
-    scale = scale or style.value_scale(list(pictures.values()))
+    scale = scale or style.value_scale(list(pictures.values()), outliers=field.outliers)
     for i, model in enumerate(models):
         axes = layout.panel(i)
         draw_picture(axes, view, pictures[model], scale, segments, smooth[model])

@@ -32,8 +32,38 @@ def difference_field(run, index, name):
     if name == run.words.solution.name:
         values = run.field(index, PD, DIFFERENCE, required=False)
     if values is None and run.mesh(index, PD) is run.mesh(index, FEM):
-        values = run.field(index, PD, name) - run.field(index, FEM, name)
+        pair = [run.field(index, m, name, required=False) for m in (PD, FEM)]
+        if all(v is not None for v in pair):
+            values = pair[0] - at_nodes_of(run.mesh(index, PD), *pair)
     return values
+
+
+def at_nodes_of(mesh, nodal, values):
+    """Values at the vertices where the nodes of another model are: its own, or cell centres."""
+    if not is_constant_per_cell(mesh, nodal) or is_constant_per_cell(mesh, values):
+        return values
+    result = np.empty_like(values)
+    result[mesh.cells] = values[mesh.cells].mean(axis=1, keepdims=True)
+    return result
+
+
+def displacement_gap(run, index):
+    """Length of the difference of the displacement vectors at the vertices, or None."""
+    if any(m not in run.models or run.field_file(index, m) is None for m in (FEM, PD)) \
+            or run.mesh(index, PD) is not run.mesh(index, FEM):
+        return None
+    mesh, pair = run.mesh(index, PD), [run.displacement(index, m) for m in (PD, FEM)]
+    if any(v is None for v in pair):
+        return None
+    at_centers = any(is_constant_per_cell(mesh, v) for v in pair[0].T)
+    gap = np.zeros(len(mesh.nodes))
+    for of_pd, of_fem in zip(pair[0].T, pair[1].T):
+        if at_centers:
+            smooth = np.empty_like(of_fem)
+            smooth[mesh.cells] = of_fem[mesh.cells].mean(axis=1, keepdims=True)
+            of_fem = smooth
+        gap += (of_pd - of_fem) ** 2
+    return np.sqrt(gap)
 
 
 def is_multiple(run, indices, name):
@@ -61,7 +91,11 @@ def is_multiple(run, indices, name):
 
 def largest(run, index, name):
     """The largest difference of a field at a written time, or None where there is none to tell."""
-    values = difference_field(run, index, name)
+    return largest_of(run, index, difference_field(run, index, name), name)
+
+
+def largest_of(run, index, values, name):
+    """The largest of the values at the vertices, which are differences of a field of that name."""
     if values is None or not np.isfinite(values).any():
         return None
     mesh = run.mesh(index, PD)

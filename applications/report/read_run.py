@@ -108,8 +108,10 @@ class Run:
         present = self.summary["models"]
         self.models = [m for m in MODEL_ORDER if m in present]
         self.models += [m for m in present if m not in self.models]
-        self.line = self._read_table("line.csv")
-        self.probes = self._read_table("probes.csv")
+        self.line_columns = self._read_tables("line.csv")
+        self.probe_columns = self._read_tables("probes.csv")
+        self.line, self.probes = (next(iter(columns.values()), Table())
+                                  for columns in (self.line_columns, self.probe_columns))
         self.totals = self._read_totals("totals.csv")
         self.not_finite = {}  # model: first shown time with values that are no numbers
         self._meshes = {}
@@ -279,6 +281,8 @@ class Run:
 
     def field(self, index, model, name, required=True):
         """Values of a field at the vertices, (N) or (N x 3); None if absent and not required."""
+        if name in self.words.parts:
+            return self._part(index, model, *self.words.parts[name], required)
         path = self.field_file(index, model)
         if path is None:
             return None
@@ -294,9 +298,30 @@ class Run:
         finite = np.isfinite(values)
         if not finite.all():
             values = np.where(finite, values, np.nan)
-            if name == self.words.solution.name:
+            if name in (self.words.solution.name, *self.words.solution_parts()):
                 self.not_finite.setdefault(model, self.written_times()[index])
         return values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values
+
+    def _part(self, index, model, name, component, required):
+        """A component of a vector, or its length (None)."""
+        vectors = self.field(index, model, name, required)
+        if vectors is None:
+            return None
+        vectors = vectors.reshape(len(vectors), -1)
+        return np.linalg.norm(vectors, axis=1) if component is None else vectors[:, component]
+
+    def displacement(self, index, model):
+        """The displacement at the vertices, (N x dim); None where there is none."""
+        if not self.words.elastic:
+            return None
+        values = self.field(index, model, "displacement", required=False)
+        return None if values is None else values.reshape(len(values), -1)[:, :self.dimension]
+
+    def has_field(self, index, name):
+        """Whether some model wrote a field at that time."""
+        return any(self.field_file(index, m) is not None
+                   and self.field(index, m, name, required=False) is not None
+                   for m in self.models)
 
     def solution(self, index, model):
         """The temperature, wetness or potential at the vertices."""
@@ -335,26 +360,29 @@ class Run:
                                   f"the header has {len(header)}")
         return header, [row for row in rows[1:] if row]
 
-    def _read_table(self, name):
+    def _read_tables(self, name):
+        """{column: Table} of the columns that hold values; scalar physics have `value` alone."""
         header, rows = self._rows(name, ("time", "model", "x"))
-        table = Table()
-        if not rows or "value" not in header:
-            return table
-        at = {h: i for i, h in enumerate(header)}
-        axes = [at[a] for a in "xyz" if a in at]
-        table.dimension = len(axes)
+        if not rows:
+            return {}
+        axes = [header.index(a) for a in "xyz" if a in header]
+        columns = [i for i, h in enumerate(header) if h not in ("time", "model", "x", "y", "z")]
+        time, model = header.index("time"), header.index("model")
         collected = {}
         for number, row in enumerate(rows, 2):
             try:
-                numbers = [float(row[a]) for a in axes] + [float(row[at["value"]])]
-                key = (row[at["model"]].strip(), float(row[at["time"]]))
+                numbers = [float(row[a]) for a in axes + columns]
+                key = (row[model].strip(), float(row[time]))
             except ValueError as error:
                 raise ReportError(f"'{self.directory / name}' line {number}: {error}") from None
             collected.setdefault(key, []).append(numbers)
-        for (model, time), numbers in collected.items():
+        tables = {header[column]: Table() for column in columns}
+        for (of_model, when), numbers in collected.items():
             numbers = np.array(numbers)
-            table.data.setdefault(model, {})[time] = (numbers[:, :-1], numbers[:, -1])
-        return table
+            for i, table in enumerate(tables.values(), len(axes)):
+                table.dimension = len(axes)
+                table.data.setdefault(of_model, {})[when] = (numbers[:, :len(axes)], numbers[:, i])
+        return tables
 
     def _read_totals(self, name):
         """totals[quantity][model] = list of (time, value)."""

@@ -26,6 +26,7 @@ try:
     import sketch
     import solids
     import tables
+    from elastic import ElasticSections
     from page import Page, paragraphs, write_page
     from read_run import EXACT, ReportError, Run
     from style import is_formula, minus, name, plain, prose
@@ -69,15 +70,35 @@ class Report:
     def header(self, title):
         """Title and the facts of the run in one line."""
         facts = [self.run.get("scene file"), self.run.get("program"),
-                 f"{self.run.dimension}D, " + ("steady" if self.steady else "transient")]
+                 f"{self.run.dimension}D, " + self.kind()]
         processes = self.run.get("processes")
         if processes:
             facts.append(f"{plain(processes)} process" + ("es" if processes != 1 else ""))
-        units = [u for u in (self.words.length, self.words.time, self.words.solution.unit) if u]
-        if units:
-            facts.append("units: " + ", ".join(units))
+        if self.units():
+            facts.append("units: " + ", ".join(self.units()))
         spans = "".join(f"<span>{escape(str(f))}</span>" for f in facts if f)
         return f"<h1>{escape(title)}</h1><p>{spans}</p>"
+
+    def kind(self):
+        """What kind of a run it is."""
+        return "steady" if self.steady else "transient"
+
+    def units(self):
+        """The units that the page uses."""
+        return [u for u in (self.words.length, self.words.time, self.words.solution.unit) if u]
+
+    def rest_of_problem(self):
+        """What else belongs to the problem, as HTML."""
+        return ""
+
+    def sketch_legend(self):
+        """What colours of the sides mean."""
+        return [] if self.run.sides() == self.run.sides(brief=True) \
+            else [f"{self.words.held}s in red"]
+
+    def sentences(self):
+        """What this run says."""
+        return findings.sentences(self.run, self.words, self.largest)
 
     def problem(self):
         """Text and sketch."""
@@ -89,12 +110,12 @@ class Report:
             text = minus(reference) if is_formula(str(reference)) else str(reference)
             self.page.add(f"<p><strong>Reference:</strong> {escape(text)}</p>")
         self.page.add(tables.sides_table(self.run))
+        self.page.add(self.rest_of_problem())
         self.page.add("</div>")
         legend = []
         if self.run.cracks() and self.run.dimension > 1:
             legend.append("cracks in black")
-        if self.run.sides() != self.run.sides(brief=True):
-            legend.append(f"{self.words.held}s in red")
+        legend += self.sketch_legend()
         if self.run.dimension == 2 and self.run.line.data:
             legend.append("the line of the plots dashed")
         if self.run.dimension == 2 and self.run.probes.data:
@@ -106,8 +127,7 @@ class Report:
 
     def findings(self):
         """The sentences, as a box that follows the problem."""
-        items = "".join(f"<li>{escape(s)}</li>"
-                        for s in findings.sentences(self.run, self.words, self.largest))
+        items = "".join(f"<li>{escape(s)}</li>" for s in self.sentences())
         notes = len(self.run.get("notes", default=[]))
         if notes:
             items += (f'<li>The program left {plain(notes)} note{"s" if notes != 1 else ""}, '
@@ -340,6 +360,10 @@ class Report:
         self.page.add(f"<footer>Written by {escape(program)}.</footer>")
 
 
+class ElasticReport(ElasticSections, Report):
+    """The page of a run of an elastic body."""
+
+
 def main(arguments=None):
     """Command line."""
     parser = argparse.ArgumentParser(description="Makes report.html from the files of a run.")
@@ -348,7 +372,8 @@ def main(arguments=None):
                         help="also write the figures there, as PNG")
     options = parser.parse_args(arguments)
     try:
-        html = Report(Run(options.directory), options.figures).html()
+        run = Run(options.directory)
+        html = (ElasticReport if run.words.elastic else Report)(run, options.figures).html()
         target = Path(options.directory) / "report.html"
         write_page(target, html)
     except (ReportError, OSError) as fault:

@@ -7,10 +7,12 @@ import numpy as np
 import contours
 import solids
 import style
+import supports
 
 KIND_COLOR = (("dirichlet", "#c0392b"), ("flux", "#d98200"), ("convection", "#00897b"),
-              ("symmetry", "#5e60ce"))
-CLOSED = "#7b8794"  # insulated or sealed
+              ("u = ", supports.DISPLACEMENT), ("t = ", supports.TRACTION),
+              ("symmetry", supports.SYMMETRY))
+CLOSED = "#7b8794"  # insulated, sealed or free
 BODY = "#eef2f6"
 BOX_SIDES = {"bottom": ((0, 0), (1, 0)), "top": ((0, 1), (1, 1)), "left": ((0, 0), (0, 1)),
              "right": ((1, 0), (1, 1))}
@@ -79,8 +81,11 @@ def draw_points(axes, run):
         break
 
 
-def draw_sides(axes, sides, lower, extent, width, height):
-    """The sides of a rectangle of so many inches in the colours of what holds there."""
+def draw_sides(axes, sides, lower, extent, width, height, room=None):
+    """The sides of a rectangle of so many inches in the colours of what holds there.
+
+    room: inches by which the text of a side is moved outwards.
+    """
     for side, ends in BOX_SIDES.items():
         if side not in sides:
             continue
@@ -90,6 +95,9 @@ def draw_sides(axes, sides, lower, extent, width, height):
         axes.plot(line[:, 0], line[:, 1], color=color, linewidth=1.4 if closed else 3.2,
                   solid_capstyle="butt", clip_on=False, zorder=3)
         x, y, horizontal, vertical, turn = LABELS[side]
+        away = (room or {}).get(side, 0.0)
+        x += {"left": -away, "right": away}.get(side, 0.0) / width
+        y += {"bottom": -away, "top": away}.get(side, 0.0) / height
         condition = style.minus(sides[side])
         text = shorten(f"{side}: {condition}", int(width / 0.068) + 14)
         if turn and len(f"{side}: {condition}") * 0.068 > height:
@@ -107,12 +115,18 @@ def sketch_2d(maps, words):
     width = 3.1 if extent[0] >= extent[1] else max(1.0, 3.1 * extent[0] / extent[1])
     height = min(width * extent[1] / extent[0], 3.4)
     height = max(height, 0.35)
-    size = (width + 1.9, height + 1.25)
+    room = supports.room(run) if words.elastic else dict.fromkeys(BOX_SIDES, 0.0)
+    size = (width + 1.9 + room["left"] + room["right"],
+            height + 1.25 + room["bottom"] + room["top"])
     figure = style.figure(*size)
-    axes = figure.add_axes([0.95 / size[0], 0.72 / size[1], width / size[0], height / size[1]])
+    axes = figure.add_axes([(0.95 + room["left"]) / size[0], (0.72 + room["bottom"]) / size[1],
+                            width / size[0], height / size[1]])
     full = draw_material(axes, maps)
     sides = run.sides(brief=True)
-    draw_sides(axes, sides, lower, extent, width, height)
+    draw_sides(axes, sides, lower, extent, width, height, room)
+    if words.elastic:
+        supports.draw_2d(axes, run, lower, extent, extent[0] / width,
+                         {s: BOX_SIDES[s] for s in BOX_SIDES if s in sides})
     if not any(side in sides for side in BOX_SIDES) and full:
         axes.plot(*(lower + np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)]) * extent).T,
                   color="#52606d", linewidth=1.2, clip_on=False)
@@ -140,7 +154,8 @@ def sketch_1d(run, words):
     """A bar with its two ends."""
     lower, upper = run.domain
     figure = style.figure(4.8, 1.5)
-    axes = figure.add_axes([0.06, 0.42, 0.88, 0.2])
+    left, width = (0.14, 0.72) if words.elastic else (0.06, 0.88)
+    axes = figure.add_axes([left, 0.42, width, 0.2])
     axes.axvspan(lower[0], upper[0], color=BODY)
     sides = run.sides(brief=True)
     for side, x, align in (("left", lower[0], "left"), ("right", upper[0], "right")):
@@ -155,6 +170,8 @@ def sketch_1d(run, words):
                   ha=align, va="top")
     for crack in run.cracks():
         axes.axvline(crack[:, 0].mean(), color="black", linewidth=2)
+    if words.elastic:
+        supports.draw_1d(axes, run, (upper[0] - lower[0]) / (4.8 * 0.72))
     axes.set_xlim(lower[0], upper[0])
     axes.set_ylim(0, 1)
     axes.axis("off")
@@ -187,6 +204,9 @@ def sketch_3d(run, words):
                       linewidth=1.3)
     solids.label_body(axes, lower, upper, words)
     solids.frame_body(axes, lower, upper)
+    if words.elastic:
+        axes.apply_aspect()
+        supports.draw_3d(axes, run, np.ptp(axes.get_xlim()) / (4.8 * 0.62))
     names = ("left", "right", "bottom", "top", "back", "front")
     listed = [(n, style.minus(sides[n])) for n in names if n in sides]
     for i, (side, text) in enumerate(listed):

@@ -150,18 +150,31 @@ def face_points(view, fraction_x, fraction_y):
     return project(points)
 
 
-def draw_body(axes, slices, pictures, scale):
-    """The three visible outer faces in isometric projection."""
-    for (view, _), picture in zip(slices.faces, pictures):
+def between(moves):
+    """What pixels move by at their corners: means of those around, the edge's own at the edge."""
+    padded = np.pad(moves, ((1, 1), (1, 1), (0, 0)), mode="edge")
+    parts = np.stack([padded[i:i + moves.shape[0] + 1, j:j + moves.shape[1] + 1]
+                      for i in (0, 1) for j in (0, 1)])
+    found = np.isfinite(parts)
+    return np.where(found, parts, 0).sum(axis=0) / np.maximum(found.sum(axis=0), 1)
+
+
+def draw_body(axes, slices, pictures, scale, moves=None):
+    """The three visible outer faces in isometric projection; moves: by what their pixels do."""
+    for i, ((view, _), picture) in enumerate(zip(slices.faces, pictures)):
         picture = scale.clean(picture)
         rows, columns = view.shape
         edges = face_points(view, np.linspace(0, 1, columns + 1)[None, :],
                             np.linspace(0, 1, rows + 1)[:, None])
+        shift = 0.0
+        if moves is not None:
+            edges = edges + project(between(moves[i]))
+            shift = project(np.nan_to_num(moves[i]))
         axes.pcolormesh(edges[..., 0], edges[..., 1], np.ma.masked_invalid(picture),
                         cmap=scale.colormap, norm=scale.norm, rasterized=True,
                         edgecolors="face", linewidth=0.2, zorder=2)
         middle = face_points(view, (np.arange(columns)[None, :] + 0.5) / columns,
-                             (np.arange(rows)[:, None] + 0.5) / rows)
+                             (np.arange(rows)[:, None] + 0.5) / rows) + shift
         finite = picture[np.isfinite(picture)]
         if len(finite) and len(scale.lines):
             inside = (scale.lines > finite.min()) & (scale.lines < finite.max())
@@ -170,9 +183,13 @@ def draw_body(axes, slices, pictures, scale):
                 axes.contour(middle[..., 0], middle[..., 1], np.ma.masked_invalid(picture),
                              levels=scale.lines[inside], colors=colors, linewidths=0.6,
                              linestyles="solid", zorder=3)
-        outline = face_points(view, np.array([0, 1, 1, 0, 0]), np.array([0, 0, 1, 1, 0]))
+        outline = np.concatenate([edges[0], edges[1:, -1], edges[-1, -2::-1], edges[-2::-1, 0]])
         axes.plot(outline[:, 0], outline[:, 1], color=style.INK, linewidth=0.9, zorder=4,
                   solid_joinstyle="round")
+        if moves is not None:
+            rest = face_points(view, np.array([0, 1, 1, 0, 0]), np.array([0, 0, 1, 1, 0]))
+            axes.plot(rest[:, 0], rest[:, 1], color="#52606d", linewidth=0.7,
+                      linestyle=(0, (4, 3)), zorder=4)
 
 
 def draw_hidden_cracks(axes, cracks):
@@ -201,15 +218,26 @@ def label_body(axes, lower, upper, words, size=8):
                       color=style.INK if fraction == 0.5 else "#52606d")
 
 
-def frame_body(axes, lower, upper):
-    """Limits that hold the body and its labels; equal scales, no axes."""
+def frame_body(axes, lower, upper, moves=None):
+    """Limits that hold the body, deformed or not, and its labels; equal scales, no axes."""
     corners = body_corners(lower, upper)
+    if moves is not None:
+        corners = np.concatenate([corners, corners + project(np.stack([
+            [np.nanmin(m[..., d]) for d in range(3)] for m in moves]).min(axis=0)),
+            corners + project(np.stack([
+                [np.nanmax(m[..., d]) for d in range(3)] for m in moves]).max(axis=0))])
     low, high = corners.min(axis=0), corners.max(axis=0)
     pad = 0.13 * (high - low).max()
     axes.set_xlim(low[0] - pad, high[0] + pad)
     axes.set_ylim(low[1] - 0.7 * pad, high[1] + 0.1 * pad)
     axes.set_aspect("equal", adjustable="datalim")
     axes.axis("off")
+
+
+def body_height(slices):
+    """Height of the picture of the body over its width, at most 1."""
+    width, height = np.ptp(body_corners(slices.lower, slices.upper), axis=0)
+    return float(np.clip((height + 0.11 * max(width, height)) / (1.26 * width), 0.4, 1.0))
 
 
 class Grid:
@@ -244,14 +272,14 @@ class Grid:
         contours.color_bar(self.figure, box, scale, label)
 
 
-def draw_column(grid, column, slices, pictures, scale, words, title):
-    """The body and its slices for one model."""
+def draw_column(grid, column, slices, pictures, scale, words, title, moves=None):
+    """The body and its slices for one model; moves: of the faces, else they are at rest."""
     sections, faces = pictures
     axes = grid.panel(0, column)
-    draw_body(axes, slices, faces, scale)
+    draw_body(axes, slices, faces, scale, moves)
     draw_hidden_cracks(axes, slices.cracks)
     label_body(axes, slices.lower, slices.upper, words, 7.5)
-    frame_body(axes, slices.lower, slices.upper)
+    frame_body(axes, slices.lower, slices.upper, moves)
     axes.set_title(title, loc="left", pad=4, fontsize=9.5)
     for row, ((view, segments), picture) in enumerate(zip(slices.slices, sections), 1):
         axes = grid.panel(row, column)
@@ -278,21 +306,37 @@ def difference_pictures(maps, index, field, slices, pictures):
             for groups in zip(pictures[contours.PD], pictures[contours.FEM])]
 
 
-def field_figure(maps, index, words, field, largest=None, scale=None):
-    """A field on the body and its slices, of all models and the difference, if there is one."""
+def face_moves(maps, index, model, slices, factor):
+    """By what the pixels of the outer faces move, magnified; None for a body drawn at rest."""
+    displacement = None if factor is None else maps.run.displacement(index, model)
+    if displacement is None:
+        return None
+    parts = [slices.pictures(model, u)[1] for u in displacement.T]
+    return [factor * np.stack(of_face, axis=-1) for of_face in zip(*parts)]
+
+
+def field_figure(maps, index, words, field, largest=None, scale=None, factor=None, sections=True):
+    """A field on the body and its slices, of all models and the difference, if there is one.
+
+    factor: of the displacements of the outer faces, None for the body at rest; sections: whether
+    the slices are drawn, too.
+    """
     run = maps.run
     slices = Slices(maps, index)
-    models = [m for m in run.models if run.field_file(index, m) is not None]
+    if not sections:
+        slices.slices = []
+    models = contours.models_with(run, index, field.name)
     pictures = {m: slices.pictures(m, run.field(index, m, field.name)) for m in models}
     both = contours.FEM in pictures and contours.PD in pictures and \
         not (largest is not None and largest.zero)
-    extents = [(1.0, 1.0)] + [(v.extent[1] - v.extent[0], v.extent[3] - v.extent[2])
+    extents = [(1.0, body_height(slices))] + [(v.extent[1] - v.extent[0], v.extent[3] - v.extent[2])
                               for v, _ in slices.slices]
     grid = Grid(len(models) + both, extents)
     scale = scale or style.value_scale([p for group in pictures.values() for part in group
-                                        for p in part])
+                                        for p in part], outliers=field.outliers)
     for column, model in enumerate(models):
-        draw_column(grid, column, slices, pictures[model], scale, words, style.name(model))
+        draw_column(grid, column, slices, pictures[model], scale, words, style.name(model),
+                    face_moves(maps, index, model, slices, factor))
     grid.bar(0, len(models) - 1, scale, field.label())
     if both:
         difference = difference_pictures(maps, index, field, slices, pictures)

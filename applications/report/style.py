@@ -133,14 +133,34 @@ class Scale:
         return colors
 
 
-def value_scale(pictures, colormap=THERMAL, n=20, parts=2, clip=None):
-    """The common scale of several pictures; clip: the share of pixels that sets its upper end."""
+def without_outliers(values, share, worth=0.7):
+    """(low, high, extend) of values but for a share at either end, where that spares much of the range."""
+    low, high = float(values.min()), float(values.max())
+    if not share or not high > low:
+        return low, high, "neither"
+    inner = np.quantile(values, [share, 1 - share])
+    if inner[1] - inner[0] > worth * (high - low) or not inner[1] > inner[0]:
+        return low, high, "neither"
+    reach = 0.05 * (inner[1] - inner[0])  # no further than this beyond the rest
+    ends = [inner[0] if low < inner[0] - reach else low,
+            inner[1] if high > inner[1] + reach else high]
+    return float(ends[0]), float(ends[1]), \
+        {(True, True): "both", (True, False): "min", (False, True): "max"}.get(
+            (ends[0] > low, ends[1] < high), "neither")
+
+
+def value_scale(pictures, colormap=THERMAL, n=20, parts=2, clip=None, outliers=0.0):
+    """The common scale of several pictures; clip: the share of pixels that sets its upper end.
+
+    outliers: the share of pixels at either end that may lie beyond it, such as those of a corner
+    where the stress is infinite.
+    """
     values = np.concatenate([p[np.isfinite(p)] for p in pictures] or [np.zeros(1)])
     if not len(values):
         values = np.zeros(1)
-    low, high = float(values.min()), float(values.max())
-    extend = "neither"
+    low, high, extend = without_outliers(values, outliers)
     if clip is not None:
+        low, high = float(values.min()), float(values.max())
         low, top = 0.0, float(np.quantile(values, clip))
         if 0 < top < 0.8 * high:
             high, extend = top, "max"

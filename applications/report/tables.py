@@ -209,7 +209,7 @@ def error_table(run, words):
         return ""
     times = sorted({t for _, series in columns for t in series})
     steady = run.get("steady", default=False)
-    rows = [[escape("Steady state" if steady else plain(t))]
+    rows = [[escape(name(words.at_time(t, True)) if steady else plain(t))]
             + [cell(series.get(t)) for _, series in columns] for t in times]
     first = "" if steady else words.time_axis()
     return table([first] + [title for title, _ in columns], rows, "numbers")

@@ -19,11 +19,13 @@ class Field:
     unit: str = ""
     isolines: str = "isolines"
     about: str = ""  # a remark on what it is
+    called: str = ""  # the name in running text, where it is not that in the files
+    outliers: float = 0.0  # share of the values that colours may leave out at either end
 
     @property
     def text(self):
         """The name in running text."""
-        return self.name.replace("_", " ")
+        return self.called or self.name.replace("_", " ")
 
     @property
     def title(self):
@@ -69,7 +71,9 @@ PHYSICS = {
                     "concentration jumps."),),
         content_apart=True),
     "electricity": Physics("potential", "current_density", "charge", "current", "charge",
-                           "potentials", "equipotentials", held="electrode")}
+                           "potentials", "equipotentials", held="electrode"),
+    "elasticity": Physics("displacement", "stress", "strain energy", "force", "force",
+                          "displacements", "contours of equal displacement", closed="free")}
 DEGREES = {"C": "°C", "F": "°F", "degC": "°C"}
 
 
@@ -96,18 +100,60 @@ class Words:
         self.values, self.also = physics.values, physics.also
         self.plotted_apart = [physics.content] if physics.content_apart else []
         self.closed, self.held = physics.closed, physics.held
+        self.parts = {}  # name of a scalar field: (data set, component or None for its length)
+        self.elastic = summary.get("physics") == "elasticity"
+        if self.elastic:
+            self._name_elastic_fields()
+
+    MAGNITUDE = "displacement_magnitude"
+
+    def _name_elastic_fields(self):
+        """The scalar fields of an elastic body; stresses have no unit of their own in a scene."""
+        vector, unit = self.solution.name, self.solution.unit
+        self.quantity = "force"
+        self.parts[self.MAGNITUDE] = (vector, None)
+        self.solution = Field(self.MAGNITUDE, unit, "contours of equal displacement",
+                              called="magnitude of the displacement")
+        self.fields = {self.MAGNITUDE: self.solution}
+        for component, axis in enumerate("xyz"):
+            part = f"{vector}_{axis}"
+            self.parts[part] = (vector, component)
+            self.fields[part] = Field(part, unit, called=f"displacement in {axis}")
+            for other in "xyz"[component:]:
+                part = f"stress_{axis}{other}"
+                self.fields[part] = Field(part, called=f"stress {axis}{other}", outliers=0.002)
+        for part, title in (("von_mises", "von Mises stress"), ("pressure", "pressure")):
+            self.fields[part] = Field(part, called=title, outliers=0.002)
+        self.fields["damage"] = Field("damage", about="The share of a node's bonds, by volume, "
+                                      "that are broken.")
+        self.fields["temperature"] = Field("temperature")
+
+    def column(self, name):
+        """What a column of probes.csv and line.csv holds, as a field."""
+        if name in ("ux", "uy", "uz"):
+            return self.fields[f"displacement_{name[1]}"]
+        if name == "value":
+            return self.solution
+        return self.fields.get(f"stress_{name[1:]}" if re.fullmatch("s[xyz]{2}", name) else name) \
+            or Field(name)
 
     @property
     def passing(self):
         """What passes a side: 'heat', 'moisture', 'current'."""
         return self.flow.removesuffix(" flow")
 
+    def solution_parts(self):
+        """Names in the files of what the solution is computed from."""
+        return {data for data, _ in self.parts.values()}
+
     def flux_datasets(self):
         """Names of the flux in the files, the best first."""
         return self.flux.name, f"{self.flux.name}_one_sided"
 
     def condition(self, text, brief=False):
-        """The condition of a side; brief: without the name of a Dirichlet side."""
+        """The condition of a side; brief: as the sketch has it, without the name of a Dirichlet side."""
+        if self.elastic and brief:
+            return str(text).replace("displacement ", "u = ").replace("traction ", "t = ")
         text = re.sub(r"\binsulated\b", self.closed, str(text))
         named = self.held and not brief and "dirichlet" in text.lower()
         return f"{self.held}, {text}" if named else text
@@ -123,5 +169,5 @@ class Words:
     def at_time(self, time, steady=False):
         """'t = 0.5 s', or 'steady state'."""
         if steady:
-            return "steady state"
+            return "at rest" if self.elastic else "steady state"
         return f"t = {style.plain(time)} {self.time}".strip()

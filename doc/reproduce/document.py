@@ -8,7 +8,7 @@ from results import Study
 
 INTRODUCTION = """# Reproduction of published results
 
-Each table and figure of four papers on peridynamic diffusion beside what PeriDeal computes, in the settings of the paper and in ours. Written by
+Each table and figure of four papers on peridynamic diffusion, and of one on elasticity, beside what PeriDeal computes, in the settings of the paper and in ours. Written by
 [make_reproduction.py](make_reproduction.py); numbers are those of the runs.
 
     python3 doc/make_reproduction.py                            # everything, about {minutes}; finished runs are kept

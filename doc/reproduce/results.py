@@ -68,6 +68,12 @@ class Row:
                 return value
         raise Missing(f"{self.name} has no probe at {point}")
 
+    def columns(self, name, columns, model):
+        """Arrays of columns of probes.csv or line.csv of one model, in the order of the file."""
+        with open(self.folder / name, newline="", encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if row["model"] == model]
+        return [np.array([float(row[column]) for row in rows]) for column in columns]
+
     def totals(self, quantity, model=PD):
         """(times, values) of a quantity in totals.csv."""
         with open(self.folder / "totals.csv", newline="", encoding="utf-8") as file:

@@ -2,7 +2,9 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature.h>
 #include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/grid/grid_tools.h>
 
@@ -154,7 +156,7 @@ namespace PeriDeal
       if (const auto found = wanted.find(key(lattice.index(nodes.position(i))));
           found != wanted.end())
         for (const auto &[slot, weight] : found->second)
-          parts.push_back({slot, i, weight});
+          parts.push_back({slot, i, weight, {}});
   }
 
 
@@ -210,7 +212,7 @@ namespace PeriDeal
             mine = mine && first[d] == lowest;
           }
         if (mine && in_body[k] > 0)
-          parts.push_back({k * n_slots, nearest[k], 1.});
+          parts.push_back({k * n_slots, nearest[k], 1., {}});
       }
   }
 
@@ -231,27 +233,41 @@ namespace PeriDeal
     const FiniteElement<dim> &fe = dofs.get_fe();
     n_slots                      = fe.n_dofs_per_cell();
     std::vector<types::global_dof_index> indices(n_slots);
-    std::vector<double>                  own; // slot, dof, weight, slot, dof, weight, ...
+    const MappingQ1<dim>                 mapping;
+    std::vector<double>                  own; // slot, dof, weight, slope, slot, ...
     for (unsigned int k = 0; k < points.size(); ++k)
       if (first[k] == me)
         {
           places[k].first->get_dof_indices(indices);
+          FEValues<dim> values(mapping,
+                               fe,
+                               Quadrature<dim>(places[k].second),
+                               update_values | update_gradients);
+          values.reinit(places[k].first);
           for (unsigned int v = 0; v < n_slots; ++v)
-            own.insert(own.end(),
-                       {static_cast<double>(k * n_slots + v),
-                        static_cast<double>(indices[v]),
-                        fe.shape_value(v, places[k].second)});
+            {
+              own.insert(own.end(),
+                         {static_cast<double>(k * n_slots + v),
+                          static_cast<double>(indices[v]),
+                          values.shape_value(v, 0)});
+              for (unsigned int d = 0; d < dim; ++d)
+                own.push_back(values.shape_grad(v, 0)[d]);
+            }
         }
     // Each part goes to the owner of its dof: what ghosts a vector has, and in which order, depends on the model.
     const IndexSet &owned = dofs.locally_owned_dofs();
     for (const std::vector<double> &list : Utilities::MPI::all_gather(communicator, own))
-      for (std::size_t i = 0; i < list.size(); i += 3)
+      for (std::size_t i = 0; i < list.size(); i += 3 + dim)
         {
           const auto dof = static_cast<types::global_dof_index>(list[i + 1]);
-          if (owned.is_element(dof))
-            parts.push_back({static_cast<unsigned int>(list[i]),
-                             static_cast<unsigned int>(owned.index_within_set(dof)),
-                             list[i + 2]});
+          if (!owned.is_element(dof))
+            continue;
+          parts.push_back({static_cast<unsigned int>(list[i]),
+                           static_cast<unsigned int>(owned.index_within_set(dof)),
+                           list[i + 2],
+                           {}});
+          for (unsigned int d = 0; d < dim; ++d)
+            parts.back().slope[d] = list[i + 3 + d];
         }
   }
 
@@ -278,18 +294,47 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<double> PointEvaluator<dim>::evaluate(const Vector &u) const
+  template <typename Factor>
+  std::vector<double> PointEvaluator<dim>::sum_parts(const Vector      &u,
+                                                     const unsigned int n_components,
+                                                     const unsigned int component,
+                                                     const Factor      &factor) const
   {
-    // Every slot has one contributor, the others add zero: the same bits on any number of processes.
     std::vector<double> own(static_cast<std::size_t>(n_points) * n_slots, 0.), all(own.size());
     for (const Part &part : parts)
-      own[part.slot] = part.weight * u.local_element(part.dof);
+      own[part.slot] = factor(part) * u.local_element(n_components * part.dof + component);
     Utilities::MPI::sum(own, communicator, all);
     std::vector<double> values(n_points, 0.);
     for (unsigned int k = 0; k < n_points; ++k)
       for (unsigned int v = 0; v < n_slots; ++v)
         values[k] += all[k * n_slots + v];
     return values;
+  }
+
+
+  template <int dim>
+  std::vector<double> PointEvaluator<dim>::evaluate(const Vector      &u,
+                                                    const unsigned int n_components,
+                                                    const unsigned int component) const
+  {
+    return sum_parts(u, n_components, component, [](const Part &part) { return part.weight; });
+  }
+
+
+  template <int dim>
+  std::vector<Tensor<1, dim>> PointEvaluator<dim>::gradients(const Vector      &u,
+                                                             const unsigned int n_components,
+                                                             const unsigned int component) const
+  {
+    std::vector<Tensor<1, dim>> result(n_points);
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const std::vector<double> slopes =
+          sum_parts(u, n_components, component, [&](const Part &part) { return part.slope[d]; });
+        for (unsigned int k = 0; k < n_points; ++k)
+          result[k][d] = slopes[k];
+      }
+    return result;
   }
 
   template class PointEvaluator<1>;

@@ -92,6 +92,12 @@ namespace PeriDeal
           }
         kept *= fraction;
       }
+    if (voids != nullptr && neighbor < own_nodes->n_local() &&
+        voids->leaves_body(own_nodes->position(node), own_nodes->position(neighbor)))
+      {
+        cut  = true;
+        kept = 0.;
+      }
     return kept;
   }
 

@@ -37,6 +37,8 @@ namespace PeriDeal
         micro_conductivity(dim, parameters.kernel, parameters.kernel_exponent, delta))
     , on_lattice(nodes.lattice().has_value() && !nodes.has_doubled_nodes())
   {
+    if (parameters.across_voids == BondsAcrossVoids::cut && scene.domain.has_voids())
+      voids = &scene.domain;
     find_weights();
     // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away than any bond.
     const double layer = parameters.flux_treatment == FluxTreatment::layer_extrapolation ?
@@ -47,12 +49,14 @@ namespace PeriDeal
     for (const FamilyMember<dim> &member : members)
       for (unsigned int d = 0; d < dim; ++d)
         reach_in_sites[d] = std::max(reach_in_sites[d], member.offset[d]);
+    // A symmetry plane of an elastic body holds its nodes, and families end at it.
+    const bool mirrors = scene.general.physics != Physics::elasticity;
     AssertThrow(
-      on_lattice || scene.boundary_conditions.symmetry.empty(),
+      on_lattice || scene.boundary_conditions.symmetry.empty() || !mirrors,
       UserError(
         "'Symmetry' in section 'Boundary conditions' needs the lattice of a box without doubled nodes."));
     // Beside finite elements a symmetry side is an insulated one, and that exactly.
-    if (halo == HaloAround::nodes)
+    if (halo == HaloAround::nodes && mirrors)
       outside = make_fictitious_nodes(nodes,
                                       scene.boundary_conditions,
                                       parameters.treatment,
@@ -410,9 +414,10 @@ namespace PeriDeal
   {
     // Crack-side scaling changes the bonds of the nodes that have a bond cut: those reach once farther.
     const double radius = factors.empty() ? farthest : 2. * farthest;
-    return std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
-      return crack.is_near(own_nodes->position(node), radius);
-    });
+    return voids != nullptr ||
+           std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
+             return crack.is_near(own_nodes->position(node), radius);
+           });
   }
 
   template <int dim>

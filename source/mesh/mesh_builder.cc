@@ -266,9 +266,14 @@ namespace PeriDeal
           !coarse.cells.empty(),
           UserError("'Hole radius' in section 'Domain': the hole leaves no cell of the plate."));
       }
+    else if (domain.has_voids()) // of an image
+      coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {
+        return domain.has_cell_at(p);
+      });
     else
       std::tie(coarse, n_refinements) = box_mesh(domain, cut);
-    if (domain.shape != Shape::box)
+    notes.insert(notes.end(), domain.notes.begin(), domain.notes.end());
+    if (domain.shape != Shape::box && n_refinements == 0)
       require_resolved(coarse, cut);
     AssertThrow(n_refinements >= domain.coarsening,
                 UserError("'Coarsening' in section 'Domain' is " +

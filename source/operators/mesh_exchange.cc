@@ -5,6 +5,7 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/laws/interface.h>
 #include <perideal/operators/mesh_exchange.h>
 
 #include <Eigen/Dense>

@@ -16,9 +16,9 @@ namespace PeriDeal
      * Largest eigenvalue by Lanczos iterations with the last two vectors only: once an eigenvalue has converged copies of it appear,
      * but the largest one is as good as with all vectors kept, which would take more memory than all else.
      */
-    double lanczos(const Operator &op, Vector &now, const double enough)
+    double lanczos(const Operator &op, Vector &now, const double enough, const Vector &metric)
     {
-      Vector inverse_root(op.lumped_capacity()), last(now), x(now), y(now);
+      Vector inverse_root(metric), last(now), x(now), y(now);
       for (double &c : inverse_root)
         c = 1. / std::sqrt(c);
       for (unsigned int i = 0; i < now.locally_owned_size(); ++i)
@@ -82,7 +82,8 @@ namespace PeriDeal
   double sharp_bound(const Operator                            &op,
                      const double                               gershgorin,
                      const std::function<void(Vector &vector)> &fill,
-                     const double                               enough)
+                     const double                               enough,
+                     const Vector                              *metric)
   {
     Vector start;
     op.initialize_vector(start);
@@ -90,7 +91,10 @@ namespace PeriDeal
     op.distribute_homogeneous(start);
     if (start.l2_norm() == 0.)
       return 0.;
-    const double bound = op.symmetric() ? lanczos(op, start, enough) : power_iterations(op, start);
+    const double bound =
+      op.symmetric() ?
+        lanczos(op, start, enough, metric == nullptr ? op.lumped_capacity() : *metric) :
+        power_iterations(op, start);
     return std::min(round_up(bound), gershgorin);
   }
 } // namespace PeriDeal

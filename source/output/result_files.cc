@@ -32,6 +32,7 @@ namespace PeriDeal
                                                      "line.csv",
                                                      "grid.csv",
                                                      "totals.csv",
+                                                     "image_as_read.png",
                                                      "scene.prm"};
       const std::string                     name  = path.filename().string();
       const bool series = begins_with(name, "finite_elements") || begins_with(name, "peridynamics");
@@ -104,7 +105,7 @@ namespace PeriDeal
     const std::string unfinished = name + ".part";
     std::error_code   problem;
     {
-      std::ofstream file(unfinished);
+      std::ofstream file(unfinished, std::ios::binary);
       file << text << std::flush;
       if (!file)
         problem = std::make_error_code(std::errc::io_error);
@@ -125,11 +126,17 @@ namespace PeriDeal
   }
 
 
-  PointTable::PointTable(const std::vector<std::vector<double>> &points, const unsigned int dim)
+  PointTable::PointTable(const std::vector<std::vector<double>> &points,
+                         const unsigned int                      dim,
+                         const std::vector<std::string>         &columns)
     : points(points)
-    , header(std::string("time,model,x") + (dim > 1 ? ",y" : "") + (dim > 2 ? ",z" : "") +
-             ",value\n")
-  {}
+    , n_columns(columns.size())
+    , header(std::string("time,model,x") + (dim > 1 ? ",y" : "") + (dim > 2 ? ",z" : ""))
+  {
+    for (const std::string &column : columns)
+      header += "," + column;
+    header += "\n";
+  }
 
 
   void PointTable::add(const double               time,
@@ -141,7 +148,9 @@ namespace PeriDeal
         rows += full_precision(time) + "," + model;
         for (const double x : points[k])
           rows += "," + full_precision(x);
-        rows += "," + full_precision(values[k]) + "\n";
+        for (std::size_t c = 0; c < n_columns; ++c)
+          rows += "," + full_precision(values[k * n_columns + c]);
+        rows += "\n";
       }
   }
 

@@ -10,10 +10,23 @@ namespace PeriDeal
 {
   namespace
   {
-    bool any_depends_on_time(const std::vector<SideCondition> &list)
+    bool depends_on_time(const SideCondition &condition)
     {
-      return std::any_of(list.begin(), list.end(), [](const SideCondition &condition) {
-        return condition.value.depends_on_time();
+      return condition.value.depends_on_time();
+    }
+
+
+    bool depends_on_time(const VectorCondition &condition)
+    {
+      return condition.depends_on_time();
+    }
+
+
+    template <typename Condition>
+    bool any_depends_on_time(const std::vector<Condition> &list)
+    {
+      return std::any_of(list.begin(), list.end(), [](const Condition &condition) {
+        return PeriDeal::depends_on_time(condition);
       });
     }
   } // namespace
@@ -70,7 +83,28 @@ namespace PeriDeal
             "",
             "Sides that are symmetry planes, separated by `;` or `,`. Fictitious nodes beyond them "
             "mirror the "
-            "temperature.");
+            "temperature. With elasticity such a side has no displacement normal to itself.");
+    declare(
+      "Displacement",
+      EntryType::list,
+      "",
+      "length",
+      "Elasticity: given displacements, `side: component, component`, several sides separated by `;`; one component per direction, a formula of "
+      "x, y, z, t or the word `free` where nothing holds it. Where two sides meet, the one named first holds." +
+        sides);
+    declare(
+      "Traction",
+      EntryType::list,
+      "",
+      "force/area",
+      "Elasticity: given forces per area, `side: component, component`, several sides separated by `;`; one component per direction, a "
+      "formula of x, y, z, t. A side named nowhere is free.");
+    declare(
+      "Traction layer",
+      EntryType::text,
+      "",
+      "length",
+      "Depth over which peridynamics spreads tractions as body forces. Empty: the outermost row of nodes.");
   }
 
 
@@ -89,7 +123,8 @@ namespace PeriDeal
   bool BoundaryConditions<dim>::depends_on_time() const
   {
     return any_depends_on_time(dirichlet) || any_depends_on_time(flux) ||
-           any_depends_on_time(convection);
+           any_depends_on_time(convection) || any_depends_on_time(displacement) ||
+           any_depends_on_time(traction);
   }
 
 
@@ -174,11 +209,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BoundaryConditions<dim>::parse(const bool box_sides, const bool hole)
+  void BoundaryConditions<dim>::parse_symmetry(const bool box_sides, const bool hole)
   {
-    dirichlet  = parse_list("Dirichlet", box_sides, hole);
-    flux       = parse_list("Flux", box_sides, hole);
-    convection = parse_list("Convection", box_sides, hole);
     symmetry.clear();
     std::string names = text("Symmetry");
     std::replace(names.begin(), names.end(), ';', ',');
@@ -191,7 +223,12 @@ namespace PeriDeal
           error("Symmetry", "the side '" + name + "' is named twice.");
         symmetry.push_back(id);
       }
+  }
 
+
+  template <int dim>
+  void BoundaryConditions<dim>::check_scalar_conditions() const
+  {
     for (const SideCondition &condition : dirichlet)
       {
         refuse_both("Flux", flux, "Dirichlet", condition.id);
@@ -202,10 +239,33 @@ namespace PeriDeal
         refuse_both("Dirichlet", dirichlet, "Symmetry", id);
         refuse_both("Convection", convection, "Symmetry", id);
         const SideCondition *const given = find(flux, id);
-        if (given != nullptr &&
-            !(given->value.is_constant() && given->value.value(dealii::Point<dim>()) == 0.))
+        if (given != nullptr && !is_zero(given->value))
           refuse_both("Flux", flux, "Symmetry", id);
       }
+  }
+
+
+  template <int dim>
+  void BoundaryConditions<dim>::parse(const bool box_sides, const bool hole, const Physics physics)
+  {
+    refuse_other_physics(physics);
+    dirichlet    = parse_list("Dirichlet", box_sides, hole);
+    flux         = parse_list("Flux", box_sides, hole);
+    convection   = parse_list("Convection", box_sides, hole);
+    displacement = parse_vectors("Displacement", box_sides, hole);
+    traction     = parse_vectors("Traction", box_sides, hole);
+    parse_symmetry(box_sides, hole);
+    traction_layer = -1.;
+    if (!text("Traction layer").empty())
+      {
+        traction_layer = parse_number(text("Traction layer"), where("Traction layer"));
+        if (!(traction_layer > 0.))
+          error("Traction layer",
+                "found " + text("Traction layer") +
+                  ", needs a length greater than 0 (or nothing).");
+      }
+    check_scalar_conditions();
+    check_vector_conditions();
   }
 
 

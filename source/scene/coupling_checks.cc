@@ -49,7 +49,7 @@ namespace PeriDeal
       add(pd.nodal_volume != NodalVolume::partial,
           pd.where("Nodal volume"),
           "is 'full'; use 'partial'");
-      add(scene.material.depends_on_temperature(),
+      add(scene.general.physics != Physics::elasticity && scene.material.depends_on_temperature(),
           scene.material.where("Conductivity"),
           "or the heat capacity depends on T, which bonds beside elements do not follow");
       return list;
@@ -66,7 +66,9 @@ namespace PeriDeal
   {
     const auto list = obstacles_to_bonds_on_elements(*this);
     if (peridynamics.treatment == BoundaryTreatment::automatic)
-      peridynamics.treatment = list.empty() ? BoundaryTreatment::exchange : BoundaryTreatment::none;
+      peridynamics.treatment = list.empty() && general.physics != Physics::elasticity ?
+                                 BoundaryTreatment::exchange :
+                                 BoundaryTreatment::none;
     else if (peridynamics.treatment == BoundaryTreatment::exchange && !list.empty() &&
              runs(*this, Model::peridynamics))
       entry_error(list.front().where,

@@ -91,13 +91,13 @@ namespace PeriDeal
     declare(
       "Mesh",
       EntryType::choice,
-      "pairs",
+      "auto",
       "",
       "What finite elements and the mesh do with a crack: in cut cells the conductances of the "
       "node "
       "pairs that the crack does not separate; the crack lies on cell faces, which are doubled; "
-      "or cut cells conduct nothing.",
-      {"pairs", "faces", "removed"});
+      "or cut cells conduct nothing. `auto`: pairs, with `Physics = elasticity` removed; there pairs are not defined.",
+      {"pairs", "faces", "removed", "auto"});
     declare(
       "Transmission",
       EntryType::formula,
@@ -165,13 +165,15 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Cracks<dim>::parse()
+  void Cracks<dim>::parse(const Physics physics)
   {
     cracks.clear();
     tips.clear();
     parse_segments();
     parse_polygons();
-    mesh         = choice<CrackMesh>("Mesh");
+    mesh = choice<CrackMesh>("Mesh");
+    if (mesh == CrackMesh::automatic)
+      mesh = physics == Physics::elasticity ? CrackMesh::removed : CrackMesh::pairs;
     through_tips = choice<ThroughTips>("Bonds through tips");
     parse_conductance();
     parse_growth();
@@ -182,7 +184,7 @@ namespace PeriDeal
           std::none_of(tips.begin(), tips.end(), [&](const auto &tip) { return tip.crack == i; }))
         error("Segments",
               crack_name(i, cracks[i]) + " has no length, and no end of it grows ('Growth').");
-    if (mesh != CrackMesh::pairs && conduct())
+    if (physics != Physics::elasticity && mesh != CrackMesh::pairs && conduct())
       error("Mesh",
             std::string(mesh == CrackMesh::faces ?
                           "'faces' cuts the body along the crack, which then conducts nothing" :

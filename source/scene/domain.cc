@@ -55,12 +55,14 @@ namespace PeriDeal
   Domain<dim>::Domain()
     : SceneSection("Domain")
   {
-    declare("Shape",
-            EntryType::choice,
-            "box",
-            "",
-            "The body: a box of equal cells, such a box with a hole, or a mesh read from a file.",
-            {"box", "plate with hole", "mesh file"});
+    declare(
+      "Shape",
+      EntryType::choice,
+      "box",
+      "",
+      "The body: a box of equal cells, such a box with a hole, a mesh read from a file, or the pixels of an image (in two "
+      "dimensions).",
+      {"box", "plate with hole", "mesh file", "image"});
     declare("Lower corner",
             EntryType::list,
             repeated<dim>("0"),
@@ -95,12 +97,14 @@ namespace PeriDeal
       "",
       "With `Coarsening`: cells stay fine where this formula of x, y, z is greater than 0, and in the zone of section `Coupling` if "
       "the model `coupled` runs. `auto`: in that zone, thus around cracks, for all models. Beyond, there are at least two cells of each size.");
-    declare("Nodes",
-            EntryType::choice,
-            "vertices",
-            "",
-            "Where the peridynamic nodes sit. Finite elements use the vertices in any case.",
-            {"vertices", "cell centers"});
+    declare(
+      "Nodes",
+      EntryType::choice,
+      "auto",
+      "",
+      "Where the peridynamic nodes sit: `auto` is cell centers with `Shape = image`, else vertices. Finite elements use the vertices "
+      "in any case.",
+      {"vertices", "cell centers", "auto"});
     declare(
       "Hole center",
       EntryType::list,
@@ -131,6 +135,7 @@ namespace PeriDeal
       "",
       "Gmsh file (.msh) of quadrilaterals or hexahedra, relative to the working directory or else to the "
       "folder of the scene file. Its boundary ids name the sides; give `Horizon` as a length.");
+    declare_image();
     parse();
   }
 
@@ -280,15 +285,26 @@ namespace PeriDeal
   void Domain<dim>::parse()
   {
     shape = choice<Shape>("Shape");
-    nodes = choice<NodePlacement>("Nodes");
+    nodes = choice_name("Nodes") != "auto" ? choice<NodePlacement>("Nodes") :
+            shape == Shape::image          ? NodePlacement::cell_centers :
+                                             NodePlacement::vertices;
     lower = parse_point<dim>(text("Lower corner"), where("Lower corner"));
     upper = parse_point<dim>(text("Upper corner"), where("Upper corner"));
+    image.reset();
+    pins.clear();
+    notes.clear();
+    if (shape == Shape::image)
+      parse_image(); // the pixels may say where the upper corner is
     for (unsigned int d = 0; d < dim; ++d)
       if (!(lower[d] < upper[d]))
         error("Upper corner",
               "its coordinate " + std::to_string(d + 1) + " (" + number_text(upper[d]) +
                 ") must be greater than that of 'Lower corner' (" + number_text(lower[d]) + ").");
-    parse_cells();
+    if (shape != Shape::image)
+      {
+        refuse_image_entries();
+        parse_cells();
+      }
     parse_hole();
     coarsening = whole_number("Coarsening");
     parse_fine_part();

@@ -3,20 +3,10 @@
 
 #include <perideal/scene/lists.h>
 #include <perideal/scene/material.h>
+#include <perideal/scene/vector_conditions.h>
 
 namespace PeriDeal
 {
-  namespace
-  {
-    void refuse_time(const Expression &expression, const std::string &where)
-    {
-      if (expression.depends_on_time())
-        entry_error(where,
-                    "'" + expression.text() + "' depends on t; known variables here: x, y, z, T.");
-    }
-  } // namespace
-
-
   Material::Material()
     : SceneSection("Material")
   {
@@ -26,7 +16,11 @@ namespace PeriDeal
       "1",
       "power/(length temperature)",
       "Thermal conductivity, diffusivity (moisture) or electrical conductivity: a number or a formula of x, y, z and T, the temperature (wetness, potential) itself.");
-    declare("Density", EntryType::formula, "1", "mass/length^3", "Ignored when steady.");
+    declare("Density",
+            EntryType::formula,
+            "1",
+            "mass/length^3",
+            "Ignored when steady, and by elasticity unless its solver is `dynamics`.");
     declare(
       "Heat capacity",
       EntryType::formula,
@@ -48,7 +42,40 @@ namespace PeriDeal
             "Conductivity of a bond between unequal nodes: the smaller value, the mean, or the "
             "harmonic mean by the length of the bond in each phase.",
             {"minimum", "arithmetic", "harmonic"});
+    declare_elasticity();
     parse();
+  }
+
+
+  void Material::declare_elasticity()
+  {
+    const std::string two =
+      " Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional "
+      "solid, also in 1D and 2D.";
+    const std::string formula = ": a number or a formula of x, y, z.";
+    const auto        entry   = [&](const std::string &name,
+                           const std::string &default_text,
+                           const std::string &documentation) {
+      declare(name, EntryType::formula, default_text, material_entry(name).unit, documentation);
+    };
+    entry("Bulk modulus", "", "Pressure per relative change of volume" + formula + two);
+    entry("Shear modulus", "", "Shear stress per change of angle" + formula + two);
+    entry("Young modulus", "", "Stress per strain of a bar" + formula + two);
+    entry("Poisson ratio",
+          "",
+          "Contraction of a bar per its extension" + formula +
+            " Greater than -1 and less than 0.5; in plane stress and in bars it may be 0.5." + two);
+    entry("Thermal expansion",
+          "0",
+          "Strain per `Temperature change` (section `Elasticity`)" + formula);
+    entry(
+      "Fracture energy",
+      "",
+      "Energy per area of a new crack" + formula +
+        " The stretch at which bonds break follows from it. Without this and Critical stretch they do not break.");
+    entry("Critical stretch",
+          "",
+          "Relative extension at which a bond breaks, instead of Fracture energy" + formula);
   }
 
 
@@ -77,32 +104,66 @@ namespace PeriDeal
   }
 
 
-  void Material::parse(const Physics physics)
+  Expression Material::read(const std::string &entry, const Physics physics) const
   {
-    phases.parse();
-    stores          = true;
-    const auto read = [&](const std::string &entry, MaterialProperty &property) {
-      Expression value(text(entry), where(entry), entry != "Saturated concentration");
-      refuse_time(value, where(entry));
-      const bool may_vanish = physics == Physics::electricity && entry == "Heat capacity";
-      if (may_vanish && value.is_constant() && value.value(dealii::Point<1>()) == 0.)
-        {
-          stores = false;
-          value  = Expression(1.); // not used
-        }
-      if (value.is_constant() && !(value.value(dealii::Point<1>()) > 0.))
-        error(entry, "found " + text(entry) + ", needs a value greater than 0.");
-      property = phases.property(entry, value);
+    const MaterialEntry &kind = material_entry(entry);
+    const Expression     value =
+      material_formula(text(entry), kind, physics == Physics::elasticity, where(entry));
+    const bool may_vanish = physics == Physics::electricity && entry == "Heat capacity";
+    if (kind.positive && value.is_constant() &&
+        !(value.value(dealii::Point<1>()) > 0. || (may_vanish && is_zero(value))))
+      error(entry, "found " + text(entry) + ", needs a value greater than 0.");
+    return value;
+  }
+
+
+  std::optional<MaterialProperty> Material::optional_property(const std::string &entry,
+                                                              const Physics      physics) const
+  {
+    if (!text(entry).empty())
+      return phases.property(entry, read(entry, physics));
+    if (phases.gives(entry))
+      error(
+        entry,
+        "is empty, but section 'Material/Phases' gives it for some phases: give it for the rest of the body, too.");
+    return {};
+  }
+
+
+  void Material::parse(const Physics                          physics,
+                       const unsigned int                     dim,
+                       const PlaneState                       plane,
+                       const std::shared_ptr<const PhaseMap> &image)
+  {
+    phases.parse(physics, image);
+    const auto property = [&](const std::string &entry) {
+      return phases.property(entry, read(entry, physics));
     };
-    read("Conductivity", conductivity);
-    read("Density", density);
-    read("Heat capacity", heat_capacity);
-    read("Saturated concentration", saturated_concentration);
-    interface_rule = choice<InterfaceRule>("Interface rule");
+    const Expression capacity = read("Heat capacity", physics);
+    stores                    = !(physics == Physics::electricity && is_zero(capacity));
+    conductivity              = property("Conductivity");
+    density                   = property("Density");
+    heat_capacity =
+      phases.property("Heat capacity", stores ? capacity : Expression(1.)); // 1: not used
+    saturated_concentration = property("Saturated concentration");
+    interface_rule          = choice<InterfaceRule>("Interface rule");
     if (conductivity.depends_on_temperature() && interface_rule == InterfaceRule::harmonic)
       error(
         "Interface rule",
         "'harmonic' follows each bond through the phases and cannot have a 'Conductivity' with T; use 'arithmetic' or 'minimum'.");
+
+    thermal_expansion = property("Thermal expansion");
+    fracture_energy   = optional_property("Fracture energy", physics);
+    critical_stretch  = optional_property("Critical stretch", physics);
+    if (fracture_energy && critical_stretch)
+      error("Critical stretch", "'Fracture energy' is given, too: give one of the two.");
+    if (physics == Physics::elasticity)
+      parse_moduli(dim, plane);
+    else
+      for (const std::string entry :
+           {"Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio"})
+        if (!text(entry).empty())
+          read(entry, physics); // for its errors
   }
 
 
@@ -119,14 +180,66 @@ namespace PeriDeal
             "0",
             "power/length^3",
             "Heat produced in the body, a number or a formula of x, y, z, t.");
+    declare(
+      "Body force",
+      EntryType::list,
+      "",
+      "force/length^3",
+      "Elasticity: force per volume, one formula of x, y, z, t per direction, separated by commas. Empty: none.");
+    declare(
+      "Initial displacement",
+      EntryType::list,
+      "",
+      "length",
+      "Elasticity with `Solver = dynamics`: at time 0, one formula of x, y, z per direction, separated by commas. Empty: none. Sides in "
+      "`Displacement` have theirs from the beginning.");
+    declare("Initial velocity",
+            EntryType::list,
+            "",
+            "length/time",
+            "Elasticity with `Solver = dynamics`: at time 0, one formula of x, y, z per direction, "
+            "separated by commas. Empty: at rest.");
     parse();
   }
 
 
-  void InitialAndSource::parse()
+  void InitialAndSource::parse(const Physics physics, const unsigned int dim)
   {
     initial_value = Expression(text("Initial value"), where("Initial value"));
     source        = Expression(text("Source"), where("Source"));
+    body_force.clear();
+    if (!text("Body force").empty())
+      for (const auto &value :
+           parse_components(text("Body force"), dim, false, where("Body force")))
+        body_force.push_back(*value);
+
+    const bool elastic = physics == Physics::elasticity;
+    for (auto *const list : {&initial_displacement, &initial_velocity})
+      {
+        const std::string entry = list == &initial_displacement ? "Initial displacement" :
+                                                                  "Initial velocity";
+        list->clear();
+        if (text(entry).empty())
+          continue;
+        if (!elastic)
+          error(entry,
+                "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");
+        for (const auto &value : parse_components(text(entry), dim, false, where(entry)))
+          {
+            if (value->depends_on_time())
+              error(entry, "'" + value->text() + "' depends on t; known variables here: x, y, z.");
+            list->push_back(*value);
+          }
+      }
+    if (elastic && is_given("Initial value"))
+      error(
+        "Initial value",
+        "is for what diffuses; with 'Physics = elasticity' bodies start at rest, or with 'Initial displacement' and 'Initial velocity'.");
+    if (elastic && is_given("Source"))
+      error("Source", "is for what diffuses; with 'Physics = elasticity' use 'Body force'.");
+    if (!elastic && !text("Body force").empty())
+      error("Body force",
+            "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");
   }
 
 

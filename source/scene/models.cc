@@ -92,7 +92,7 @@ namespace PeriDeal
       "left to the elements, so that a linear field is exact up to the surface and all conditions act as in finite elements. The others "
       "cut families off at the surface, and Dirichlet values act on the nodes of the side (`none`), on layers of nodes inside, or on "
       "fictitious nodes outside the body, mirrored (2 T* - T) or constant (T*). `auto`: exchange where it is possible (nodes on "
-      "vertices, no slaves, self term or energy correction), else none.",
+      "vertices, no slaves, self term or energy correction), else none, as for elasticity.",
       {"auto", "exchange", "none", "layer", "fictitious mirror", "fictitious constant"});
     declare("Layer rows",
             EntryType::whole_number,
@@ -125,6 +125,14 @@ namespace PeriDeal
       "With `energy`: the direction of the unit gradient. `both`: one factor for each direction of space, "
       "weighted with the squares of the bond's direction cosines.",
       {"x", "y", "z", "both"});
+    declare(
+      "Bonds across voids",
+      EntryType::choice,
+      "auto",
+      "",
+      "Bonds that lead through a hole or an empty part of an image: `keep` them, so that a void narrower than the horizon is no gap, or "
+      "`cut` them. `auto`: cut with `Boundary treatment = exchange`, which never has them, else kept.",
+      {"auto", "keep", "cut"});
   }
 
 
@@ -158,6 +166,7 @@ namespace PeriDeal
     flux_treatment       = choice<FluxTreatment>("Flux treatment");
     surface_correction   = choice<SurfaceCorrection>("Surface correction");
     correction_direction = choice<CorrectionDirection>("Correction direction");
+    across_voids         = choice<BondsAcrossVoids>("Bonds across voids");
     form                 = choice<OperatorForm>("Operator form");
   }
 

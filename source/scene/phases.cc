@@ -188,6 +188,12 @@ namespace PeriDeal
           "' overlap at (" + point +
           "). Change a region so that every point belongs to one phase at most.");
       }
+    if constexpr (dim == 2)
+      if (found < 0 && image)
+        {
+          const int phase = image->at(p[0], p[1]);
+          return phase < 0 ? -1 : static_cast<int>(regions.size()) + phase;
+        }
     return found;
   }
 
@@ -214,10 +220,7 @@ namespace PeriDeal
   template <int dim>
   double MaterialProperty::value(const dealii::Point<dim> &p, const double temperature) const
   {
-    if (regions == nullptr)
-      return elsewhere.value(p, 0., temperature);
-    const int k = regions->at(p);
-    return (k >= 0 && of_regions[k] ? *of_regions[k] : elsewhere).value(p, 0., temperature);
+    return formula(regions == nullptr ? -1 : regions->at(p)).value(p, 0., temperature);
   }
 
 
@@ -236,12 +239,65 @@ namespace PeriDeal
   }
 
 
+  const Expression &MaterialProperty::formula(const int region) const
+  {
+    return region >= 0 && of_regions[region] ? *of_regions[region] : elsewhere;
+  }
+
+
+  const std::vector<MaterialEntry> &material_entries()
+  {
+    static const std::vector<MaterialEntry> entries = {
+      {"Conductivity", "power/(length temperature)", true, false, true, true},
+      {"Density", "mass/length^3", true, true, true, true},
+      {"Heat capacity", "energy/(mass temperature)", true, false, true, true},
+      {"Saturated concentration", "mass/length^3", true, false, false, true},
+      {"Bulk modulus", "force/length^2", false, true, false, true},
+      {"Shear modulus", "force/length^2", false, true, false, true},
+      {"Young modulus", "force/length^2", false, true, false, true},
+      {"Poisson ratio", "1", false, true, false, false},
+      {"Thermal expansion", "1/temperature", false, true, false, false},
+      {"Fracture energy", "energy/length^2", false, true, false, true},
+      {"Critical stretch", "1", false, true, false, true}};
+    return entries;
+  }
+
+
+  const MaterialEntry &material_entry(const std::string &name)
+  {
+    const auto found = std::find_if(material_entries().begin(),
+                                    material_entries().end(),
+                                    [&](const MaterialEntry &entry) { return entry.name == name; });
+    Assert(found != material_entries().end(),
+           dealii::ExcMessage("There is no such entry of a material."));
+    return *found;
+  }
+
+
+  Expression material_formula(const std::string   &text,
+                              const MaterialEntry &entry,
+                              const bool           elastic,
+                              const std::string   &where)
+  {
+    const Expression formula(text, where, true);
+    if (formula.depends_on_time())
+      entry_error(where,
+                  "'" + text + "' depends on t; known variables here: x, y, z" +
+                    (entry.with_temperature ? ", T." : "."));
+    if (formula.depends_on_temperature() && !entry.with_temperature)
+      entry_error(where, "'" + text + "' depends on T; known variables here: x, y, z.");
+    if (formula.depends_on_temperature() && elastic && entry.elasticity)
+      entry_error(
+        where,
+        "'" + text +
+          "' depends on T, which is no unknown of 'Physics = elasticity'; known variables here: x, y, z.");
+    return formula;
+  }
+
+
   Phases::Phases()
     : SceneSection("Material/Phases")
   {
-    const std::string form =
-      " of each phase: `name: formula of x, y, z, T`, several separated by `;`. A phase that is not named here "
-      "has the value of section `Material`.";
     declare(
       "Regions",
       EntryType::list,
@@ -251,29 +307,23 @@ namespace PeriDeal
       "z is greater than 0, or `circle(x, y, r)`, `rectangle(x0, y0, x1, y1)`, `polygon(x0, y0, x1, y1, ...)`, `sphere(x, y, z, r)`, "
       "`box(x0, y0, z0, x1, y1, z1)`, their rims included, or with a mesh file `mesh(id)`, the cells with that material id (Gmsh: physical surface, "
       "in 3D volume). Regions must not overlap; outside them the entries of section `Material` "
-      "hold.");
-    declare("Conductivity",
-            EntryType::list,
-            "",
-            "power/(length temperature)",
-            "Thermal conductivity" + form);
-    declare("Density", EntryType::list, "", "mass/length^3", "Density" + form);
-    declare("Heat capacity",
-            EntryType::list,
-            "",
-            "energy/(mass temperature)",
-            "Heat capacity" + form);
-    declare("Saturated concentration",
-            EntryType::list,
-            "",
-            "mass/length^3",
-            "Saturated concentration" + form);
+      "hold. The phases of an image (section `Domain`) are phases, too; a region holds before them.");
+    for (const MaterialEntry &entry : material_entries())
+      declare(
+        entry.name,
+        EntryType::list,
+        "",
+        entry.unit,
+        (entry.name == "Conductivity" ? "Thermal conductivity" : entry.name) +
+          " of each phase: `name: formula of x, y, z" + (entry.with_temperature ? ", T" : "") +
+          "`, several separated by `;`. A phase that is not named here has the value of section `Material`.");
     parse();
   }
 
 
   std::vector<std::optional<Expression>> Phases::read(const std::string &entry) const
   {
+    const MaterialEntry                   &kind = material_entry(entry);
     std::vector<std::optional<Expression>> list(regions->names.size());
     for (const std::string &piece : split_list(text(entry), ';'))
       {
@@ -284,6 +334,7 @@ namespace PeriDeal
         if (found == regions->names.end())
           error(entry,
                 "there is no phase '" + name_value.first + "' in 'Regions'" +
+                  (regions->image ? " or 'Image colors' (section 'Domain')" : "") +
                   (regions->names.empty() ?
                      "." :
                      "; the phases are: " + join_names(regions->names) + ".") +
@@ -291,20 +342,17 @@ namespace PeriDeal
         std::optional<Expression> &value = list[found - regions->names.begin()];
         if (value)
           error(entry, "the phase '" + name_value.first + "' is named twice.");
-        value = Expression(name_value.second, at, entry != "Saturated concentration");
-        if (value->depends_on_time())
-          entry_error(at,
-                      "'" + name_value.second +
-                        "' depends on t; known variables here: x, y, z, T.");
-        if (value->is_constant() && !(value->value(dealii::Point<1>()) > 0.))
+        value = material_formula(name_value.second, kind, elastic, at);
+        if (kind.positive && value->is_constant() && !(value->value(dealii::Point<1>()) > 0.))
           entry_error(at, "found " + name_value.second + ", needs a value greater than 0.");
       }
     return list;
   }
 
 
-  void Phases::parse()
+  void Phases::parse(const Physics physics, const std::shared_ptr<const PhaseMap> &image)
   {
+    elastic     = physics == Physics::elasticity;
     auto list   = std::make_shared<Regions>();
     list->where = where("Regions");
     list->mesh  = std::make_shared<MeshMaterials>();
@@ -319,26 +367,47 @@ namespace PeriDeal
                                    where("Regions") + ", phase '" + name_value.first + "'",
                                    list->mesh);
       }
-    regions = list;
+    if (image)
+      for (const std::string &name : image->names)
+        {
+          if (std::find(list->names.begin(), list->names.end(), name) != list->names.end())
+            error("Regions",
+                  "the phase '" + name + "' is one of 'Image colors' in section 'Domain', too.");
+          list->names.push_back(name);
+        }
+    list->image = image;
+    regions     = list;
     std::vector<bool> has_material(regions->names.size(), false);
-    for (const char *const entry :
-         {"Conductivity", "Density", "Heat capacity", "Saturated concentration"})
+    for (const MaterialEntry &entry : material_entries())
       {
-        const auto values = read(entry);
+        const auto values = read(entry.name);
         for (std::size_t k = 0; k < values.size(); ++k)
-          has_material[k] = has_material[k] || values[k].has_value();
+          has_material[k] = has_material[k] || (values[k].has_value() &&
+                                                (elastic ? entry.elasticity : entry.diffusion));
       }
-    for (std::size_t k = 0; k < has_material.size(); ++k)
+    // What an image shows need not have a material of its own.
+    for (std::size_t k = 0; k < regions->regions.size(); ++k)
       if (!has_material[k])
         error("Regions",
-              "the phase '" + regions->names[k] +
-                "' has no material: name it in 'Conductivity' or another entry of this section.");
+              "the phase '" + regions->names[k] + "' has no material: name it in '" +
+                (elastic ? "Young modulus" : "Conductivity") +
+                "' or another entry of this section" +
+                (elastic ? " that 'Physics = elasticity' takes." : "."));
   }
 
 
   MaterialProperty Phases::property(const std::string &entry, const Expression &elsewhere) const
   {
     return MaterialProperty(elsewhere, regions, read(entry));
+  }
+
+
+  bool Phases::gives(const std::string &entry) const
+  {
+    const auto values = read(entry);
+    return std::any_of(values.begin(), values.end(), [](const auto &value) {
+      return value.has_value();
+    });
   }
 
 

@@ -12,7 +12,8 @@ namespace PeriDeal
       static const std::vector<PhysicsNames> names = {
         {"heat", "temperature", "heat_flux", "heat content", "heat flow", "heat"},
         {"moisture", "wetness", "moisture_flux", "weight", "moisture flow", "moisture"},
-        {"electricity", "potential", "current_density", "charge", "current", "charge"}};
+        {"electricity", "potential", "current_density", "charge", "current", "charge"},
+        {"elasticity", "displacement", "stress", "strain energy", "force", "force"}};
       return names;
     }
   } // namespace

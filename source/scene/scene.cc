@@ -29,7 +29,7 @@ namespace PeriDeal
       "heat",
       "",
       "What diffuses: heat (temperature), moisture (wetness, the concentration over the saturated one) or electricity "
-      "(potential).",
+      "(potential); or elasticity (displacement).",
       physics_choices());
     declare(
       "Models",
@@ -177,6 +177,14 @@ namespace PeriDeal
       const BoundaryConditions<dim> &bc = scene.boundary_conditions;
       if (!scene.time.steady)
         return;
+      if (!scene.cracks.tips.empty())
+        scene.cracks.tip_error(
+          scene.cracks.tips.front(),
+          scene.general.physics == Physics::elasticity ?
+            "moves, but 'Solver' in section 'Elasticity' finds an equilibrium, in which there is no time." :
+            "moves, but 'Steady' in section 'Time' is true.");
+      if (scene.general.physics == Physics::elasticity)
+        return; // the rest: check_elasticity()
       const auto refuse_time = [](const Expression &expression, const std::string &where) {
         if (expression.depends_on_time())
           entry_error(where,
@@ -185,9 +193,6 @@ namespace PeriDeal
       };
       refuse_time(scene.initial_and_source.source, scene.initial_and_source.where("Source"));
       refuse_time(scene.cracks.transmission, scene.cracks.where("Transmission"));
-      if (!scene.cracks.tips.empty())
-        scene.cracks.tip_error(scene.cracks.tips.front(),
-                               "moves, but 'Steady' in section 'Time' is true.");
       for (const SideCondition &condition : bc.dirichlet)
         refuse_time(condition.value, bc.where("Dirichlet"));
       for (const SideCondition &condition : bc.flux)
@@ -277,6 +282,7 @@ namespace PeriDeal
             &cracks,
             &peridynamics,
             &coupling,
+            &elasticity,
             &finite_elements,
             &time,
             &solver,
@@ -292,17 +298,22 @@ namespace PeriDeal
     general.parse();
     general.dimension = dim;
     domain.parse();
-    material.parse(general.physics);
-    initial_and_source.parse();
+    elasticity.parse(general.physics, dim);
+    material.parse(general.physics, dim, elasticity.plane, domain.image);
+    initial_and_source.parse(general.physics, dim);
     boundary_conditions.parse(domain.shape != Shape::mesh_file,
-                              domain.shape == Shape::plate_with_hole);
-    cracks.parse();
+                              domain.shape == Shape::plate_with_hole ||
+                                (domain.image && domain.image->has_voids()),
+                              general.physics);
+    cracks.parse(general.physics);
     peridynamics.parse();
     coupling.parse();
     finite_elements.parse();
     time.parse();
-    time.steady = time.steady ||
-                  !material.stores; // a conductor without capacitance is always in its steady state
+    check_elasticity();
+    // a conductor without capacitance is always in its steady state, and an equilibrium has no time
+    time.steady = time.steady || !material.stores ||
+                  (general.physics == Physics::elasticity && elasticity.is_static());
     solver.parse();
     output.parse(time.end_time, time.steady);
     output.make_grid(domain.shape == Shape::box, domain.lower, domain.upper);
@@ -336,6 +347,7 @@ namespace PeriDeal
     check_combinations(*this);
     check_steady(*this);
     crack_history(); // for its errors
+    check_image();
     check_points_of_output(*this);
   }
 

@@ -213,7 +213,8 @@ namespace PeriDeal
                        const MPI_Comm                  communicator)
   {
     SceneText scene_text;
-    scene_text.file_name = file_name;
+    scene_text.file_name    = file_name;
+    scene_text.communicator = communicator;
     scene_text.text = apply_overrides(read_on_root(file_name, communicator), file_name, overrides);
     switch (dimension_of(scene_text))
       {
@@ -269,6 +270,8 @@ namespace PeriDeal
           const std::string message = text.file_name + ": " + trimmed(out.str());
           AssertThrow(false, UserError(message));
         }
+      scene.domain.scene_folder = std::filesystem::path(text.file_name).parent_path().string();
+      scene.domain.communicator = text.communicator;
       scene.parse_and_validate();
     });
     scene.domain.mesh_file = found_near(scene.domain.mesh_file, text.file_name);

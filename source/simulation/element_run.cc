@@ -60,7 +60,7 @@ namespace PeriDeal
         return node_set->volume(node);
       }
 
-      Operator &op() const override
+      DiffusionOperator &op() const override
       {
         return *fem;
       }

@@ -18,6 +18,7 @@
 
 #include "effective_conductivity.h"
 #include "result_record.h"
+#include "summary_parts.h"
 
 namespace PeriDeal
 {
@@ -33,7 +34,9 @@ namespace PeriDeal
     , communicator(communicator)
     , progress(communicator, quiet)
     , record(std::make_unique<ResultRecord>())
-  {}
+  {
+    Assert(scene.general.physics != Physics::elasticity, ExcMessage("see ElasticSimulation"));
+  }
 
 
   template <int dim>
@@ -241,6 +244,7 @@ namespace PeriDeal
   void Simulation<dim>::run()
   {
     prepare_directory(scene.general.output_directory, text.file_name, communicator);
+    write_image_as_read(scene, communicator);
     build();
     make_steppers();
     {

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "result_record.h"
+#include "summary_parts.h"
 
 namespace PeriDeal
 {
@@ -21,69 +22,6 @@ namespace PeriDeal
   namespace
   {
     using json = nlohmann::ordered_json;
-
-    /** The comment paragraphs at the top of a scene file, without the comment marks. */
-    std::string teaching_text(const std::string &text)
-    {
-      std::istringstream lines(text);
-      std::string        line, result;
-      while (std::getline(lines, line))
-        {
-          const std::size_t first = line.find_first_not_of(" \t");
-          if (first == std::string::npos)
-            {
-              if (!result.empty())
-                result += "\n";
-              continue;
-            }
-          if (line[first] != '#')
-            break;
-          const std::size_t begin = line.find_first_not_of("# \t", first);
-          const std::string words = begin == std::string::npos ? "" : line.substr(begin);
-          if (words.rfind("SPDX", 0) == 0 || words.rfind("Copyright", 0) == 0)
-            continue;
-          result += words + "\n";
-        }
-      while (!result.empty() && result.back() == '\n')
-        result.pop_back();
-      return result;
-    }
-
-
-    template <int dim>
-    std::vector<double> coordinates(const Point<dim> &p)
-    {
-      std::vector<double> list;
-      for (unsigned int d = 0; d < dim; ++d)
-        list.push_back(p[d]);
-      return list;
-    }
-
-
-    /** Lowest and highest coordinates of the whole mesh. Collective. */
-    template <int dim>
-    std::pair<Point<dim>, Point<dim>> bounding_box(const Triangulation<dim> &mesh,
-                                                   const MPI_Comm            communicator)
-    {
-      std::vector<double> lowest(2 * dim, std::numeric_limits<double>::max()), all(2 * dim);
-      for (const auto &cell : mesh.active_cell_iterators())
-        if (cell->is_locally_owned())
-          for (const unsigned int v : cell->vertex_indices())
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                lowest[d]       = std::min(lowest[d], cell->vertex(v)[d]);
-                lowest[dim + d] = std::min(lowest[dim + d], -cell->vertex(v)[d]);
-              }
-      Utilities::MPI::min(lowest, communicator, all);
-      std::pair<Point<dim>, Point<dim>> corners;
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          corners.first[d]  = all[d];
-          corners.second[d] = -all[dim + d];
-        }
-      return corners;
-    }
-
 
     /** One sentence per side on what holds there. */
     template <int dim>
@@ -188,30 +126,7 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::write_summary()
   {
-    json summary;
-    summary["title"]                  = scene.general.title;
-    summary["text"]                   = teaching_text(text.text);
-    summary["scene file"]             = text.file_name;
-    summary["program"]                = std::string("PeriDeal ") + PERIDEAL_VERSION;
-    summary["dimension"]              = dim;
-    summary["processes"]              = Utilities::MPI::n_mpi_processes(communicator);
-    summary["units"]                  = {{"length", scene.units.length},
-                                         {"time", scene.units.time},
-                                         {"temperature", scene.units.temperature},
-                                         {"field", scene.units.of_field(scene.general.physics)}};
-    const PhysicsNames &names         = names_of(scene.general.physics);
-    summary["physics"]                = names.physics;
-    summary["names"]                  = {{"field", names.field},
-                                         {"flux", names.flux},
-                                         {"content", names.content},
-                                         {"flow", names.flow},
-                                         {"quantity", names.quantity}};
-    static const char *const shapes[] = {"box", "plate with hole", "mesh file"};
-    const auto               corners  = bounding_box(*mesh, communicator);
-    summary["domain"]                 = {{"lower", coordinates(corners.first)},
-                                         {"upper", coordinates(corners.second)},
-                                         {"shape", shapes[static_cast<int>(scene.domain.shape)]}};
-    summary["cells"]                  = mesh->n_global_active_cells();
+    json summary = describe_scene(scene, text, *mesh, communicator);
     if (scene.domain.coarsening > 0)
       summary["mesh"] = {{"coarsening", scene.domain.coarsening}, {"adaptations", n_adaptations}};
     summary["cracks"]      = corners_of(scene.cracks.pieces(scene.cracks.end_time));
@@ -232,27 +147,17 @@ namespace PeriDeal
     if (!record->comparisons.empty())
       summary["comparisons"] = record->comparisons;
 
-    std::string message;
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      try
-        {
-          const std::string directory = scene.general.output_directory + "/";
-          if (!scene.output.probes.empty())
-            write_file(directory + "probes.csv", probes->text());
-          if (!scene.output.line.empty())
-            write_file(directory + "line.csv", line->text());
-          if (!scene.output.grid.empty())
-            write_file(directory + "grid.csv", grid->text());
-          write_file(directory + "totals.csv", record->totals);
-          write_file(directory + "scene.prm", scene_with_defaults());
-          write_file(directory + "summary.json",
-                     summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
-        }
-      catch (const UserError &error)
-        {
-          message = error.message();
-        }
-    throw_on_all_if_any(communicator, message);
+    std::vector<std::pair<std::string, std::string>> files;
+    if (!scene.output.probes.empty())
+      files.emplace_back("probes.csv", probes->text());
+    if (!scene.output.line.empty())
+      files.emplace_back("line.csv", line->text());
+    if (!scene.output.grid.empty())
+      files.emplace_back("grid.csv", grid->text());
+    files.emplace_back("totals.csv", record->totals);
+    files.emplace_back("scene.prm", scene_with_defaults());
+    files.emplace_back("summary.json", json_text(summary));
+    write_files(files, scene.general.output_directory, communicator);
   }
 
   template void Simulation<1>::write_summary();

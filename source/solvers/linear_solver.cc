@@ -95,6 +95,10 @@ namespace PeriDeal
 
   unsigned int LinearSolver::solve(const double a, const double b, Vector &x, const Vector &rhs)
   {
+    AssertThrow( // also where nothing converges to: the 2-norm of what is not a number is 0
+      std::isfinite(rhs.l1_norm()),
+      UserError(
+        "The loads are not finite. Check the material, the sources or loads, and the boundary values."));
     const double size = rhs.l2_norm();
     if (size == 0.)
       {

@@ -87,6 +87,20 @@ namespace PeriDeal
     std::unique_ptr<Epetra_MultiVector> constant_modes; // of a scalar operator none of their own
     options.set_parameters(list, constant_modes, data->shifted);
     list.set("coarse: max size", static_cast<int>(direct_up_to));
+    // ML reads the modes while it sets up.
+    const std::vector<Vector> modes  = op.near_null_space();
+    const unsigned int        n_rows = capacity.locally_owned_size();
+    std::vector<double>       values;
+    for (const Vector &mode : modes)
+      values.insert(values.end(), mode.begin(), mode.begin() + n_rows);
+    if (!modes.empty())
+      {
+        list.set("PDE equations", static_cast<int>(op.n_components()));
+        list.set("null space: type", "pre-computed");
+        list.set("null space: dimension", static_cast<int>(modes.size()));
+        list.set("null space: vectors", values.data());
+        list.set("null space: add default vectors", false);
+      }
     data->multigrid.initialize(data->shifted, list);
   }
 

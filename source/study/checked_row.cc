@@ -25,7 +25,7 @@ namespace PeriDeal
     }
 
 
-    /** Of the program, the processes (times and memory depend on them), the scene, its entries and its mesh file. Collective. */
+    /** Of the program, the processes (times and memory depend on them), the scene, its entries and its mesh file or image. Collective. */
     std::string hash_of(const CheckedRow  &checked,
                         const std::string &mesh_file,
                         const MPI_Comm     communicator)
@@ -87,6 +87,8 @@ namespace PeriDeal
         with_scene(checked.text, [&](const auto &scene) {
           if (scene.domain.shape == Shape::mesh_file)
             mesh_file = scene.domain.mesh_file;
+          else if (scene.domain.shape == Shape::image)
+            mesh_file = scene.domain.image_file;
           checked.entries = entries_of_parsed_scene();
         });
         checked.hash = hash_of(checked, mesh_file, communicator);

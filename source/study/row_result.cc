@@ -8,6 +8,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/output/result_files.h>
 #include <perideal/scene/lists.h>
+#include <perideal/simulation/elastic_simulation.h>
 #include <perideal/simulation/simulation.h>
 
 #include <malloc.h>
@@ -113,7 +114,7 @@ namespace PeriDeal
             {
               const double seconds     = phase.value().get<double>();
               const bool   of_stepping = phase.key() == "time stepping" || phase.key() == "solve" ||
-                                       phase.key() == "changing cracks";
+                                       phase.key() == "solving" || phase.key() == "changing cracks";
               (of_stepping ? stepping : set_up) += seconds;
               keep_smaller(entry["phases"], phase.key(), seconds);
             }
@@ -129,8 +130,10 @@ namespace PeriDeal
     template <int dim>
     void run(const Scene<dim> &scene, const SceneText &text, const MPI_Comm communicator)
     {
-      Simulation<dim> simulation(scene, text, communicator, true);
-      simulation.run();
+      if (scene.general.physics == Physics::elasticity)
+        ElasticSimulation<dim>(scene, text, communicator, true).run();
+      else
+        Simulation<dim>(scene, text, communicator, true).run();
     }
 
 

@@ -73,8 +73,9 @@ namespace PeriDeal
                                     "memory"})
         if (model.contains(key))
           line[key] = model[key];
-      if (model.contains("heat balance"))
-        line.update(model["heat balance"]);
+      for (const char *const balance : {"heat balance", "force balance"})
+        if (model.contains(balance))
+          line.update(model[balance]);
       line["set-up time"]   = times["set-up"];
       line["stepping time"] = times["stepping"];
       line["wall time"]     = times["total"];
@@ -116,7 +117,7 @@ namespace PeriDeal
           for (const Json &pair : errors.value("relative l2", Json::array()))
             times.push_back(pair[0]);
           if (times.empty())
-            times.push_back(result.results["end time"]);
+            times.push_back(result.results.value("end time", 0.));
           for (const Json &time : times)
             {
               line["time"] = time;

@@ -36,6 +36,9 @@ end
 
 STEADY = {"Time/Steady": "true"}
 CRACK = {"Cracks/Segments": "0.25,0.5 ; 0.75,0.5"}
+ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "200", "Material/Poisson ratio": "0.3", "Boundary conditions/Dirichlet": "",
+           "Boundary conditions/Displacement": "left: 0, 0"}
+MOTION = {**ELASTIC, "Elasticity/Solver": "dynamics"}
 
 QUADS = """$MeshFormat
 2.2 0 8
@@ -165,6 +168,32 @@ def scene_mistakes(folder):
         ("zero saturation", {"Physics": "moisture", "Material/Saturated concentration": "0"}, ["'Saturated concentration'", "greater than 0"]),
         ("heat without capacity", {"Material/Heat capacity": "0"}, ["'Heat capacity'", "greater than 0"]),
         ("unknown physics", {"Physics": "moistrue"}, ["'Physics'", "Did you mean 'moisture'?"]),
+        # elasticity
+        ("elastic body with one modulus", {**ELASTIC, "Material/Poisson ratio": ""}, ["'Young modulus'", "exactly two"]),
+        ("moduli that contradict each other", {**ELASTIC, "Material/Poisson ratio": "", "Material/Bulk modulus": "20"},
+         ["'Young modulus'", "Poisson ratio would be -1.1666"]),
+        ("incompressible in plane strain", {**ELASTIC, "Material/Poisson ratio": "0.5", "Elasticity/Plane": "strain"}, ["'Poisson ratio'", "less than 0.5"]),
+        ("body that may turn", {**ELASTIC, "Boundary conditions/Displacement": "bottom: 0, free"},
+         ["'Displacement'", "translation in y, rotation about z"]),
+        ("empty grip", {**ELASTIC, "Boundary conditions/Displacement": "left: 0, 0; top: free, free"}, ["'Displacement'", "'top'", "empty grip"]),
+        ("traction on a grip", {**ELASTIC, "Boundary conditions/Traction": "left: 1, 0"}, ["'Traction'", "'left'", "displacement in x"]),
+        ("temperature of an elastic body", {**ELASTIC, "Boundary conditions/Dirichlet": "top: 1"}, ["'Dirichlet'", "'Displacement'"]),
+        ("displacement of heat", {"Boundary conditions/Displacement": "left: 0, 0"}, ["'Displacement'", "'Physics = elasticity'"]),
+        ("motion of heat", {"Time/Stepper": "verlet"}, ["'Stepper'", "'verlet'", "'Physics = elasticity'", "'auto'"]),
+        ("stepper of an equilibrium", {**ELASTIC, "Time/Stepper": "newmark"}, ["'Stepper'", "'newmark'", "'Solver = dynamics'"]),
+        ("motion by a stepper of heat", {**MOTION, "Time/Stepper": "rk4"}, ["'Stepper'", "'rk4'", "'verlet' or 'newmark'"]),
+        ("equilibrium with a velocity", {**ELASTIC, "Initial and source/Initial velocity": "1, 0"}, ["'Initial velocity'", "no effect", "'dynamics'"]),
+        ("half a velocity", {**MOTION, "Initial and source/Initial velocity": "1"}, ["'Initial velocity'", "needs 2 components"]),
+        ("initial displacement that depends on t", {**MOTION, "Initial and source/Initial displacement": "t, 0"},
+         ["'Initial displacement'", "depends on t"]),
+        ("initial displacement of heat", {"Initial and source/Initial displacement": "0, 0"}, ["'Initial displacement'", "'heat'"]),
+        ("step of verlet above the limit", {**MOTION, "Time/Time step": "0.1", "Time/End time": "1"}, ["'Time step'", "is 0.1,", "stable up to", "newmark"]),
+        ("full kinematics by a linear solver", {**ELASTIC, "Elasticity/Kinematics": "full"}, ["'Kinematics'", "'linear'", "'conjugate gradients'"]),
+        ("full kinematics of finite elements", {**ELASTIC, "Elasticity/Kinematics": "full", "Elasticity/Solver": "conjugate gradients"},
+         ["'Kinematics'", "'Models = peridynamics'"]),
+        ("preconditioner of the linear solver", {**ELASTIC, "Elasticity/Preconditioner": "none"}, ["'Preconditioner'", "conjugate gradients", "'linear'"]),
+        ("too few iterations", {**ELASTIC, "Boundary conditions/Traction": "right: 1, 0", "Elasticity/Solver": "dynamic relaxation",
+                                "Solver/Maximum iterations": "20"}, ["'Solver = dynamic relaxation'", "20 iterations", "'Maximum iterations'"]),
         # expressions
         ("bad expression", {"Material/Conductivity": "1 + 2*(x"}, ["'Conductivity'", "column"]),
         ("unknown name in an expression", {"Initial and source/Source": "2*x + foo"}, ["'Source'", "foo", "column 7"]),

@@ -107,9 +107,9 @@ namespace PeriDeal
         find_positions();
       }
 
-      Operator &op() const
+      DiffusionOperator &op() const
       {
-        return bonds ? static_cast<Operator &>(*bonds) : *fem;
+        return bonds ? static_cast<DiffusionOperator &>(*bonds) : *fem;
       }
 
       Vector vector() const

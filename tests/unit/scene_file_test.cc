@@ -209,7 +209,8 @@ namespace PeriDeal
               }
             EXPECT_TRUE(entry.type == EntryType::text || entry.type == EntryType::boolean ||
                         entry.type == EntryType::choice || entry.type == EntryType::choices ||
-                        entry.name == "Symmetry" || entry.name == "Regions" || !entry.unit.empty())
+                        entry.name == "Symmetry" || entry.name == "Regions" ||
+                        entry.name == "Image colors" || !entry.unit.empty())
               << entry.name;
           }
       }

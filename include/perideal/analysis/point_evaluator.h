@@ -31,8 +31,15 @@ namespace PeriDeal
                    const std::vector<std::vector<double>> &points,
                    const std::string                      &entry);
 
-    /** One value per point, on all processes. Needs no ghosts. Collective. */
-    std::vector<double> evaluate(const Vector &u) const;
+    /** One value per point, on all processes, of a component of a vector with several at each node, interleaved. Needs no ghosts. Collective. */
+    std::vector<double> evaluate(const Vector      &u,
+                                 const unsigned int n_components = 1,
+                                 const unsigned int component    = 0) const;
+
+    /** The gradient of the interpolant, by the cell that holds the point. Only if points were looked up in the mesh; else all zero. Collective. */
+    std::vector<dealii::Tensor<1, dim>> gradients(const Vector      &u,
+                                                  const unsigned int n_components = 1,
+                                                  const unsigned int component    = 0) const;
 
   private:
     struct Part
@@ -40,7 +47,16 @@ namespace PeriDeal
       unsigned int slot; // of the gathered numbers
       unsigned int dof;  // local index of an owned dof
       double       weight;
+
+      dealii::Tensor<1, dim> slope; // of the shape function, where points are looked up in the mesh
     };
+
+    /** Sums over the parts of each point; every slot has one contributor, so that they are the same on any number of processes. */
+    template <typename Factor>
+    std::vector<double> sum_parts(const Vector      &u,
+                                  const unsigned int n_components,
+                                  const unsigned int component,
+                                  const Factor      &factor) const;
 
     void locate_on_lattice(const Nodes<dim> &nodes, const std::vector<dealii::Point<dim>> &points);
     void locate_in_mesh(const dealii::DoFHandler<dim>         &dofs,

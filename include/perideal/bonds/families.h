@@ -210,7 +210,8 @@ namespace PeriDeal
     unsigned int                     n_factor_directions = 1; // 1: all alike
     bool                             factors_mirrored    = true;
     std::vector<FictitiousNode<dim>> outside;
-    typename Lattice<dim>::Index     corner, extent; // of the table of sites
+    const Domain<dim>               *voids = nullptr; // that bonds must not cross
+    typename Lattice<dim>::Index     corner, extent;  // of the table of sites
     std::vector<unsigned int>        node_of_site;
     std::unordered_map<std::size_t, std::vector<unsigned int>> outside_of_site;
     std::unique_ptr<Search>                                    search;

@@ -9,6 +9,10 @@
 
 namespace PeriDeal
 {
+  /** No bond of an exchange is active across a jump of the conductivity (the stiffness) by more than this factor: so layers stay exact. */
+  constexpr double largest_contrast = 1.5;
+
+
   /**
    * Conductivity of a bond between two nodes of conductivity a and b (not negative): the smaller
    * (Bobaru 2012, example 6), the mean (Tan 2020), or the harmonic mean 2ab/(a+b), which is

@@ -18,7 +18,7 @@ namespace PeriDeal
    * Vectors have the horizon-wide halo of the nodes.
    */
   template <int dim>
-  class BondOperator : public Operator
+  class BondOperator : public DiffusionOperator
   {
   public:
     /** Collective. Throws UserError, among others for isolated nodes, a storage that is not positive, a form that does not suit. */

@@ -98,9 +98,6 @@ namespace PeriDeal
   };
 
 
-  /** No bond of an exchange is active across a jump of the conductivity by more than this factor: so layers stay exact. */
-  constexpr double largest_contrast = 1.5;
-
   /** Of all nodes known here, ghosts included: which are hanging and have no bonds. Collective. */
   template <int dim>
   std::vector<bool> hanging_nodes(const Nodes<dim> &nodes);

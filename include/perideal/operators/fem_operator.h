@@ -34,7 +34,7 @@ namespace PeriDeal
    * Hanging nodes of a graded mesh follow from their neighbours: K is C^T K C, and their rows are those of unknowns that are not free.
    */
   template <int dim>
-  class FEMOperator : public Operator
+  class FEMOperator : public DiffusionOperator
   {
   public:
     /**

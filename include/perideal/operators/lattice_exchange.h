@@ -3,11 +3,10 @@
 
 #pragma once
 
-#include <perideal/bonds/bond_pieces.h>
 #include <perideal/operators/coupling.h>
+#include <perideal/operators/lattice_bonds.h>
 #include <perideal/scene/scene.h>
 
-#include <array>
 #include <vector>
 
 namespace PeriDeal
@@ -22,9 +21,7 @@ namespace PeriDeal
    * on linear fields. So a linear field conducts the same with and without bonds, for any set of them, and R_c is
    * positive semidefinite.
    *
-   * W_b = w(xi) V_i V_j kappa, kappa the smallest conductivity of the cells on the bond's way. A bond is active if both nodes are in the zone, its way
-   * lies within the body's cells of lattice size, and the conductivity on it varies by less than the factor 1.5. On a graded mesh hanging nodes and others on
-   * the side of a larger cell have no bonds.
+   * W_b = w(xi) V_i V_j kappa, kappa the smallest conductivity of the cells on the bond's way. Which bonds are active: LatticeBonds.
    */
   template <int dim>
   class LatticeExchange : public Coupling<dim>
@@ -55,53 +52,11 @@ namespace PeriDeal
   private:
     using Site = typename Lattice<dim>::Index;
 
-    /** What the lattice has at a site and in the cell whose lowest corner that is. */
-    struct SiteData
-    {
-      unsigned int node    = dealii::numbers::invalid_unsigned_int;
-      bool         in_zone = false, may_join = false; // now; at the end of the run
-      bool         cell   = false; // the body has that cell, and it has lattice size
-      double       volume = 0.;
-      double       lowest = 0., highest = 0.; // conductivity in the cell
-    };
+    void find_full_matrix();
 
-    /** A bond of the half family. */
-    struct Offset
-    {
-      Site                        site;
-      double                      weight; // w of unit conductivity
-      std::vector<BondPiece<dim>> pieces;
-    };
-
-    /** One piece of a bond within a cell, seen from the cell. */
-    struct Passage
-    {
-      unsigned int                     offset, piece;
-      Site                             start;  // of the bond, relative to the cell's lowest corner
-      typename BondPiece<dim>::Corners change; // over the square root of the length
-    };
-
-    void            find_offsets();
-    void            find_sites(const Scene<dim> &scene);
-    void            set_table_around(const std::vector<bool> &candidates);
-    void            find_cells(const Scene<dim> &scene);
-    void            find_full_matrix();
-    const SiteData *at(const Site &site) const;
-    SiteData       &own(const Site &site);
-    Site            site_of(const unsigned int node) const;
-    double          conductivity_on(const Offset &offset, const Site &start) const;
-
-    Families<dim>              bonds;
-    Zone<dim>                  zone;
-    double                     last; // time of the run
+    LatticeBonds<dim>          bonds;
     OperatorForm               form       = OperatorForm::automatic;
-    bool                       plain      = true; // no void, one conductivity, one cell size
     bool                       calibrated = true; // A is the unit matrix
-    Site                       corner{}, extent{};
-    std::vector<SiteData>      sites; // of the box around all nodes that may ever be in the zone
-    std::vector<Offset>        offsets;
-    std::vector<Passage>       passages;
-    dealii::FullMatrix<double> surplus; // M - Q[A], for unit conductivity
-    Site                       reach{};
+    dealii::FullMatrix<double> surplus;           // M - Q[A], for unit conductivity
   };
 } // namespace PeriDeal

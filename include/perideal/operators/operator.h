@@ -141,6 +141,18 @@ namespace PeriDeal
      */
     virtual void surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const = 0;
 
+    /** Unknowns at each node, interleaved. Not collective. */
+    virtual unsigned int n_components() const
+    {
+      return 1;
+    }
+
+    /** For multigrid: what K maps to nearly nothing away from prescribed unknowns, in their absence to zero. None: the constant. Collective. */
+    virtual std::vector<Vector> near_null_space() const
+    {
+      return {};
+    }
+
     /** The surrogate is K itself, so that multigrid on it needs no further smoothing. Not collective. */
     virtual bool surrogate_is_exact() const = 0;
 
@@ -171,9 +183,6 @@ namespace PeriDeal
      */
     virtual void take_material_at(const Vector &) {}
 
-    /** Heat through each side and in the body; u must have been through distribute(u, t). @p steady leaves out storage. */
-    virtual Balance balance(const Vector &u, const double t, const bool steady) const = 0;
-
     /** Coordinates of an owned unknown for messages, as `(x, y)`. Not collective. */
     virtual std::string place_of(const unsigned int local_index) const = 0;
 
@@ -193,5 +202,14 @@ namespace PeriDeal
 
   protected:
     mutable unsigned long long applications = 0;
+  };
+
+
+  /** A model of diffusion: u is a temperature, a wetness or a potential, and heat, moisture or charge is conserved. */
+  class DiffusionOperator : public Operator
+  {
+  public:
+    /** Heat through each side and in the body; u must have been through distribute(u, t). @p steady leaves out storage. */
+    virtual Balance balance(const Vector &u, const double t, const bool steady) const = 0;
   };
 } // namespace PeriDeal

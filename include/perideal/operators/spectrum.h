@@ -14,11 +14,14 @@ namespace PeriDeal
    * value plus the larger of its residual and 0.4 %), else power iterations with a margin of 5 %. Rounded up to three digits, so that it does not depend on
    * the number of processes, and never above the Gershgorin bound. The start vector is made from positions by @p fill. Iterations end early once the
    * bound has come down to @p enough. Collective.
+   *
+   * @param metric symmetric K only: the diagonal that stands for C, if another is meant
    */
   double sharp_bound(const Operator                            &op,
                      const double                               gershgorin,
                      const std::function<void(Vector &vector)> &fill,
-                     const double                               enough = 0.);
+                     const double                               enough = 0.,
+                     const Vector                              *metric = nullptr);
 
   /** The number rounded up to three significant digits. */
   double round_up(const double x);

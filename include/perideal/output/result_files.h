@@ -19,24 +19,28 @@ namespace PeriDeal
                          const std::string &scene_file,
                          const MPI_Comm     communicator);
 
-  /** Write a text file whole or not at all (new file, then rename). Call it on one process. */
+  /** Write a file whole or not at all (new file, then rename). Call it on one process. */
   void write_file(const std::string &name, const std::string &text);
 
   /**
-   * The rows `time,model,x,y,z,value` of probes.csv and line.csv. Rows are collected and written by rank 0 at save(); 15 significant
+   * The rows `time,model,x,y,z,value` of probes.csv and line.csv, with other columns for other physics. Rows are collected and written by rank 0 at save(); 15 significant
    * digits, coordinates as given in the scene.
    */
   class PointTable
   {
   public:
-    PointTable(const std::vector<std::vector<double>> &points, const unsigned int dim);
+    PointTable(const std::vector<std::vector<double>> &points,
+               const unsigned int                      dim,
+               const std::vector<std::string>         &columns = {"value"});
 
+    /** @param values those of all columns of the first point, then of the next */
     void add(const double time, const std::string &model, const std::vector<double> &values);
 
     std::string text() const;
 
   private:
     std::vector<std::vector<double>> points;
+    std::size_t                      n_columns;
     std::string                      rows, header;
   };
 

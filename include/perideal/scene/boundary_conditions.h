@@ -6,7 +6,9 @@
 #include <deal.II/base/types.h>
 
 #include <perideal/scene/expression.h>
+#include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
+#include <perideal/scene/vector_conditions.h>
 
 #include <string>
 #include <vector>
@@ -33,7 +35,7 @@ namespace PeriDeal
 
   /**
    * Section `Boundary conditions`. The lists keep the user's order: where two sides with values
-   * meet, the one named first holds. A side named nowhere is insulated.
+   * meet, the one named first holds. A side named nowhere is insulated, or with elasticity free.
    */
   template <int dim>
   class BoundaryConditions : public SceneSection
@@ -41,24 +43,31 @@ namespace PeriDeal
   public:
     BoundaryConditions();
 
-    std::vector<SideCondition>              dirichlet, flux, convection;
-    std::vector<dealii::types::boundary_id> symmetry;
+    std::vector<SideCondition> dirichlet, flux, convection;
+    std::vector<dealii::types::boundary_id>
+      symmetry; // elasticity: no displacement normal to the side
+
+    std::vector<VectorCondition> displacement, traction; // elasticity only
+    double                       traction_layer = -1.;   // length; negative: not given
 
     /** The condition of the given list on a side, or nullptr. */
     static const SideCondition *find(const std::vector<SideCondition> &list,
                                      const dealii::types::boundary_id  id);
 
-    /** Some value, flux or ambient value changes with time. */
+    /** Some value, flux, ambient value, displacement or traction changes with time. */
     bool depends_on_time() const;
 
     /**
      * @param box_sides whether sides have the names of a box; else numbers (mesh boundary ids)
      * only.
      * @param hole      whether there is a side `hole` (boundary id 6).
+     * @param physics   elasticity has displacements and tractions, all others have values and fluxes.
      * Throws UserError: unknown sides, sides named twice, conditions that contradict each other on
-     * a side, wrong formulas.
+     * a side, wrong formulas, conditions of another physics.
      */
-    void parse(const bool box_sides, const bool hole = false);
+    void parse(const bool    box_sides,
+               const bool    hole    = false,
+               const Physics physics = Physics::heat);
 
   private:
     dealii::types::boundary_id side_id(const std::string &name,
@@ -69,6 +78,18 @@ namespace PeriDeal
     std::vector<SideCondition> parse_list(const std::string &entry,
                                           const bool         box_sides,
                                           const bool         hole) const;
+
+    void parse_symmetry(const bool box_sides, const bool hole);
+
+    std::vector<VectorCondition> parse_vectors(const std::string &entry,
+                                               const bool         box_sides,
+                                               const bool         hole) const;
+
+    void refuse_other_physics(const Physics physics) const;
+
+    /** Contradictions between values, fluxes and symmetry; and between displacements, tractions and symmetry. */
+    void check_scalar_conditions() const;
+    void check_vector_conditions() const;
 
     /** An error if the list of an entry names a side that another entry names, too. */
     void refuse_both(const std::string                &entry,

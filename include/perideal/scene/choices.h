@@ -82,10 +82,46 @@ namespace PeriDeal
     stored
   };
 
+  /** Bonds whose way leads through a hole or an empty part of an image. */
+  enum class BondsAcrossVoids
+  {
+    automatic, // cut with exchange, else kept
+    keep,
+    cut
+  };
+
   enum class InterfaceRule
   {
     minimum,
     arithmetic,
     harmonic
+  };
+
+  enum class PlaneState
+  {
+    stress,
+    strain
+  };
+
+  /** Strains of the undeformed or of the deformed bonds. */
+  enum class Kinematics
+  {
+    linear,
+    full
+  };
+
+  enum class ElasticModel
+  {
+    state_based,
+    bond_based
+  };
+
+  enum class ElasticSolver
+  {
+    linear,
+    conjugate_gradients,
+    dynamic_relaxation,
+    adaptive_dynamic_relaxation,
+    dynamics
   };
 } // namespace PeriDeal

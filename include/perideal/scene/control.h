@@ -5,6 +5,7 @@
 
 #include <deal.II/base/point.h>
 
+#include <perideal/scene/choices.h>
 #include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 
@@ -22,7 +23,7 @@ namespace PeriDeal
     bool        steady   = false;
     double      end_time = 1.;
     std::string stepper =
-      "auto"; // auto | euler | rk4 | rkc2 | chebyshev | crank nicolson | bdf2 | sdirk2
+      "auto"; // auto | euler | rk4 | rkc2 | chebyshev | crank nicolson | bdf2 | sdirk2 | verlet | newmark
     double time_step = -1.; // negative: auto
     double tolerance = 1e-4;
 
@@ -38,7 +39,11 @@ namespace PeriDeal
 
     double       tolerance      = 1e-10;
     unsigned int max_iterations = 1000;
-    unsigned int direct_up_to   = 2000; // unknowns of a level of multigrid
+    unsigned int direct_up_to   = 2000;  // unknowns of a level of multigrid
+    bool         limit_given    = false; // max_iterations
+
+    /** Of an equilibrium: max_iterations, or what the methods with cheap iterations need. */
+    unsigned int most_iterations(const ElasticSolver elastic_solver) const;
 
     void parse();
   };

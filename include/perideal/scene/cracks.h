@@ -8,6 +8,7 @@
 #include <perideal/scene/choices.h>
 #include <perideal/scene/crack_tips.h>
 #include <perideal/scene/expression.h>
+#include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 
 #include <string>
@@ -15,12 +16,13 @@
 
 namespace PeriDeal
 {
-  /** What FEM and the mesh do with a crack (entry `Mesh` of section `Cracks`). */
+  /** What FEM and the mesh do with a crack (entry `Mesh` of section `Cracks`). The scene resolves `automatic`. */
   enum class CrackMesh
   {
     pairs,
     faces,
-    removed
+    removed,
+    automatic
   };
 
   /** Entry `Bonds through tips` of section `Cracks`. */
@@ -56,7 +58,7 @@ namespace PeriDeal
      * Throws UserError: wrong points, no length or area, not planar, cracks of another dimension,
      * contradicting entries, tips twice or not there or going back, polygons that do not grow in their plane.
      */
-    void parse();
+    void parse(const Physics physics = Physics::heat);
 
     /** Cracks or their transmission change with time. */
     bool change() const;

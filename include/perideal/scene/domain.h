@@ -6,19 +6,23 @@
 #include <deal.II/base/point.h>
 
 #include <perideal/scene/expression.h>
+#include <perideal/scene/phase_map.h>
 #include <perideal/scene/section.h>
 
 #include <array>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace PeriDeal
 {
-  /** The body: a box of equal cells, such a box with a hole, or a mesh from a file. */
+  /** The body: a box of equal cells, such a box with a hole, a mesh from a file, or the pixels of an image. */
   enum class Shape
   {
     box,
     plate_with_hole,
-    mesh_file
+    mesh_file,
+    image
   };
 
   /** A square hole has the radius as half its edge and is turned by the hole angle. */
@@ -26,6 +30,23 @@ namespace PeriDeal
   {
     circle,
     square
+  };
+
+  /** What happens to parts of an image that no side holds. */
+  enum class IslandRule
+  {
+    error,
+    remove,
+    pin
+  };
+
+  /** A component of the displacement that is held at 0 to keep an island where it is: at a mesh vertex, or at a cell centre for nodes there. */
+  template <int dim>
+  struct Pin
+  {
+    dealii::Point<dim> position;
+    unsigned int       component;
+    bool               at_center;
   };
 
   /**
@@ -58,6 +79,15 @@ namespace PeriDeal
     Expression   fine;           // they stay fine where greater than 0
     bool         fine_by_formula = false; // else in the zone of section `Coupling`
 
+    std::string               image_file;
+    std::shared_ptr<PhaseMap> image; // of `Shape = image`, else null
+    IslandRule                islands = IslandRule::error;
+    std::vector<Pin<dim>>     pins;  // of islands; set by Scene
+    std::vector<std::string>  notes; // on the image, for the user
+
+    /** Images are looked for here, too, and read by the processes of this communicator together. */
+    std::string scene_folder;
+    MPI_Comm    communicator = MPI_COMM_SELF;
 
     /** Box and plate with a hole: edge length of a lattice cell in each direction. */
     dealii::Tensor<1, dim> spacing() const;
@@ -85,6 +115,15 @@ namespace PeriDeal
     /** Plate with a hole: whether the point lies in the hole. A cell whose centre does so does not exist. */
     bool in_hole(const dealii::Point<dim> &p) const;
 
+    /** Whether a cell of the lattice with this centre exists: not in a hole, nor an empty one of an image. */
+    bool has_cell_at(const dealii::Point<dim> &center) const;
+
+    /** Whether the straight way between two points of the lattice leads through cells that do not exist. Along edges of cells one side has to exist. */
+    bool leaves_body(const dealii::Point<dim> &a, const dealii::Point<dim> &b) const;
+
+    /** Whether cells of the lattice are missing. */
+    bool has_voids() const;
+
   private:
     /** Cells or Node spacing. */
     void parse_cells();
@@ -93,6 +132,11 @@ namespace PeriDeal
     void parse_fine_part();
 
     void parse_hole();
+
+    void declare_image();
+    void parse_image();
+    void refuse_image_entries() const;
+    void set_size_of_image();
 
     bool own_mesh = false;
   };

@@ -5,15 +5,20 @@
 
 #include <perideal/scene/choices.h>
 #include <perideal/scene/expression.h>
+#include <perideal/scene/moduli.h>
 #include <perideal/scene/phases.h>
 #include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 
+#include <array>
+#include <optional>
+
 namespace PeriDeal
 {
   /**
-   * Section `Material`: conductivity and storage (Density x Heat capacity) as expressions of x, y,
-   * z and the temperature T, and in its subsection `Phases` those of parts of the body.
+   * Section `Material`: what diffusion takes, conductivity and storage (Density x Heat capacity) as expressions of x, y, z and the
+   * temperature T; what elasticity takes, two moduli, density, thermal expansion and strength as expressions of x, y, z; and in its
+   * subsection `Phases` those of parts of the body. Properties that a physics does not take are read and not used.
    */
   class Material : public SceneSection
   {
@@ -25,6 +30,10 @@ namespace PeriDeal
     InterfaceRule    interface_rule = InterfaceRule::arithmetic;
     Phases           phases;
 
+    MaterialProperty                thermal_expansion; // strain per temperature
+    std::optional<MaterialProperty> fracture_energy;   // per area; not both
+    std::optional<MaterialProperty> critical_stretch;
+
     bool uniform_conductivity() const;
 
     /** rho c at a point. */
@@ -35,8 +44,44 @@ namespace PeriDeal
     bool storage_depends_on_temperature() const;
     bool depends_on_temperature() const;
 
-    /** The storage may be 0 with electricity only, which is then steady. */
-    void parse(const Physics physics = Physics::heat);
+    /**
+     * Elasticity only. Throws the UserError of formulas whose values are out of range at the point, or defers it
+     * (report_formula_error()).
+     */
+    template <int dim>
+    Moduli moduli(const dealii::Point<dim> &p) const;
+
+    /** The same moduli in the whole body, given by numbers. */
+    bool uniform_moduli() const;
+
+    /**
+     * The storage may be 0 with electricity only, which is then steady. With elasticity exactly two moduli are needed, in one dimension
+     * the Young modulus alone will do.
+     *
+     * @param plane of elasticity in two dimensions: in plane stress the Poisson ratio may be 1/2
+     * @param image whose phases are phases of the material, or null
+     */
+    void parse(const Physics                          physics = Physics::heat,
+               const unsigned int                     dim     = 2,
+               const PlaneState                       plane   = PlaneState::stress,
+               const std::shared_ptr<const PhaseMap> &image   = nullptr);
+
+  private:
+    void declare_elasticity();
+
+    Expression read(const std::string &entry, const Physics physics) const;
+
+    std::optional<MaterialProperty> optional_property(const std::string &entry,
+                                                      const Physics      physics) const;
+
+    void parse_moduli(const unsigned int dim, const PlaneState plane);
+
+    /** What is wrong with two numbers, or nothing. */
+    std::string fault_of_moduli(const double value_a, const double value_b) const;
+
+    std::array<Modulus, 2>          given_moduli{{Modulus::bulk, Modulus::shear}};
+    std::array<MaterialProperty, 2> modulus_properties;
+    bool                            may_be_incompressible = false;
   };
 
 
@@ -47,7 +92,11 @@ namespace PeriDeal
     InitialAndSource();
 
     Expression initial_value, source;
+    std::vector<Expression>
+      body_force; // elasticity: one formula of x, y, z, t per component, or none
+    std::vector<Expression> initial_displacement,
+      initial_velocity; // of x, y, z per component, or none
 
-    void parse();
+    void parse(const Physics physics = Physics::heat, const unsigned int dim = 2);
   };
 } // namespace PeriDeal

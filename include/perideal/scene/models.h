@@ -29,6 +29,7 @@ namespace PeriDeal
     FluxTreatment       flux_treatment       = FluxTreatment::natural;
     SurfaceCorrection   surface_correction   = SurfaceCorrection::none;
     CorrectionDirection correction_direction = CorrectionDirection::both;
+    BondsAcrossVoids    across_voids         = BondsAcrossVoids::automatic;
     OperatorForm form = OperatorForm::automatic; // entry `Operator form` = auto | lattice | stored
 
     /** Throws UserError for values out of range and contradicting entries. */

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <perideal/scene/expression.h>
+#include <perideal/scene/phase_map.h>
+#include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 
 #include <functional>
@@ -66,13 +68,17 @@ namespace PeriDeal
   };
 
 
-  /** The named regions of a scene. They must not overlap; where none is, the entries of section `Material` hold. */
+  /**
+   * The named regions of a scene. They must not overlap; where none is, the phases of the image hold, and where there are none either, the entries of section
+   * `Material`.
+   */
   struct Regions
   {
-    std::vector<std::string>       names;
-    std::vector<Region>            regions;
-    std::string                    where;
-    std::shared_ptr<MeshMaterials> mesh; // shared by the regions given by material ids
+    std::vector<std::string>        names;
+    std::vector<Region>             regions;
+    std::string                     where;
+    std::shared_ptr<MeshMaterials>  mesh;  // shared by the regions given by material ids
+    std::shared_ptr<const PhaseMap> image; // its phases follow those of the regions; null: none
 
     /** Some region is given by a material id. */
     bool need_mesh() const;
@@ -106,11 +112,34 @@ namespace PeriDeal
     /** T is in some formula. */
     bool depends_on_temperature() const;
 
+    /** Formula of a region, or elsewhere (-1). */
+    const Expression &formula(const int region) const;
+
   private:
     Expression                             elsewhere{1.};
     std::shared_ptr<const Regions>         regions; // null: one formula everywhere
     std::vector<std::optional<Expression>> of_regions;
   };
+
+
+  /** An entry of section `Material` that the phases can have, too, and what its formulas may be. */
+  struct MaterialEntry
+  {
+    std::string name, unit;
+    bool        diffusion, elasticity; // who takes it
+    bool        with_temperature;      // T is a variable
+    bool        positive;              // else of any sign
+  };
+
+  const std::vector<MaterialEntry> &material_entries();
+
+  const MaterialEntry &material_entry(const std::string &name);
+
+  /** A formula of such an entry. Throws UserError if it depends on t, or on T where it may not. */
+  Expression material_formula(const std::string   &text,
+                              const MaterialEntry &entry,
+                              const bool           elastic,
+                              const std::string   &where);
 
 
   /** Section `Material/Phases`. */
@@ -119,11 +148,19 @@ namespace PeriDeal
   public:
     Phases();
 
-    /** Throws UserError: names twice, regions without a material, materials of regions that do not exist, wrong formulas. */
-    void parse();
+    /**
+     * Throws UserError: names twice, regions without a material that the physics takes, materials of regions that do not exist, wrong
+     * formulas.
+     * @param image whose phases are phases of the material, or null
+     */
+    void parse(const Physics                          physics = Physics::heat,
+               const std::shared_ptr<const PhaseMap> &image   = nullptr);
 
     /** The property of that name, with the value elsewhere from section `Material`. */
     MaterialProperty property(const std::string &entry, const Expression &elsewhere) const;
+
+    /** Some phase has its own value of that entry. */
+    bool gives(const std::string &entry) const;
 
     const Regions &all() const;
 
@@ -131,5 +168,6 @@ namespace PeriDeal
     std::vector<std::optional<Expression>> read(const std::string &entry) const;
 
     std::shared_ptr<const Regions> regions;
+    bool                           elastic = false;
   };
 } // namespace PeriDeal

@@ -9,19 +9,22 @@
 namespace PeriDeal
 {
   /**
-   * What diffuses. All obey rho c du/dt = div(kappa grad u) + source with
+   * What a scene computes. All obey rho c du/dt = div(kappa grad u) + source with
    *
    * | | u | kappa | rho c | flux |
    * |---|---|---|---|---|
    * | heat | temperature | conductivity | density x heat capacity | heat flux |
    * | moisture | wetness, concentration over saturated concentration (Diyaroglu 2017, section II.B) | diffusivity | 1 | wetness flux |
    * | electricity | potential | electrical conductivity | capacitance; 0: steady | current density |
+   *
+   * but elasticity, whose unknown is the displacement, a vector: div sigma + body force = rho d^2u/dt^2.
    */
   enum class Physics
   {
     heat,
     moisture,
-    electricity
+    electricity,
+    elasticity
   };
 
 
@@ -31,7 +34,7 @@ namespace PeriDeal
     std::string physics;  // as in scenes
     std::string field;    // of the unknown
     std::string flux;     // field of the flux
-    std::string content;  // what the body holds: heat, sum of C_sat w V, charge
+    std::string content;  // what the body holds: heat, sum of C_sat w V, charge, strain energy
     std::string flow;     // what passes through sides
     std::string quantity; // what is conserved
   };

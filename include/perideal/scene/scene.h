@@ -8,6 +8,7 @@
 #include <perideal/scene/coupling_control.h>
 #include <perideal/scene/crack_history.h>
 #include <perideal/scene/domain.h>
+#include <perideal/scene/elasticity_control.h>
 #include <perideal/scene/material.h>
 #include <perideal/scene/models.h>
 #include <perideal/scene/physics.h>
@@ -69,6 +70,7 @@ namespace PeriDeal
     Cracks<dim>             cracks;
     Peridynamics            peridynamics;
     CouplingControl         coupling;
+    ElasticityControl       elasticity;
     FiniteElements          finite_elements;
     TimeControl             time;
     SolverControlParameters solver;
@@ -101,6 +103,10 @@ namespace PeriDeal
     void check_adaptive_zone() const;
     void check_coupling() const;
     void check_coarsening() const;
+    void check_image();
+
+    /** What elasticity needs of the other sections. */
+    void check_elasticity() const;
   };
 
 
@@ -110,6 +116,7 @@ namespace PeriDeal
   struct SceneText
   {
     std::string file_name, text;
+    MPI_Comm    communicator = MPI_COMM_SELF; // of those who read it, and its image, together
   };
 
   /**

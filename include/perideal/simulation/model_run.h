@@ -45,7 +45,7 @@ namespace PeriDeal
     /** Volume of an owned peridynamic node. Not for finite elements alone. */
     virtual double volume_of(const unsigned int node) const = 0;
 
-    virtual Operator &op() const = 0;
+    virtual DiffusionOperator &op() const = 0;
 
     /** As Operator::update(). */
     virtual bool update(const double t) = 0;

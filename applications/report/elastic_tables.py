@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""The tables of the report that only elastic bodies have."""
+
+from html import escape
+
+import numpy as np
+
+from curves import probe_name, probe_points
+from style import minus, name
+from tables import cell, entry, table
+
+FEM, PD = "finite elements", "peridynamics"
+MODULI = ("Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio")
+OTHERS = ("Density", "Thermal expansion", "Fracture energy", "Critical stretch")
+
+
+def number(text):
+    """A number, or None for a formula."""
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        return None
+
+
+def all_moduli(given):
+    """The four moduli that two numbers make; {} unless exactly two are given, as numbers."""
+    bulk, shear, young, poisson = (given.get(m) for m in MODULI)
+    if sum(v is not None for v in (bulk, shear, young, poisson)) != 2:
+        return {}
+    try:
+        if shear is None:
+            if bulk is None:
+                shear = young / (2 * (1 + poisson))
+            elif young is not None:
+                shear = 3 * bulk * young / (9 * bulk - young)
+            else:
+                shear = 3 * bulk * (1 - 2 * poisson) / (2 * (1 + poisson))
+        if young is None:
+            young = 2 * shear * (1 + poisson) if poisson is not None else \
+                9 * bulk * shear / (3 * bulk + shear)
+        if poisson is None:
+            poisson = young / (2 * shear) - 1
+        if bulk is None:
+            bulk = young / (3 * (1 - 2 * poisson)) if poisson != 0.5 else float("inf")
+    except ZeroDivisionError:
+        return {}
+    return {m: float(f"{v:.12g}") for m, v in zip(MODULI, (bulk, shear, young, poisson))}
+
+
+def of_phases(text):
+    """{phase: value} of an entry such as `core: 0.8 ; rim: 2`; separators in parentheses are not."""
+    found, depth, part = {}, 0, ""
+    for letter in text + ";":
+        depth += {"(": 1, ")": -1}.get(letter, 0)
+        if letter == ";" and depth == 0:
+            if ":" in part:
+                phase, value = part.split(":", 1)
+                found[phase.strip()] = value.strip()
+            part = ""
+        else:
+            part += letter
+    return found
+
+
+def materials(run):
+    """[(phase, where, {entry: text})]; the first is that of all that is in no phase."""
+    def texts(section, names):
+        return {n: run.scene_entry(section, n) for n in names}
+
+    base = texts("Material", MODULI + OTHERS)
+    regions = of_phases(run.scene_entry("Material/Phases", "Regions"))
+    special = {n: of_phases(t) for n, t in texts("Material/Phases", MODULI + OTHERS).items()}
+    rows = [("", "", base)]
+    for phase, where in regions.items():
+        rows.append((phase, where, {n: special[n].get(phase, base[n]) for n in base}))
+    return rows
+
+
+def material_table(run):
+    """Moduli, density and what else is given, of each phase; those that follow from two are italic."""
+    rows = materials(run)
+    if not any(values.get(m) for _, _, values in rows for m in MODULI):
+        return ""
+    shown, columns = [], []
+    for phase, where, values in rows:
+        given = {m: number(values[m]) for m in MODULI if values[m]}
+        derived = all_moduli(given) if all(v is not None for v in given.values()) else {}
+        entries = []
+        for title in MODULI + OTHERS:
+            text, value = values[title], number(values[title])
+            if text:
+                entries.append(cell(value, 6) if value is not None else escape(minus(text)))
+            else:
+                entries.append(f"<em>{cell(derived[title], 6)}</em>" if title in derived else "")
+        columns.append(entries)
+        shown.append(escape(phase) if phase else "all else" if len(rows) > 1 else "Value")
+    lines = []
+    for i, title in enumerate(MODULI + OTHERS):
+        trivial = title == "Density" and all(c[i] == "1" for c in columns) or \
+            title == "Thermal expansion" and all(c[i] == "0" for c in columns)
+        if any(c[i] for c in columns) and not trivial:
+            lines.append([title] + [c[i] for c in columns])
+    if len(rows) > 1:
+        lines.append(["Where"] + ["" if not w else escape(minus(w)) for _, w, _ in rows])
+    return table(["Material"] + shown, lines, "numbers")
+
+
+def place(point):
+    """(x, y) of a node."""
+    return probe_name(np.where(np.abs(point) < 1e-12, 0.0, point))
+
+
+def extreme(run, index, model, field, which):
+    """(value, node) of the largest or smallest value of a field, or None."""
+    if run.field_file(index, model) is None:
+        return None
+    values = run.field(index, model, field.name, required=False)
+    if values is None or not np.isfinite(values).any():
+        return None
+    at = int((np.nanargmax if which == "largest" else np.nanargmin)(values))
+    mesh = run.mesh(index, model)
+    point = mesh.nodes[at]
+    if model == PD and run.at_cell_centers():
+        point = mesh.nodes[mesh.cells[np.flatnonzero((mesh.cells == at).any(axis=1))[0]]].mean(0)
+    return float(values[at]), point
+
+
+def extremes_table(run, index, fields):
+    """Largest and smallest values of fields at a written time, and where they are."""
+    rows = []
+    for field in fields:
+        for which in ("largest",) if field.name in ("displacement_magnitude", "von_mises",
+                                                    "damage") else ("largest", "smallest"):
+            found = [extreme(run, index, m, field, which) for m in run.models]
+            if any(f is not None for f in found):
+                rows.append([escape(f"{name(which)} {field.label(field.text)}")] + [
+                    "–" if f is None else f"{cell(f[0], 6)} at {escape(place(f[1]))}"
+                    for f in found])
+    return table([""] + [name(m) for m in run.models], rows, "numbers") if rows else ""
+
+
+def probe_table(run, words, at_most=90):
+    """All columns of probes.csv: (html, whether only the last time is in it)."""
+    columns = run.probe_columns
+    if not columns:
+        return "", False
+    models, points = run.probes.models(), probe_points(run.probes)
+    times = run.probes.times()
+    both = FEM in models and PD in models
+    cut = len(points) * len(times) * len(columns) > at_most
+    steady, rows = run.get("steady", default=False), []
+    for k, point in enumerate(points):
+        for time in times[-1:] if cut else times:
+            when = "" if steady else f", {words.at_time(time)}"
+            rows.append([escape(f"Probe {probe_name(point)}{when}")])
+            for column, values in columns.items():
+                found = {m: None if values.at(m, time) is None else
+                         float(values.at(m, time)[1][k]) for m in models}
+                gap = [found[PD] - found[FEM]] if both and None not in found.values() else \
+                    [None] if both else []
+                title = column.replace("von_mises", "von Mises").replace("_", " ")
+                rows.append([escape(words.column(column).label(title))]
+                            + [cell(found[m], 6) for m in models] + [cell(g, 3) for g in gap])
+    header = [""] + [name(m) for m in models] + ["PD − FEM"] * both
+    return table(header, rows, "numbers"), cut and len(times) > 1
+
+
+def forces(run, model):
+    """{side: components} of a model."""
+    found = entry("boundary force")(run.summary["models"][model]) or {}
+    return {side: (list(f) if isinstance(f, (list, tuple)) else [f]) for side, f in found.items()}
+
+
+def force_table(run):
+    """Forces on the sides, the body's own, and their sum."""
+    of_model = {m: forces(run, m) for m in run.models}
+    sides = list(dict.fromkeys(s for f in of_model.values() for s in f))
+    if not sides:
+        return ""
+    conditions, rows = run.sides(), []
+    axes = "xyz"[:run.dimension]
+    for side in sides:
+        for d, axis in enumerate(axes):
+            values = [of_model[m][side][d] if d < len(of_model[m].get(side, ())) else None
+                      for m in run.models]
+            rows.append([f"{escape(side)}, in {axis}",
+                         escape(minus(conditions.get(side, ""))) if d == 0 else ""]
+                        + [cell(v, 6) for v in values])
+    body = {axis: {m: v for m, v in last_totals(run, f"body force in {axis}").items()}
+            for axis in axes}
+    if any(v for of_axis in body.values() for v in of_axis.values()):
+        rows += [[f"body force, in {axis}", ""] + [cell(body[axis].get(m), 6) for m in run.models]
+                 for axis in axes]
+    for d, axis in enumerate(axes):
+        sums = [sum(f[d] for f in of_model[m].values() if d < len(f)) + body[axis].get(m, 0.0)
+                for m in run.models]
+        rows.append([f"<strong>Sum in {axis}</strong>", ""]
+                    + [f"<strong>{cell(v, 6)}</strong>" for v in sums])
+    return table(["Side", "Condition"] + [name(m) for m in run.models], rows,
+                 "numbers second-text")
+
+
+def last_totals(run, quantity):
+    """{model: last value} of a quantity of totals.csv."""
+    return {m: max(series)[1] for m, series in run.totals.get(quantity, {}).items()}
+
+
+ELSEWHERE = ("force on ", "body force in ", "throughput", "imbalance")
+
+
+def energy_table(run):
+    """Energies, mean stress and all other totals at the end that no other table has."""
+    rows = []
+    for quantity in run.totals:
+        if not quantity.startswith(ELSEWHERE):
+            values = last_totals(run, quantity)
+            rows.append([escape(name(quantity))] + [cell(values.get(m), 6) for m in run.models])
+    stress = [entry("mean stress", "von mises")(run.summary["models"][m]) for m in run.models]
+    if any(s is not None for s in stress):
+        rows.append(["Von Mises stress of the mean stress"] + [cell(s, 6) for s in stress])
+    if not rows:
+        return ""
+    first = "" if run.get("steady", default=False) else "At the end"
+    return table([first] + [name(m) for m in run.models], rows, "numbers")
+
+
+def flat(values, before=""):
+    """{"mean": 1} of {"mean": 1}, {"von mises mean": 1} of {"von mises": {"mean": 1}}."""
+    found = {}
+    for key, value in values.items():
+        title = f"{before} {key}".strip()
+        if isinstance(value, dict):
+            found.update(flat(value, title))
+        elif isinstance(value, (int, float)) or value is None:
+            found[title] = value
+    return found
+
+
+def phases_of(model):
+    """{phase: {statistic: number}} of a model's entry, however it is nested."""
+    found = model.get("phases")
+    if isinstance(found, list):
+        found = {str(p.get("name", i)): p for i, p in enumerate(found) if isinstance(p, dict)}
+    if not isinstance(found, dict):
+        return {}
+    return {phase: flat(values) for phase, values in found.items() if isinstance(values, dict)}
+
+
+def phase_table(run):
+    """Statistics of each phase, the models below one another."""
+    of_model = {m: phases_of(run.summary["models"][m]) for m in run.models}
+    phases = list(dict.fromkeys(p for found in of_model.values() for p in found))
+    titles = list(dict.fromkeys(t for found in of_model.values() for values in found.values()
+                                for t in values))
+    if not titles:
+        return ""
+    rows = []
+    for phase in phases:
+        rows.append([escape(phase)])
+        rows += [[escape(name(m))] + [cell(found[phase].get(t), 6) for t in titles]
+                 for m, found in of_model.items() if phase in found]
+    return table(["Phase"] + [escape(name(t)) for t in titles], rows, "numbers")

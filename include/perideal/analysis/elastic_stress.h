@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <perideal/scene/scene.h>
+
+namespace PeriDeal
+{
+  /** The stress in three dimensions: with that out of the plane in plane strain, and zeros in plane stress and in a bar. */
+  template <int dim>
+  dealii::SymmetricTensor<2, 3> full_stress(const dealii::SymmetricTensor<2, dim> &stress,
+                                            const Scene<dim>                      &scene,
+                                            const dealii::Point<dim>              &p);
+
+  /** The same of a strain, by Hooke's law with the material of a point; thermal strain is taken off. */
+  template <int dim>
+  dealii::SymmetricTensor<2, 3> stress_of_strain(const dealii::SymmetricTensor<2, dim> &strain,
+                                                 const Scene<dim>                      &scene,
+                                                 const dealii::Point<dim>              &p);
+} // namespace PeriDeal

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/base/types.h>
+#include <perideal/operators/elastic_operator.h>
+#include <perideal/scene/scene.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** A node of this process on a side of the body. A node on an edge is on two. */
+  template <int dim>
+  struct NodeOnSide
+  {
+    unsigned int               node; // local number
+    dealii::types::boundary_id side;
+    dealii::Point<dim>         position;
+  };
+
+
+  /**
+   * Which components of the displacement are not free: those that `Displacement` names, and the normal one on sides of `Symmetry`. Where sides meet, each
+   * component is that of the side named first; symmetry comes last. Unknowns are interleaved (ElasticOperator).
+   */
+  template <int dim>
+  class DisplacementConditions
+  {
+  public:
+    /** Collective. Throws UserError for a side of symmetry that is not normal to an axis, and for sides without nodes. */
+    DisplacementConditions(const std::vector<NodeOnSide<dim>> &nodes,
+                           const Scene<dim>                   &scene,
+                           const MPI_Comm                      communicator);
+
+    /** Hold the pins of the scene's islands. @param positions of this process's own nodes; @param at_centers which pins are meant. Not collective. */
+    void pin(const std::vector<dealii::Point<dim>> &positions,
+             const Scene<dim>                      &scene,
+             const bool                             at_centers);
+
+    /** Set the prescribed values of time t. */
+    void distribute(Vector &u, const double t) const;
+
+    /** Set what is not free to a value. */
+    void mask(Vector &y, const double value = 0.) const;
+
+    bool depends_on_time() const;
+
+    /** Add the components of a vector that belong to prescribed unknowns to the force of their side. Not collective. */
+    void add_reactions(const Vector                                                 &v,
+                       std::map<dealii::types::boundary_id, dealii::Tensor<1, dim>> &forces) const;
+
+  private:
+    struct Prescribed
+    {
+      unsigned int               unknown;
+      dealii::types::boundary_id side;
+      const Expression          *value; // null: 0
+      dealii::Point<dim>         position;
+    };
+
+    std::vector<Prescribed> prescribed; // in the order of unknowns
+    bool                    varies = false;
+  };
+
+
+  /**
+   * The forces of all processes by the names of the sides: of those with displacements, symmetry or tractions. What belongs to no side
+   * (dealii::numbers::internal_face_boundary_id) is the body force. Collective.
+   */
+  template <int dim>
+  ForceBalance gather_forces(
+    const std::map<dealii::types::boundary_id, dealii::Tensor<1, dim>> &forces,
+    const Scene<dim>                                                   &scene,
+    const MPI_Comm                                                      communicator);
+} // namespace PeriDeal

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/operator.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** The forces on a body at rest, each with one component for each direction (N; in 2D per unit thickness). */
+  struct ForceBalance
+  {
+    std::map<std::string, std::vector<double>> sides; // reactions and tractions, by the side's name
+    std::vector<double>                        body;  // body forces
+
+    /** Length of the sum of all. */
+    double imbalance() const;
+
+    /** Half the sum of the lengths of all: what passes through the body. */
+    double throughput() const;
+  };
+
+
+  /**
+   * A body of linear elastic material: M u'' = f(t) - K u, u the displacement. Component c of node i is the unknown dim i + c. K is symmetric and positive
+   * semidefinite, its null space the rigid motions of the body and of parts that nothing holds together. C of the interface is the lumped mass M.
+   *
+   * Where nonlinear(), residual() is that of the deformed body, and K of apply() and multiply() its tangent at the last linearize(), at first that of the
+   * undeformed body.
+   */
+  class ElasticOperator : public Operator
+  {
+  public:
+    /** Reactions, tractions and body forces at a state of rest; u must have been through distribute(u, t). Collective. */
+    virtual ForceBalance forces(const Vector &u, const double t) const = 0;
+
+    /** The strain energy (J; in 2D per unit thickness), thermal strain taken off. Collective. */
+    virtual double energy(const Vector &u) const = 0;
+
+    /** y = K x without conditions. Collective. */
+    virtual void multiply(Vector &y, const Vector &x) const = 0;
+
+    /** As residual(), but of all unknowns: of those that are prescribed it is minus the force of the support. Collective. */
+    virtual void unbalanced(Vector &r, const Vector &u, const double t) const = 0;
+
+    /** Tractions and body forces at time t, all unknowns; thermal strain loads nothing. Collective. */
+    virtual void mechanical_loads(Vector &loads, const double t) const = 0;
+
+    /**
+     * y = D v, zero on unknowns that are not free: a viscosity of one second, that is, K's own forces at the rate v of u. D is symmetric and
+     * damps no rigid motion. Collective.
+     */
+    virtual void damping_force(Vector &y, const Vector &v) const
+    {
+      apply(y, v);
+    }
+
+    /** At least the largest eigenvalue of M^{-1} D. Collective. */
+    virtual double damping_bound() const
+    {
+      return spectrum().sharp;
+    }
+
+    /** At least (as sharp_bound() is) the largest eigenvalue of diag(K)^{-1} K. Collective. */
+    virtual double scaled_bound() const = 0;
+
+    /** The forces are not linear in the displacement. Not collective. */
+    virtual bool nonlinear() const
+    {
+      return false;
+    }
+
+    /** Make K the tangent at u. Collective. */
+    virtual void linearize(const Vector &) {}
+
+    bool symmetric() const override
+    {
+      return true;
+    }
+
+    bool capacity_is_diagonal() const override
+    {
+      return true;
+    }
+
+    void apply_capacity(Vector &y, const Vector &x) const override
+    {
+      y = x;
+      y.scale(lumped_capacity());
+    }
+  };
+} // namespace PeriDeal

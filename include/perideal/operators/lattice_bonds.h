@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/bonds/bond_pieces.h>
+#include <perideal/bonds/families.h>
+#include <perideal/laws/interface.h>
+#include <perideal/mesh/lattice_sites.h>
+#include <perideal/scene/scene.h>
+#include <perideal/scene/zone.h>
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * The active bonds of an exchange on a lattice of equal cells, and the cells that they pass: what diffusion and elasticity have in common.
+   *
+   * A bond has the strength w(xi) V_i V_j k, with k the smallest stiffness (conductivity) of the cells on its way. It is active if both nodes are in the zone, its
+   * way lies within the body's cells of lattice size, and the stiffness on it varies by less than the factor largest_contrast. On a graded mesh hanging nodes and
+   * others on the side of a larger cell have no bonds.
+   */
+  template <int dim>
+  class LatticeBonds
+  {
+  public:
+    using Site = typename Lattice<dim>::Index;
+
+    /** The stiffness (conductivity) at a place in the body. */
+    using Stiffness = std::function<double(const dealii::Point<dim> &)>;
+
+    /** What the lattice has at a site and in the cell whose lowest corner that is. */
+    struct SiteData
+    {
+      unsigned int node    = dealii::numbers::invalid_unsigned_int;
+      bool         in_zone = false, may_join = false; // now; at the end of the run
+      bool         cell   = false; // the body has that cell, and it has lattice size
+      double       volume = 0.;
+      double       lowest = 0., highest = 0.; // stiffness in the cell
+    };
+
+    /** A bond of the half family. */
+    struct Offset
+    {
+      Site   site;
+      double weight; // w of unit stiffness; from the families' lattice members at first
+      std::vector<BondPiece<dim>> pieces;
+    };
+
+    /** One piece of a bond within a cell, seen from the cell. */
+    struct Passage
+    {
+      unsigned int                     offset, piece;
+      Site                             start;  // of the bond, relative to the cell's lowest corner
+      typename BondPiece<dim>::Corners change; // over the square root of the length
+    };
+
+    /**
+     * Adds the halo to the nodes. Collective. Throws UserError for a zone without nodes.
+     * @param stiffness if empty the conductivity
+     */
+    LatticeBonds(Nodes<dim>       &nodes,
+                 const Scene<dim> &scene,
+                 const Zone<dim>  &zone,
+                 const Stiffness  &stiffness = {});
+
+    /** Visit (neighbour, offset, strength) for the active bonds of an owned node, broken ones included, in a fixed order. */
+    template <typename Visit>
+    void for_each_bond(const unsigned int node, const Visit &visit) const;
+
+    /** Visit (passage, strength of the bond in this cell) for the active bonds that pass the cell with that lowest corner. */
+    template <typename Visit>
+    void for_each_passage(const Site &cell, const Visit &visit) const;
+
+    /** The same for the full family, with whole volumes and unit stiffness. */
+    template <typename Visit>
+    void for_each_full_passage(const Visit &visit) const;
+
+    /** As Coupling::possible_neighbors_of(). */
+    void possible_neighbors_of(const unsigned int node, std::vector<unsigned int> &neighbors) const;
+
+    /** Cells of lattice size only have bonds. */
+    bool is_of_lattice(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell) const;
+
+    /** Stiffness of a cell of the table, the smallest in it. */
+    double stiffness_of(const Site &cell) const;
+
+    std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const;
+    void                                  set_cracks_of(const double time);
+    bool                                  in_zone(const unsigned int node) const;
+    std::size_t                           memory_consumption() const;
+
+    Families<dim>        families;
+    Zone<dim>            zone;
+    std::vector<Offset>  offsets;
+    std::vector<Passage> passages;
+    Site                 reach{};
+    bool                 plain = true; // no void, one stiffness, one cell size
+
+  private:
+    void            find_offsets();
+    void            find_sites(const Scene<dim> &scene);
+    void            set_table_around(const std::vector<bool> &candidates);
+    void            find_cells(const Scene<dim> &scene, const Stiffness &stiffness);
+    const SiteData *at(const Site &site) const;
+    SiteData       &own(const Site &site);
+    Site            site_of(const unsigned int node) const;
+    double          stiffness_on(const Offset &offset, const Site &start) const;
+
+    double                last; // time of the run
+    bool                  uniform           = true;
+    double                uniform_stiffness = 0.;
+    Site                  corner{}, extent{};
+    std::vector<SiteData> sites; // of the box around all nodes that may ever be in the zone
+  };
+
+
+  template <int dim>
+  inline const typename LatticeBonds<dim>::SiteData *LatticeBonds<dim>::at(const Site &site) const
+  {
+    std::size_t key = 0;
+    for (unsigned int d = dim; d-- > 0;)
+      {
+        const int x = site[d] - corner[d];
+        if (x < 0 || x >= extent[d])
+          return nullptr;
+        key = key * extent[d] + x;
+      }
+    return key < sites.size() ? &sites[key] : nullptr;
+  }
+
+
+  template <int dim>
+  inline double LatticeBonds<dim>::stiffness_on(const Offset &offset, const Site &start) const
+  {
+    if (plain)
+      return uniform_stiffness;
+    double lowest = std::numeric_limits<double>::max(), highest = 0.;
+    for (const BondPiece<dim> &piece : offset.pieces)
+      {
+        bool inside = false;
+        for (const Site &cell : piece.cells)
+          if (const SiteData *data = at(start + cell); data != nullptr && data->cell)
+            {
+              inside  = true;
+              lowest  = std::min(lowest, data->lowest);
+              highest = std::max(highest, data->highest);
+            }
+        if (!inside)
+          return 0.;
+      }
+    return highest > largest_contrast * lowest ? 0. : lowest;
+  }
+
+
+  template <int dim>
+  template <typename Visit>
+  void LatticeBonds<dim>::for_each_bond(const unsigned int node, const Visit &visit) const
+  {
+    const Site      site = site_of(node);
+    const SiteData *own  = at(site);
+    if (own == nullptr || !own->in_zone)
+      return;
+    for (const bool forward : {false, true})
+      for (const Offset &offset : offsets)
+        {
+          Site start = site, other = site;
+          for (unsigned int d = 0; d < dim; ++d)
+            (forward ? other : start)[d] += (forward ? 1 : -1) * offset.site[d];
+          const SiteData *neighbor = at(forward ? other : start);
+          if (neighbor == nullptr || !neighbor->in_zone)
+            continue;
+          const double strength =
+            stiffness_on(offset, start) * offset.weight * own->volume * neighbor->volume;
+          if (strength != 0.)
+            visit(neighbor->node, offset, strength);
+        }
+  }
+
+
+  template <int dim>
+  template <typename Visit>
+  void LatticeBonds<dim>::for_each_passage(const Site &cell, const Visit &visit) const
+  {
+    for (const Passage &passage : passages)
+      {
+        const Offset   &offset = offsets[passage.offset];
+        const Site      start  = cell + passage.start;
+        const SiteData *a      = at(start);
+        if (a == nullptr || !a->in_zone)
+          continue;
+        const SiteData *b = at(start + offset.site);
+        if (b == nullptr || !b->in_zone)
+          continue;
+        const double stiffness = stiffness_on(offset, start);
+        if (stiffness == 0.)
+          continue;
+        unsigned int n_around = 0;
+        for (const Site &other : offset.pieces[passage.piece].cells)
+          if (const SiteData *data = at(start + other); data != nullptr && data->cell)
+            ++n_around;
+        visit(passage, stiffness * offset.weight * a->volume * b->volume / n_around);
+      }
+  }
+
+
+  template <int dim>
+  template <typename Visit>
+  void LatticeBonds<dim>::for_each_full_passage(const Visit &visit) const
+  {
+    const double volume = families.nodes().lattice()->cell_volume();
+    for (const Passage &passage : passages)
+      {
+        const Offset &offset = offsets[passage.offset];
+        visit(passage, offset.weight * volume * volume / offset.pieces[passage.piece].cells.size());
+      }
+  }
+} // namespace PeriDeal

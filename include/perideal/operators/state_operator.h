@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/bonds/families.h>
+#include <perideal/laws/elasticity.h>
+#include <perideal/operators/displacement_conditions.h>
+#include <perideal/operators/elastic_operator.h>
+
+#include <memory>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** Stress and strain at the nodes, for output: the components xx, yy, xy in 2D, xx, yy, zz, xy, xz, yz in 3D. */
+  template <int dim>
+  struct NodalTensors
+  {
+    std::vector<dealii::SymmetricTensor<2, dim>> stress, strain;
+  };
+
+
+  /**
+   * Linear peridynamic solid (Silling 2007; in 2D Le 2014 section 2 in the corrected form of doc/elasticity.md), and the bond-based
+   * solid as the same without dilatation. With xi the bond, x its length, M = xi/x, the extension e = M . (u_j - u_i) - s x, s the mean thermal strain of
+   * both ends, and W_ij = V_i V_j omega f (f the volume fraction) over unbroken bonds:
+   *
+   *   q_i = sum_j W_ij x^2 / V_i,  theta_i = d sum_j W_ij x e_ij / (V_i q_i)
+   *   F_i = sum_j W_ij [ (c_i theta_i/q_i + c_j theta_j/q_j) x + (b_i/q_i + b_j/q_j) e_ij ] M
+   *
+   * with d, c, b the factors dilatation, volumetric and extension of StateLaw. The prefactor of omega drops out. An application takes two passes over
+   * the bonds, the dilatations first. Each bond is stored at both ends: W xi, one number, a column.
+   *
+   * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a rotation makes none. q is that of the undeformed body. The tangent
+   * of linearize() has W x Y/|Y| in the place of W xi, and across the bond the stiffness force/|Y|.
+   *
+   * Viscosity is in the bonds and parallel to them (Le 2014 eq 2.43): D is K without the dilatations.
+   */
+  template <int dim>
+  class StateOperator : public ElasticOperator
+  {
+  public:
+    /** Adds the halo to the nodes. Collective. Throws UserError: isolated nodes, nodes all of whose bonds lie in one line. */
+    StateOperator(Nodes<dim> &nodes, const Scene<dim> &scene);
+
+    void                initialize_vector(Vector &vector) const override;
+    void                apply(Vector &y, const Vector &x) const override;
+    void                residual(Vector &r, const Vector &u, const double t) const override;
+    void                distribute(Vector &u, const double t) const override;
+    void                distribute_homogeneous(Vector &x) const override;
+    void                clear_constrained(Vector &y) const override;
+    const Vector       &lumped_capacity() const override;
+    const Vector       &diagonal() const override;
+    Spectrum            spectrum() const override;
+    bool                depends_on_time() const override;
+    bool                has_steady_state() const override;
+    void                surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    bool                surrogate_is_exact() const override;
+    std::vector<Vector> near_null_space() const override;
+    std::string         place_of(const unsigned int local_index) const override;
+    OperatorSize        size() const override;
+    unsigned int        n_components() const override;
+    ForceBalance        forces(const Vector &u, const double t) const override;
+    double              energy(const Vector &u) const override;
+    void                multiply(Vector &y, const Vector &x) const override;
+    void                unbalanced(Vector &r, const Vector &u, const double t) const override;
+    void                mechanical_loads(Vector &loads, const double t) const override;
+    void                damping_force(Vector &y, const Vector &v) const override;
+    double              damping_bound() const override;
+    double              scaled_bound() const override;
+    bool                nonlinear() const override;
+    void                linearize(const Vector &u) override;
+
+    const Families<dim> &families() const;
+
+    /** theta at the owned nodes, thermal extension taken off. Collective. */
+    void dilatations(const Vector &u, std::vector<double> &theta) const;
+
+    /**
+     * The collapsed stress of the owned nodes, sum_j t_ij M (x) xi V_j (Le 2014 eq 1.26), or the mean with that of the bonds' other ends (eq 3.1) where there are
+     * several phases, and the strain of the nonlocal deformation gradient F (eq 1.25). With full kinematics the stress is Cauchy's, sum t_ij M (x) Y V_j/det F, and the
+     * strain Green's, (F^T F - I)/2. Collective.
+     */
+    NodalTensors<dim> tensors(const Vector &u) const;
+
+  private:
+    struct NodeLaw
+    {
+      StateLaw law;
+      double   thermal; // strain
+    };
+
+    void find_laws();
+    void store_bonds();
+    void find_thermal_loads();
+    void find_diagonal();
+    void find_loads(Vector &loads, const double t) const;
+    template <typename Visit>
+    void for_each_load(const double t, const Visit &visit) const;
+    void find_dilatation_forces(const Vector &x, const bool thermal) const;
+    void sum_forces(Vector &y, const Vector &x, const bool thermal) const;
+    void add_geometric_forces(Vector &y, const Vector &x) const;
+    void find_deformed_dilatation_forces(const Vector &u) const;
+    void sum_deformed_forces(Vector &y, const Vector &u) const;
+    void find_forces(Vector &y, const Vector &u) const;
+    void fill_noise(Vector &vector) const;
+
+    /** xi + u_j - u_i. */
+    dealii::Tensor<1, dim> deformed_bond(const double      *u,
+                                         const unsigned int i,
+                                         const std::size_t  k) const;
+
+    /** W x e of a bond of an owned node, thermal extension taken off. */
+    double extension_moment(const double *u, const unsigned int i, const std::size_t k) const;
+
+    const Scene<dim>                                          &scene;
+    Families<dim>                                              bonds;
+    std::shared_ptr<const dealii::Utilities::MPI::Partitioner> unknowns;
+    std::unique_ptr<DisplacementConditions<dim>>               conditions;
+    std::vector<NodeLaw>                                       laws;     // owned and ghosts
+    Vector                                                     weighted; // q_i; ghosts up to date
+    std::vector<std::size_t>            starts{0}; // of the bonds of each owned node
+    std::vector<unsigned int>           neighbors;
+    std::vector<dealii::Tensor<1, dim>> moments; // W xi, of the tangent W x Y/|Y|
+    std::vector<double>                 springs; // (b_i/q_i + b_j/q_j)/(W x^2)
+    std::vector<double>                 lengths,
+      across; // full kinematics: W x, and the tangent's stiffness across the bond
+    bool           full       = false;
+    bool           volumetric = false, any_thermal = false, several_phases = false;
+    double         n_bonds = 0.;
+    Vector         mass, stiffness_diagonal, thermal_loads, constant_loads;
+    double         thermal_energy = 0.;
+    bool           loads_vary     = false;
+    mutable Vector scratch, source, tau; // tau_i = c_i theta_i/q_i
+  };
+} // namespace PeriDeal

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/choices.h>
+#include <perideal/scene/expression.h>
+#include <perideal/scene/physics.h>
+#include <perideal/scene/section.h>
+
+#include <string>
+
+namespace PeriDeal
+{
+  /** Section `Elasticity`: which elastic body, and how its displacement is found. */
+  class ElasticityControl : public SceneSection
+  {
+  public:
+    ElasticityControl();
+
+    ElasticModel model      = ElasticModel::state_based;
+    PlaneState   plane      = PlaneState::stress; // two dimensions only
+    Kinematics   kinematics = Kinematics::linear;
+    Expression
+      temperature_change; // of x, y, z; what strains the body is this times `Thermal expansion`
+    ElasticSolver solver    = ElasticSolver::linear;
+    bool          multigrid = true; // entry `Preconditioner`
+
+    /** All solvers but `dynamics` find the equilibrium, in which there is no time. */
+    bool is_static() const;
+
+    /** `conjugate gradients` and so on, as in scenes. */
+    const std::string &solver_name() const;
+
+    /**
+     * Throws UserError: a `Plane` where there is none, full kinematics by the linear solver, a temperature change that depends on t, and
+     * with another physics any entry that is given.
+     */
+    void parse(const Physics physics = Physics::elasticity, const unsigned int dim = 2);
+  };
+} // namespace PeriDeal

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <perideal/analysis/elastic_stress.h>
+#include <perideal/analysis/phase_statistics.h>
+#include <perideal/analysis/point_evaluator.h>
+#include <perideal/analysis/stress_intensity.h>
+#include <perideal/base/timing.h>
+#include <perideal/mesh/nodes.h>
+#include <perideal/operators/elastic_operator.h>
+#include <perideal/output/field_writer.h>
+#include <perideal/scene/scene.h>
+#include <perideal/solvers/motion_stepper.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** One model of an elastic body during a run: its nodes on the shared mesh, its operator, its displacement. All functions are collective. */
+  template <int dim>
+  class ElasticRun
+  {
+  public:
+    virtual ~ElasticRun() = default;
+
+    /** As in scenes and output files. */
+    virtual std::string name() const = 0;
+
+    /** One for each node; each has dim unknowns, interleaved. */
+    virtual const dealii::DoFHandler<dim> &dofs() const = 0;
+
+    /** Nodes on a lattice, for reading values at points without a mesh search; nullptr for finite elements. */
+    virtual const Nodes<dim> *nodes() const = 0;
+
+    virtual ElasticOperator &op() const = 0;
+
+    /** Place of an owned node. Not collective. */
+    virtual dealii::Point<dim> position(const unsigned int node) const = 0;
+
+    /** Displacement and stress at points, in the order of elastic_columns(), one point after the other. */
+    virtual std::vector<double> at_points(const PointEvaluator<dim>              &reader,
+                                          const std::vector<std::vector<double>> &points) const = 0;
+
+    /** Displacement, stress, strain and what follows from them, with up-to-date ghosts. */
+    virtual std::vector<OutputField> fields() const = 0;
+
+    /** The mean stress over the volume of the body: what the body as a whole carries. */
+    virtual dealii::SymmetricTensor<2, 3> mean_stress() const = 0;
+
+    /** At the ends of cracks, where the model has a local stress (crack_end_integrals()). */
+    virtual std::vector<StressIntensity> stress_intensities() const
+    {
+      return {};
+    }
+
+    /** The stress of each own node or cell, with its phase. */
+    virtual std::vector<StressSample> stress_samples() const = 0;
+
+    /** What was chosen, for the report: name and value. */
+    virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
+
+    Vector                         displacement;
+    Vector                         velocity; // of a motion
+    std::unique_ptr<MotionStepper> stepper;  // null in equilibrium
+    unsigned int                   n_iterations = 0;
+    Timings                        timings;
+  };
+
+
+  /** ux, uy, uz, then the components of the stress and `von_mises`: the columns of probes.csv and line.csv. */
+  std::vector<std::string> elastic_columns(const unsigned int dim);
+
+  /** Builds a model's nodes and operator. The time goes into its timings. */
+  template <int dim>
+  std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model                       model,
+                                                    const dealii::Triangulation<dim> &mesh,
+                                                    const Scene<dim>                 &scene);
+} // namespace PeriDeal

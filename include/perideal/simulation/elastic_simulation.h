@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/grid/tria.h>
+
+#include <perideal/analysis/point_evaluator.h>
+#include <perideal/base/progress.h>
+#include <perideal/output/result_files.h>
+#include <perideal/simulation/elastic_run.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  struct ResultRecord;
+
+  /**
+   * Owns and wires the members of a run with `Physics = elasticity`: mesh, models, solvers, output. All models of the scene are solved one after the other, or
+   * move from one output time to the next together, and are compared. No discretisation here. All functions are collective and throw UserError.
+   */
+  template <int dim>
+  class ElasticSimulation
+  {
+  public:
+    /** @param scene parsed; @param text what it was read from; @param quiet no messages but errors */
+    ElasticSimulation(const Scene<dim> &scene,
+                      const SceneText  &text,
+                      const MPI_Comm    communicator,
+                      const bool        quiet);
+    ~ElasticSimulation();
+
+    /** Compute, write all files, summary.json last. */
+    void run();
+
+    /** Build everything, say what a run would need, compute and write nothing. */
+    void dry_run();
+
+  private:
+    void                   build();
+    void                   solve(ElasticRun<dim> &model);
+    void                   make_steppers();
+    void                   set_start(ElasticRun<dim> &model) const;
+    void                   move();
+    void                   write_output(const double t);
+    void                   write_points(const double t);
+    void                   write_fields(const double t);
+    void                   add_totals(const ElasticRun<dim> &model, const double t);
+    nlohmann::ordered_json add_energies(const ElasticRun<dim> &model, const double t);
+    void                   write_summary();
+
+    const Scene<dim>                                 &scene;
+    const SceneText                                  &text;
+    MPI_Comm                                          communicator;
+    mutable Progress                                  progress;
+    Timings                                           timings;
+    std::unique_ptr<dealii::Triangulation<dim>>       mesh;
+    std::vector<std::unique_ptr<ElasticRun<dim>>>     models;
+    PointTable                                        probes, line;
+    std::unique_ptr<ResultRecord>                     record;
+    std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers; // of the models
+    std::vector<std::unique_ptr<FieldWriter<dim>>>    writers;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/elastic_operator.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** What a solver of equilibria has to know of the scene. */
+  struct StaticOptions
+  {
+    double       tolerance      = 1e-10;
+    unsigned int max_iterations = 1000;
+    unsigned int direct_up_to   = 2000; // as of MultigridPreconditioner
+    bool         multigrid      = true; // preconditions the conjugate gradients
+  };
+
+
+  /** Finds the displacement in which no free unknown has a force left: residual(u) = 0. */
+  class StaticSolver
+  {
+  public:
+    virtual ~StaticSolver() = default;
+
+    /** The name used in scenes. */
+    virtual std::string name() const = 0;
+
+    /**
+     * From u, distributed, to equilibrium at time t. Returns the number of iterations. Collective. Throws UserError: the iterations do not suffice, or values are no
+     * longer finite.
+     *
+     * @param size stops at the tolerance times this l2 norm of the residual; 0: times that of the start
+     */
+    virtual unsigned int solve(Vector &u, const double t, const double size = 0.) = 0;
+  };
+
+
+  /** All names that a scene may give. */
+  const std::vector<std::string> &static_solver_names();
+
+  /** The one factory. Throws UserError for `linear` where forces are not linear in the displacement. Collective. */
+  std::unique_ptr<StaticSolver> make_static_solver(const std::string   &name,
+                                                   ElasticOperator     &op,
+                                                   const StaticOptions &options);
+
+  /**
+   * The l2 norm of the residual that prescribed displacements and loads leave in the undeformed body, by which residuals are measured, and the start of the iterations:
+   * the prescribed displacements, and where forces are not linear the solution of small displacements to three digits, since bonds that a jump at the side has turned
+   * over do not find back. @p u is overwritten. Collective.
+   */
+  double start_statics(ElasticOperator     &op,
+                       Vector              &u,
+                       const double         t,
+                       const StaticOptions &options);
+
+  // One maker per method, each in its own file.
+  std::unique_ptr<StaticSolver> make_linear_statics(ElasticOperator     &op,
+                                                    const StaticOptions &options);
+  std::unique_ptr<StaticSolver> make_conjugate_gradients(ElasticOperator     &op,
+                                                         const StaticOptions &options);
+  std::unique_ptr<StaticSolver> make_dynamic_relaxation(ElasticOperator     &op,
+                                                        const StaticOptions &options);
+  std::unique_ptr<StaticSolver> make_adaptive_dynamic_relaxation(ElasticOperator     &op,
+                                                                 const StaticOptions &options);
+
+
+  /** When to stop: the residual of each iteration goes through it. */
+  class ResidualGoal
+  {
+  public:
+    ResidualGoal(const std::string &solver, const StaticOptions &options, const double size);
+
+    /** Whether the residual is small enough. Throws UserError if it is not finite or if the iterations have been used up. Collective. */
+    bool reached(const Vector &r, const unsigned int n_iterations);
+
+  private:
+    const std::string  solver;
+    const double       tolerance;
+    const unsigned int most;
+    double             size;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/analysis/stress_intensity.h>
+#include <perideal/laws/elasticity.h>
+#include <perideal/scene/zone.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    const double pi = std::acos(-1.);
+
+
+    /** Stresses of the near-tip field of unit intensity (Westergaard, Irwin), in the frame of the crack. */
+    SymmetricTensor<2, 2> near_stress(const unsigned int mode, const double r, const double angle)
+    {
+      const double          s = std::sin(0.5 * angle), c = std::cos(0.5 * angle);
+      const double          s3 = std::sin(1.5 * angle), c3 = std::cos(1.5 * angle);
+      SymmetricTensor<2, 2> stress;
+      if (mode == 0)
+        {
+          stress[0][0] = c * (1. - s * s3);
+          stress[1][1] = c * (1. + s * s3);
+          stress[0][1] = c * s * c3;
+        }
+      else
+        {
+          stress[0][0] = -s * (2. + c * c3);
+          stress[1][1] = s * c * c3;
+          stress[0][1] = c * (1. - s * s3);
+        }
+      return stress / std::sqrt(2. * pi * r);
+    }
+  } // namespace
+
+
+  CrackEndIntegral::CrackEndIntegral(const std::string  &name,
+                                     const Point<2>     &end,
+                                     const Tensor<1, 2> &along,
+                                     const double        inner,
+                                     const double        outer,
+                                     const Moduli       &moduli,
+                                     const PlaneState    plane)
+    : name(name)
+    , end(end)
+    , inner(inner)
+    , outer(outer)
+    , shear(moduli.shear)
+  {
+    frame[0]        = along;
+    frame[1][0]     = -along[1];
+    frame[1][1]     = along[0];
+    const double nu = moduli.poisson();
+    kappa           = plane == PlaneState::stress ? (3. - nu) / (1. + nu) : 3. - 4. * nu;
+    stiffness = plane == PlaneState::stress ? moduli.young() : moduli.young() / (1. - nu * nu);
+  }
+
+
+  Tensor<1, 2> CrackEndIntegral::near_slope(const unsigned int mode,
+                                            const double       r,
+                                            const double       angle) const
+  {
+    const double s = std::sin(0.5 * angle), c = std::cos(0.5 * angle);
+    // u = sqrt(r/(2 pi))/(2 mu) f(angle); f and its derivative.
+    Tensor<1, 2> f, df;
+    if (mode == 0)
+      {
+        f[0]  = c * (kappa - 1. + 2. * s * s);
+        f[1]  = s * (kappa + 1. - 2. * c * c);
+        df[0] = -0.5 * s * (kappa - 1. + 2. * s * s) + 2. * c * s * c;
+        df[1] = 0.5 * c * (kappa + 1. - 2. * c * c) + 2. * s * c * s;
+      }
+    else
+      {
+        f[0]  = s * (kappa + 1. + 2. * c * c);
+        f[1]  = -c * (kappa - 1. - 2. * s * s);
+        df[0] = 0.5 * c * (kappa + 1. + 2. * c * c) - 2. * s * c * s;
+        df[1] = 0.5 * s * (kappa - 1. - 2. * s * s) + 2. * c * s * c;
+      }
+    return (0.5 * std::cos(angle) * f - std::sin(angle) * df) /
+           (2. * shear * std::sqrt(2. * pi * r));
+  }
+
+
+  void CrackEndIntegral::add(const Point<2>              &p,
+                             const double                 weight,
+                             const Tensor<2, 2>          &gradient,
+                             const SymmetricTensor<2, 2> &stress)
+  {
+    const Tensor<1, 2> x = frame * (p - end);
+    const double       r = x.norm();
+    if (r <= inner || r >= outer)
+      return;
+    const double       angle = std::atan2(x[1], x[0]);
+    const Tensor<1, 2> slope = (-1. / ((outer - inner) * r)) * x; // of q
+    const Tensor<2, 2> u     = frame * gradient * transpose(frame);
+    const Tensor<2, 2> sigma = frame * static_cast<Tensor<2, 2>>(stress) * transpose(frame);
+    const auto   ahead  = [](const Tensor<2, 2> &t) { return Tensor<1, 2>({t[0][0], t[1][0]}); };
+    const double energy = 0.5 * scalar_product(sigma, u);
+    sums[0] += weight * (ahead(u) * (sigma * slope) - energy * slope[0]);
+    for (unsigned int mode = 0; mode < 2; ++mode)
+      {
+        const Tensor<2, 2> other = near_stress(mode, r, angle);
+        sums[1 + mode] +=
+          weight * (near_slope(mode, r, angle) * (sigma * slope) + ahead(u) * (other * slope) -
+                    scalar_product(other, u) * slope[0]);
+      }
+  }
+
+
+  StressIntensity CrackEndIntegral::result(const MPI_Comm communicator) const
+  {
+    double total[3];
+    for (unsigned int k = 0; k < 3; ++k)
+      total[k] = Utilities::MPI::sum(sums[k], communicator);
+    return {name, total[0], 0.5 * stiffness * total[1], 0.5 * stiffness * total[2]};
+  }
+
+
+  std::vector<CrackEndIntegral> crack_end_integrals(const Scene<2> &scene)
+  {
+    std::vector<CrackEndIntegral> list;
+    const auto                   &cracks   = scene.cracks.cracks;
+    const Material               &material = scene.material;
+    const bool                    warm     = !scene.elasticity.temperature_change.is_constant() ||
+                      scene.elasticity.temperature_change.value(Point<2>()) != 0.;
+    if (scene.domain.shape != Shape::box || !material.uniform_moduli() || warm ||
+        !scene.initial_and_source.body_force.empty())
+      return list;
+    for (unsigned int k = 0; k < cracks.size(); ++k)
+      for (unsigned int e = 0; e < 2; ++e)
+        {
+          const Point<2>     end    = cracks[k][e];
+          const Tensor<1, 2> along  = end - cracks[k][1 - e];
+          const double       length = along.norm();
+          double             room   = 0.5 * length;
+          for (unsigned int d = 0; d < 2; ++d)
+            room = std::min({room, end[d] - scene.domain.lower[d], scene.domain.upper[d] - end[d]});
+          for (unsigned int other = 0; other < cracks.size(); ++other)
+            if (other != k)
+              room = std::min(room, distance_to_piece(cracks[other], end));
+          if (room < 0.02 * length)
+            continue;
+          list.emplace_back("crack " + std::to_string(k + 1) + " end " + std::to_string(e + 1),
+                            end,
+                            along / length,
+                            0.45 * room,
+                            0.9 * room,
+                            material.moduli(end),
+                            scene.elasticity.plane);
+        }
+    return list;
+  }
+} // namespace PeriDeal

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/operators/displacement_conditions.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** The direction that a side is normal to. Collective. */
+    template <int dim>
+    unsigned int normal_direction(const std::vector<NodeOnSide<dim>> &nodes,
+                                  const types::boundary_id            side,
+                                  const Scene<dim>                   &scene,
+                                  const MPI_Comm                      communicator)
+    {
+      const bool box = scene.domain.shape != Shape::mesh_file;
+      if (box)
+        return side / 2;
+      // Lowest coordinates and lowest negative ones.
+      std::vector<double> ends(2 * dim, std::numeric_limits<double>::max()), all(2 * dim);
+      for (const NodeOnSide<dim> &node : nodes)
+        if (node.side == side)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              ends[d]       = std::min(ends[d], node.position[d]);
+              ends[dim + d] = std::min(ends[dim + d], -node.position[d]);
+            }
+      Utilities::MPI::min(ends, communicator, all);
+      double longest = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        longest = std::max(longest, -all[dim + d] - all[d]);
+      unsigned int found = dim;
+      for (unsigned int d = 0; d < dim; ++d)
+        if (-all[dim + d] - all[d] <= 1e-9 * longest)
+          found = d;
+      AssertThrow(found < dim,
+                  UserError("'Symmetry' in section 'Boundary conditions': the side '" +
+                            name_of_side(side, false) + "' is not normal to an axis."));
+      return found;
+    }
+  } // namespace
+
+
+  template <int dim>
+  DisplacementConditions<dim>::DisplacementConditions(const std::vector<NodeOnSide<dim>> &nodes,
+                                                      const Scene<dim>                   &scene,
+                                                      const MPI_Comm communicator)
+  {
+    const auto                        &conditions = scene.boundary_conditions;
+    const bool                         box        = scene.domain.shape != Shape::mesh_file;
+    std::map<unsigned int, Prescribed> found;
+    const auto require = [&](const types::boundary_id side, const std::string &entry) {
+      const bool any = std::any_of(nodes.begin(), nodes.end(), [&](const NodeOnSide<dim> &node) {
+        return node.side == side;
+      });
+      AssertThrow(Utilities::MPI::max(any ? 1 : 0, communicator) > 0,
+                  UserError("'" + entry +
+                            "' in section 'Boundary conditions': no node lies on the side '" +
+                            name_of_side(side, box) + "'."));
+    };
+    for (const VectorCondition &condition : conditions.displacement)
+      {
+        require(condition.id, "Displacement");
+        for (unsigned int d = 0; d < dim; ++d)
+          if (condition.values[d])
+            {
+              varies = varies || condition.values[d]->depends_on_time();
+              for (const NodeOnSide<dim> &node : nodes)
+                if (node.side == condition.id)
+                  found.try_emplace(dim * node.node + d,
+                                    Prescribed{dim * node.node + d,
+                                               node.side,
+                                               &*condition.values[d],
+                                               node.position});
+            }
+      }
+    for (const types::boundary_id side : conditions.symmetry)
+      {
+        require(side, "Symmetry");
+        const unsigned int d = normal_direction(nodes, side, scene, communicator);
+        for (const NodeOnSide<dim> &node : nodes)
+          if (node.side == side)
+            found.try_emplace(dim * node.node + d,
+                              Prescribed{dim * node.node + d, side, nullptr, node.position});
+      }
+    for (const auto &[unknown, entry] : found)
+      prescribed.push_back(entry);
+  }
+
+
+  template <int dim>
+  void DisplacementConditions<dim>::pin(const std::vector<Point<dim>> &positions,
+                                        const Scene<dim>              &scene,
+                                        const bool                     at_centers)
+  {
+    if (scene.domain.pins.empty())
+      return;
+    const double slack = 1e-6 * scene.domain.spacing().norm();
+    for (unsigned int node = 0; node < positions.size(); ++node)
+      for (const Pin<dim> &pin : scene.domain.pins)
+        if (pin.at_center == at_centers && pin.position.distance(positions[node]) < slack)
+          {
+            const unsigned int unknown = dim * node + pin.component;
+            if (std::none_of(prescribed.begin(), prescribed.end(), [&](const Prescribed &entry) {
+                  return entry.unknown == unknown;
+                }))
+              prescribed.push_back(
+                {unknown, numbers::internal_face_boundary_id, nullptr, positions[node]});
+          }
+  }
+
+
+  template <int dim>
+  void DisplacementConditions<dim>::distribute(Vector &u, const double t) const
+  {
+    for (const Prescribed &entry : prescribed)
+      u.local_element(entry.unknown) =
+        entry.value == nullptr ? 0. : entry.value->value(entry.position, t);
+  }
+
+
+  template <int dim>
+  void DisplacementConditions<dim>::mask(Vector &y, const double value) const
+  {
+    for (const Prescribed &entry : prescribed)
+      y.local_element(entry.unknown) = value;
+  }
+
+
+  template <int dim>
+  bool DisplacementConditions<dim>::depends_on_time() const
+  {
+    return varies;
+  }
+
+
+  template <int dim>
+  void DisplacementConditions<dim>::add_reactions(
+    const Vector                                 &v,
+    std::map<types::boundary_id, Tensor<1, dim>> &forces) const
+  {
+    for (const Prescribed &entry : prescribed)
+      forces[entry.side][entry.unknown % dim] += v.local_element(entry.unknown);
+  }
+
+
+  template <int dim>
+  ForceBalance gather_forces(const std::map<types::boundary_id, Tensor<1, dim>> &forces,
+                             const Scene<dim>                                   &scene,
+                             const MPI_Comm                                      communicator)
+  {
+    const auto                     &conditions = scene.boundary_conditions;
+    std::vector<types::boundary_id> sides      = conditions.symmetry;
+    for (const auto *const list : {&conditions.displacement, &conditions.traction})
+      for (const VectorCondition &condition : *list)
+        sides.push_back(condition.id);
+    ForceBalance result;
+    const auto   total = [&](const types::boundary_id side) {
+      const auto           found = forces.find(side);
+      const Tensor<1, dim> own   = found == forces.end() ? Tensor<1, dim>() : found->second;
+      const Tensor<1, dim> sum   = Utilities::MPI::sum(own, communicator);
+      return std::vector<double>(sum.begin_raw(), sum.end_raw());
+    };
+    result.body = total(numbers::internal_face_boundary_id);
+    for (const types::boundary_id side : sides)
+      if (const std::string name = name_of_side(side, scene.domain.shape != Shape::mesh_file);
+          result.sides.count(name) == 0)
+        result.sides[name] = total(side);
+    return result;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                           \
+  template class DisplacementConditions<dim>;                                               \
+  template ForceBalance gather_forces(const std::map<types::boundary_id, Tensor<1, dim>> &, \
+                                      const Scene<dim> &,                                   \
+                                      const MPI_Comm);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <perideal/base/interleaved.h>
+#include <perideal/base/matrix_rows.h>
+
+#include "elastic_cell_data.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  void ElasticElements<dim>::assemble_cell(CellData &data) const
+  {
+    const unsigned int n = data.indices.size();
+    data.stiffness       = 0.;
+    data.thermal         = 0.;
+    data.mass            = 0.;
+    data.volume          = 0.;
+    data.thermal_energy  = 0.;
+    for (const unsigned int q : data.values.quadrature_point_indices())
+      {
+        const Point<dim> &p      = data.values.quadrature_point(q);
+        const double      JxW    = data.values.JxW(q);
+        const Moduli      moduli = scene.material.moduli(p);
+        // A bar has E alone.
+        const double lambda = dim == 1 ? 0. : lambda_of(moduli, dim, scene.elasticity.plane),
+                     mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear;
+        const double strain = thermal_strain_factor(moduli, dim, scene.elasticity.plane) *
+                              scene.material.thermal_expansion.value(p) *
+                              scene.elasticity.temperature_change.value(p);
+        const double pressure = (dim * lambda + 2. * mu) * strain;
+        const double density  = scene.material.density.value(p);
+        data.thermal_energy += 0.5 * dim * pressure * strain * JxW;
+        for (unsigned int a = 0; a < n; ++a)
+          {
+            const Tensor<1, dim> &ga = data.values.shape_grad(a, q);
+            data.volume(a) += data.values.shape_value(a, q) * JxW;
+            data.mass(a) += density * data.values.shape_value(a, q) * JxW;
+            for (unsigned int d = 0; d < dim; ++d)
+              data.thermal(dim * a + d) += pressure * ga[d] * JxW;
+            for (unsigned int b = 0; b < n; ++b)
+              {
+                const Tensor<1, dim> &gb      = data.values.shape_grad(b, q);
+                const double          product = mu * (ga * gb) * JxW;
+                for (unsigned int d = 0; d < dim; ++d)
+                  {
+                    data.stiffness(dim * a + d, dim * b + d) += product;
+                    for (unsigned int e = 0; e < dim; ++e)
+                      data.stiffness(dim * a + d, dim * b + e) +=
+                        (lambda * ga[d] * gb[e] + mu * ga[e] * gb[d]) * JxW;
+                  }
+              }
+          }
+      }
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::assemble()
+  {
+    const IndexSet owned    = unknowns->locally_owned_range();
+    IndexSet       relevant = unknowns->ghost_indices();
+    relevant.add_indices(owned);
+    TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
+    cell_data      = std::make_unique<CellData>(dofs.get_fe());
+    CellData &data = *cell_data;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          data.set_indices(cell);
+          for (const auto row : data.unknowns)
+            pattern.add_entries(row, data.unknowns.begin(), data.unknowns.end());
+        }
+    if (coupling)
+      add_bond_pattern(pattern);
+    pattern.compress();
+    stiffness.reinit(pattern);
+    if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling && coupling &&
+        !scene.cracks.cracks.empty())
+      find_crack_factors();
+    initialize_vector(mass);
+    volumes.reinit(nodes);
+    double energy = 0.;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          data.values.reinit(cell);
+          data.set_indices(cell);
+          assemble_cell(data);
+          change_cell(cell, data);
+          energy += data.thermal_energy;
+          for (unsigned int i = 0; i < data.unknowns.size(); ++i)
+            {
+              stiffness.add(data.unknowns[i],
+                            data.unknowns.size(),
+                            data.unknowns.data(),
+                            &data.stiffness(i, 0));
+              thermal_loads(data.unknowns[i]) += data.thermal(i);
+              mass(data.unknowns[i]) += data.mass(i / dim);
+            }
+          for (unsigned int i = 0; i < data.indices.size(); ++i)
+            volumes(data.indices[i]) += data.volume(i);
+        }
+    thermal_energy = Utilities::MPI::sum(energy, dofs.get_communicator());
+    if (coupling)
+      {
+        add_bonds(stiffness, false);
+        add_thermal_bonds();
+        count_bonds();
+      }
+    stiffness.compress(VectorOperation::add);
+    mass.compress(VectorOperation::add);
+    volumes.compress(VectorOperation::add);
+    thermal_loads.compress(VectorOperation::add);
+    initialize_vector(stiffness_diagonal);
+    for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
+      if (column == unknowns->local_to_global(i))
+        stiffness_diagonal.local_element(i) = value;
+    });
+    conditions->mask(stiffness_diagonal, 1.);
+    throw_if_isolated();
+  }
+
+
+  template <int dim>
+  template <typename Visit>
+  void ElasticElements<dim>::for_each_load(const double t, const Visit &visit) const
+  {
+    CellData   &data  = *cell_data;
+    const auto &force = scene.initial_and_source.body_force;
+    const auto  add   = [&](const auto &values, const auto &formula, const auto side) {
+      for (const unsigned int q : values.quadrature_point_indices())
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double f = formula(d).value(values.quadrature_point(q), t) * values.JxW(q);
+            for (unsigned int i = 0; i < data.indices.size(); ++i)
+              visit(side, data.unknowns[dim * i + d], d, f * values.shape_value(i, q));
+          }
+    };
+    for (const auto &cell : dofs.active_cell_iterators())
+      {
+        if (!cell->is_locally_owned() || (force.empty() && !cell->at_boundary()))
+          continue;
+        data.set_indices(cell);
+        if (!force.empty())
+          {
+            data.values.reinit(cell);
+            add(
+              data.values,
+              [&](const unsigned int d) -> const Expression & { return force[d]; },
+              numbers::internal_face_boundary_id);
+          }
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            for (const VectorCondition &condition : scene.boundary_conditions.traction)
+              if (condition.id == cell->face(f)->boundary_id())
+                {
+                  data.face_values.reinit(cell, f);
+                  add(
+                    data.face_values,
+                    [&](const unsigned int d) -> const Expression & {
+                      return *condition.values[d];
+                    },
+                    condition.id);
+                }
+      }
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::assemble_loads(Vector &loads, const double t) const
+  {
+    loads = thermal_loads;
+    loads.zero_out_ghost_values();
+    for_each_load(t, [&](const auto, const auto unknown, const unsigned int, const double value) {
+      loads(unknown) += value;
+    });
+    loads.compress(VectorOperation::add);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::mechanical_loads(Vector &loads, const double t) const
+  {
+    assemble_loads(loads, t);
+    loads -= thermal_loads;
+  }
+
+
+  template <int dim>
+  ForceBalance ElasticElements<dim>::forces(const Vector &u, const double t) const
+  {
+    Vector loads, reactions;
+    initialize_vector(loads);
+    initialize_vector(reactions);
+    assemble_loads(loads, t);
+    stiffness.vmult(reactions, u);
+    reactions -= loads;
+    std::map<types::boundary_id, Tensor<1, dim>> sums;
+    conditions->add_reactions(reactions, sums);
+    for_each_load(t, [&](const auto side, const auto, const unsigned int d, const double value) {
+      sums[side][d] += value;
+    });
+    return gather_forces(sums, scene, dofs.get_communicator());
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                             \
+  template void         ElasticElements<dim>::assemble_cell(CellData &) const;                \
+  template void         ElasticElements<dim>::assemble();                                     \
+  template void         ElasticElements<dim>::assemble_loads(Vector &, const double) const;   \
+  template void         ElasticElements<dim>::mechanical_loads(Vector &, const double) const; \
+  template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Bonds and cracks beside elastic finite elements.
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/scene/crack_geometry.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "elastic_cell_data.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  const ElasticCoupling<dim> &ElasticElements<dim>::bonds() const
+  {
+    return *coupling;
+  }
+
+  template <int dim>
+  const std::vector<bool> &ElasticElements<dim>::cut_cells() const
+  {
+    return cut;
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::find_cut_cells()
+  {
+    cut.assign(dofs.get_triangulation().n_active_cells(), false);
+    if (scene.cracks.mesh == CrackMesh::faces)
+      return;
+    const auto cracks = make_crack_geometries(scene.cracks.pieces(0.));
+    const auto is_cut = [&](const Cell &cell) {
+      for (const CrackGeometry<dim> &crack : cracks)
+        if (crack.is_near(cell->center(), cell->diameter()))
+          for (const unsigned int a : cell->vertex_indices())
+            for (unsigned int b = 0; b < a; ++b)
+              if (crack.separates(cell->vertex(a), cell->vertex(b)))
+                return true;
+      return false;
+    };
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        cut[cell->active_cell_index()] = is_cut(cell);
+  }
+
+
+  template <int dim>
+  double ElasticElements<dim>::thermal_strain(const Point<dim> &p) const
+  {
+    return thermal_strain_factor(scene.material.moduli(p), dim, scene.elasticity.plane) *
+           scene.material.thermal_expansion.value(p) * scene.elasticity.temperature_change.value(p);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::change_cell(const Cell &cell, CellData &data) const
+  {
+    if (coupling && coupling->change_cell(cell, data.stiffness))
+      {
+        // The remainder carries a uniform thermal strain like the whole cell less its bonds.
+        const double           strain = thermal_strain(cell->center());
+        dealii::Vector<double> free(data.thermal.size());
+        for (unsigned int a = 0; a < data.indices.size(); ++a)
+          for (unsigned int d = 0; d < dim; ++d)
+            free(dim * a + d) = strain * (cell->vertex(a)[d] - cell->center()[d]);
+        data.stiffness.vmult(data.thermal, free);
+        data.thermal_energy = 0.5 * (free * data.thermal);
+      }
+    double factor = cut[cell->active_cell_index()] ? 0. : 1.;
+    if (crack_factors.size() > 0)
+      {
+        double sum = 0.;
+        for (const auto i : data.indices)
+          sum += crack_factors(i);
+        factor *= sum / data.indices.size();
+      }
+    if (factor == 1.)
+      return;
+    data.stiffness *= factor;
+    data.thermal *= factor;
+    data.thermal_energy *= factor;
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::add_bond_pattern(TrilinosWrappers::SparsityPattern &pattern) const
+  {
+    std::vector<typename ElasticCoupling<dim>::Bond> bonds;
+    std::vector<types::global_dof_index>             columns;
+    for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
+      {
+        coupling->bonds_of(i, bonds);
+        if (bonds.empty())
+          continue;
+        columns.clear();
+        for (const auto &bond : bonds)
+          for (unsigned int d = 0; d < dim; ++d)
+            columns.push_back(dim * nodes->local_to_global(bond.neighbor) + d);
+        for (unsigned int d = 0; d < dim; ++d)
+          columns.push_back(dim * nodes->local_to_global(i) + d);
+        for (unsigned int d = 0; d < dim; ++d)
+          pattern.add_entries(dim * nodes->local_to_global(i) + d, columns.begin(), columns.end());
+      }
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &matrix,
+                                       const bool                      intact) const
+  {
+    std::vector<typename ElasticCoupling<dim>::Bond> bonds;
+    std::vector<types::global_dof_index>             columns;
+    std::vector<double>                              values[dim];
+    for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
+      {
+        coupling->bonds_of(i, bonds);
+        if (bonds.empty())
+          continue;
+        const auto own = nodes->local_to_global(i);
+        columns.clear();
+        for (unsigned int c = 0; c < dim; ++c)
+          {
+            columns.push_back(dim * own + c);
+            values[c].assign(dim, 0.);
+          }
+        for (const auto &bond : bonds)
+          {
+            if (bond.cut && !intact)
+              continue;
+            const double factor =
+              crack_factors.size() == 0 || intact ?
+                1. :
+                0.5 * (crack_factors.local_element(i) + crack_factors.local_element(bond.neighbor));
+            for (unsigned int e = 0; e < dim; ++e)
+              columns.push_back(dim * nodes->local_to_global(bond.neighbor) + e);
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int e = 0; e < dim; ++e)
+                {
+                  values[c].push_back(-factor * bond.block[c][e]);
+                  values[c][e] += factor * bond.block[c][e];
+                }
+          }
+        for (unsigned int c = 0; c < dim; ++c)
+          matrix.add(dim * own + c, columns.size(), columns.data(), values[c].data());
+      }
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::add_thermal_bonds()
+  {
+    std::vector<typename ElasticCoupling<dim>::Bond> bonds;
+    double                                           energy = 0.;
+    for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
+      {
+        coupling->bonds_of(i, bonds);
+        for (const auto &bond : bonds)
+          {
+            if (bond.cut)
+              continue;
+            const double factor =
+              crack_factors.size() == 0 ?
+                1. :
+                0.5 * (crack_factors.local_element(i) + crack_factors.local_element(bond.neighbor));
+            const Tensor<1, dim> xi = positions[bond.neighbor] - positions[i];
+            const double         strain =
+              0.5 * (thermal_strain(positions[i]) + thermal_strain(positions[bond.neighbor]));
+            const Tensor<1, dim> force = factor * strain * (bond.block * xi);
+            for (unsigned int d = 0; d < dim; ++d)
+              thermal_loads.local_element(dim * i + d) -= force[d];
+            energy += 0.25 * strain * (force * xi); // each bond is seen from both of its ends
+          }
+      }
+    thermal_energy += Utilities::MPI::sum(energy, dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::count_bonds()
+  {
+    std::vector<typename ElasticCoupling<dim>::Bond> bonds;
+    unsigned long long                               n_ends = 0;
+    for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
+      {
+        coupling->bonds_of(i, bonds);
+        n_ends +=
+          std::count_if(bonds.begin(), bonds.end(), [](const auto &bond) { return !bond.cut; });
+      }
+    n_bonds = Utilities::MPI::sum(n_ends, dofs.get_communicator()) / 2;
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::find_crack_factors()
+  {
+    Vector    marked(nodes), trace(nodes), expected(nodes), factors(nodes);
+    CellData &data = *cell_data;
+    std::vector<typename ElasticCoupling<dim>::Bond> bonds;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && cut[cell->active_cell_index()])
+        {
+          cell->get_dof_indices(data.indices);
+          for (const auto i : data.indices)
+            marked(i) = 1.;
+        }
+    marked.compress(VectorOperation::add);
+    for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
+      {
+        coupling->bonds_of(i, bonds);
+        if (std::any_of(bonds.begin(), bonds.end(), [](const auto &bond) { return bond.cut; }))
+          marked.local_element(i) = 1.;
+        for (const auto &bond : bonds)
+          if (!bond.cut)
+            trace.local_element(i) += 0.5 * dealii::trace(bond.block) *
+                                      (positions[bond.neighbor] - positions[i]).norm_square();
+      }
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          data.values.reinit(cell);
+          data.set_indices(cell);
+          assemble_cell(data);
+          change_cell(cell, data);
+          const Moduli moduli = scene.material.moduli(cell->center());
+          const double mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear,
+                       lambda = dim == 1 ? 0. : lambda_of(moduli, dim, scene.elasticity.plane);
+          const double share =
+            (dim * lambda + dim * (dim + 1) * mu) * cell->measure() / data.indices.size();
+          for (unsigned int a = 0; a < data.indices.size(); ++a)
+            {
+              expected(data.indices[a]) += share;
+              for (unsigned int b = 0; b < data.indices.size(); ++b)
+                for (unsigned int d = 0; d < dim; ++d)
+                  trace(data.indices[a]) -= 0.5 * data.stiffness(dim * a + d, dim * b + d) *
+                                            (cell->vertex(b) - cell->vertex(a)).norm_square();
+            }
+        }
+    trace.compress(VectorOperation::add);
+    expected.compress(VectorOperation::add);
+    for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
+      factors.local_element(i) =
+        marked.local_element(i) > 0. && trace.local_element(i) > 0. ?
+          std::clamp(expected.local_element(i) / trace.local_element(i), 0.5, 4.) :
+          1.;
+    factors.update_ghost_values();
+    crack_factors.swap(factors);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::throw_if_isolated() const
+  {
+    const double largest = stiffness_diagonal.linfty_norm();
+    std::string  message;
+    for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size() && message.empty(); ++i)
+      if (!(stiffness_diagonal.local_element(i) > 1e-13 * largest))
+        message =
+          "The node at " + place_of(i) +
+          " is isolated: cracks cut all cells around it, and no bond holds it. Use 'Models = coupled' with a zone around the "
+          "cracks, or 'Mesh = faces' in section 'Cracks'.";
+    throw_on_all_if_any(dofs.get_communicator(), message);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &matrix,
+                                             const bool                      with_bonds) const
+  {
+    matrix.reinit(stiffness);
+    CellData &data = *cell_data;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          data.values.reinit(cell);
+          data.set_indices(cell);
+          assemble_cell(data);
+          if (with_bonds && coupling)
+            coupling->change_cell(cell, data.stiffness);
+          for (unsigned int i = 0; i < data.unknowns.size(); ++i)
+            matrix.add(data.unknowns[i],
+                       data.unknowns.size(),
+                       data.unknowns.data(),
+                       &data.stiffness(i, 0));
+        }
+    if (with_bonds && coupling)
+      add_bonds(matrix, true);
+    matrix.compress(VectorOperation::add);
+  }
+
+
+  template <int dim>
+  double ElasticElements<dim>::lowest_remainder() const
+  {
+    CellData       &data   = *cell_data;
+    double          lowest = std::numeric_limits<double>::max();
+    const auto      n      = data.unknowns.size();
+    Eigen::MatrixXd matrix(n, n);
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && coupling)
+        {
+          data.values.reinit(cell);
+          data.set_indices(cell);
+          assemble_cell(data);
+          if (!coupling->change_cell(cell, data.stiffness))
+            continue;
+          for (unsigned int a = 0; a < n; ++a)
+            for (unsigned int b = 0; b < n; ++b)
+              matrix(a, b) = data.stiffness(a, b);
+          const double scale =
+            scene.material.moduli(cell->center()).shear * std::pow(cell->measure(), 1. - 2. / dim);
+          lowest =
+            std::min(lowest,
+                     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
+                         .eigenvalues()
+                         .minCoeff() /
+                       scale);
+        }
+    return Utilities::MPI::min(lowest, dofs.get_communicator());
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template const ElasticCoupling<dim> &ElasticElements<dim>::bonds() const;                        \
+  template const std::vector<bool>    &ElasticElements<dim>::cut_cells() const;                    \
+  template void                        ElasticElements<dim>::find_cut_cells();                     \
+  template void ElasticElements<dim>::change_cell(const Cell &, CellData &) const;                 \
+  template void ElasticElements<dim>::add_bond_pattern(TrilinosWrappers::SparsityPattern &) const; \
+  template void ElasticElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &, const bool)      \
+    const;                                                                                         \
+  template void   ElasticElements<dim>::add_thermal_bonds();                                       \
+  template void   ElasticElements<dim>::count_bonds();                                             \
+  template void   ElasticElements<dim>::find_crack_factors();                                      \
+  template void   ElasticElements<dim>::throw_if_isolated() const;                                 \
+  template double ElasticElements<dim>::lowest_remainder() const;                                  \
+  template void   ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &,          \
+                                                      const bool) const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

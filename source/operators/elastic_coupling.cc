@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/operators/elastic_exchange.h>
+
+namespace PeriDeal
+{
+  template <int dim>
+  double ElasticCoupling<dim>::zone_share() const
+  {
+    const Nodes<dim> &nodes = families().nodes();
+    double            in = 0., all = 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        all += nodes.volume(i);
+        in += in_zone(i) ? nodes.volume(i) : 0.;
+      }
+    return dealii::Utilities::MPI::sum(in, nodes.communicator()) /
+           dealii::Utilities::MPI::sum(all, nodes.communicator());
+  }
+
+
+  template <int dim>
+  std::unique_ptr<ElasticCoupling<dim>> make_elastic_coupling(Nodes<dim>       &nodes,
+                                                              const Scene<dim> &scene)
+  {
+    Zone<dim> zone(scene.coupling, scene.horizon());
+    zone.stay_in({{scene.domain.lower, scene.domain.upper}});
+    return std::make_unique<ElasticExchange<dim>>(nodes, scene, zone);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                    \
+  template class ElasticCoupling<dim>;                                               \
+  template std::unique_ptr<ElasticCoupling<dim>> make_elastic_coupling(Nodes<dim> &, \
+                                                                       const Scene<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/operators/elastic_operator.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    double length(const std::vector<double> &vector)
+    {
+      double square = 0.;
+      for (const double x : vector)
+        square += x * x;
+      return std::sqrt(square);
+    }
+  } // namespace
+
+
+  double ForceBalance::imbalance() const
+  {
+    std::vector<double> sum = body;
+    for (const auto &[name, force] : sides)
+      for (unsigned int d = 0; d < sum.size(); ++d)
+        sum[d] += force[d];
+    return length(sum);
+  }
+
+
+  double ForceBalance::throughput() const
+  {
+    double sum = length(body);
+    for (const auto &[name, force] : sides)
+      sum += length(force);
+    return 0.5 * sum;
+  }
+} // namespace PeriDeal

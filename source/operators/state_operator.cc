@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/interleaved.h>
+#include <perideal/base/user_error.h>
+#include <perideal/operators/elastic_elements.h>
+#include <perideal/operators/spectrum.h>
+#include <perideal/operators/state_operator.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  StateOperator<dim>::StateOperator(Nodes<dim> &nodes, const Scene<dim> &scene)
+    : scene(scene)
+    , bonds(nodes, scene)
+    , unknowns(interleaved(*nodes.partitioner(), dim))
+    , full(scene.elasticity.kinematics == Kinematics::full)
+  {
+    std::vector<NodeOnSide<dim>> on_sides;
+    for (const BoundaryShare &share : nodes.boundary_shares())
+      on_sides.push_back({share.node, share.id, nodes.position(share.node)});
+    conditions =
+      std::make_unique<DisplacementConditions<dim>>(on_sides, scene, nodes.communicator());
+    std::vector<Point<dim>> positions;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      positions.push_back(nodes.position(i));
+    conditions->pin(positions, scene, scene.domain.nodes == NodePlacement::cell_centers);
+    const auto &force = scene.initial_and_source.body_force;
+    loads_vary        = std::any_of(force.begin(), force.end(), [](const Expression &e) {
+      return e.depends_on_time();
+    });
+    for (const VectorCondition &condition : scene.boundary_conditions.traction)
+      for (const auto &value : condition.values)
+        loads_vary = loads_vary || (value && value->depends_on_time());
+    for (Vector *v : {&scratch, &mass, &stiffness_diagonal, &thermal_loads, &constant_loads})
+      initialize_vector(*v);
+    source.reinit(nodes.partitioner());
+    tau.reinit(nodes.partitioner());
+    weighted.reinit(nodes.partitioner());
+    find_laws();
+    store_bonds();
+    find_diagonal();
+    if (any_thermal && !full) // with full kinematics it is in the extensions
+      {
+        sum_forces(thermal_loads, scratch, true);
+        thermal_loads *= -1.;
+      }
+    if (!loads_vary)
+      find_loads(constant_loads, 0.);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_laws()
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    const PlaneState  plane = scene.elasticity.plane;
+    laws.resize(nodes.n_local());
+    double largest = 0., smallest = 1e300, hottest = 0.;
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      {
+        const Point<dim> &p      = nodes.position(i);
+        const Moduli      moduli = scene.material.moduli(p);
+        laws[i].law              = scene.elasticity.model == ElasticModel::bond_based ?
+                                     bond_law(moduli, dim, plane) :
+                                     state_law(moduli, dim, plane);
+        laws[i].thermal          = thermal_strain_factor(moduli, dim, plane) *
+                          scene.material.thermal_expansion.value(p) *
+                          scene.elasticity.temperature_change.value(p);
+        largest  = std::max(largest, laws[i].law.extension);
+        smallest = std::min(smallest, laws[i].law.extension);
+        hottest  = std::max(hottest, std::abs(laws[i].thermal));
+        if (i < nodes.n_owned())
+          for (unsigned int d = 0; d < dim; ++d)
+            mass.local_element(dim * i + d) = nodes.volume(i) * scene.material.density.value(p);
+      }
+    const MPI_Comm all = nodes.communicator();
+    any_thermal        = Utilities::MPI::max(hottest, all) > 0.;
+    several_phases     = Utilities::MPI::max(largest, all) >
+                     (1. + 1e-12) * Utilities::MPI::min(smallest, all);
+    volumetric = scene.elasticity.model == ElasticModel::state_based && dim > 1;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::store_bonds()
+  {
+    const Nodes<dim>                         &nodes = bonds.nodes();
+    std::vector<typename Families<dim>::Bond> family;
+    std::vector<double>                       weights; // W x^2
+    std::string                               message;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        bonds.bonds_of(i, family, false);
+        SymmetricTensor<2, dim> shape;
+        double                  q = 0.;
+        for (const auto &bond : family)
+          {
+            if (bond.cut || bond.intact == 0.)
+              continue;
+            AssertIndexRange(bond.neighbor, nodes.n_local()); // no fictitious nodes
+            const Tensor<1, dim> xi = bonds.bond_vector(i, bond.neighbor);
+            const double         w  = bond.intact / bonds.bond_conductivity(i, bond.neighbor);
+            neighbors.push_back(bond.neighbor);
+            moments.push_back(w * xi);
+            weights.push_back(w * xi.norm_square());
+            q += weights.back() / nodes.volume(i);
+            shape += w * symmetrize(outer_product(xi, xi));
+            n_bonds += 0.5; // at each end
+          }
+        starts.push_back(neighbors.size());
+        weighted.local_element(i) = q;
+        if (message.empty() && !(q > 0.))
+          message =
+            "The node at " + place_of(dim * i) +
+            " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
+        else if (message.empty() && eigenvalues(shape)[dim - 1] < 1e-9 * trace(shape))
+          message =
+            "All bonds of the node at " + place_of(dim * i) +
+            " lie in one line or plane, across which nothing holds it. Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+    weighted.update_ghost_values();
+    springs.resize(neighbors.size());
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+        {
+          const unsigned int j = neighbors[k];
+          springs[k]           = (laws[i].law.extension / weighted.local_element(i) +
+                        laws[j].law.extension / weighted.local_element(j)) /
+                       weights[k];
+        }
+    if (!full)
+      return;
+    across.resize(neighbors.size(), 0.);
+    for (const Tensor<1, dim> &p : moments)
+      lengths.push_back(p.norm());
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_dilatation_forces(const Vector &x, const bool thermal) const
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    const double     *u     = x.begin();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        Tensor<1, dim> own;
+        for (unsigned int d = 0; d < dim; ++d)
+          own[d] = u[dim * i + d];
+        double sum = 0.;
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            const double *const   v = u + dim * neighbors[k];
+            const Tensor<1, dim> &p = moments[k];
+            for (unsigned int d = 0; d < dim; ++d)
+              sum += p[d] * (v[d] - own[d]);
+            if (thermal)
+              sum -= 0.5 * (laws[i].thermal + laws[neighbors[k]].thermal) *
+                     (p * bonds.bond_vector(i, neighbors[k]));
+          }
+        const StateLaw &law  = laws[i].law;
+        const double    q    = weighted.local_element(i);
+        tau.local_element(i) = law.volumetric * law.dilatation * sum / (q * q * nodes.volume(i));
+      }
+    tau.update_ghost_values();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::sum_forces(Vector &y, const Vector &x, const bool thermal) const
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    const double     *u     = x.begin();
+    if (volumetric)
+      find_dilatation_forces(x, thermal);
+    const double *const t = tau.begin();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        Tensor<1, dim> own, force;
+        for (unsigned int d = 0; d < dim; ++d)
+          own[d] = u[dim * i + d];
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            const unsigned int    j       = neighbors[k];
+            const double *const   v       = u + dim * j;
+            const Tensor<1, dim> &p       = moments[k];
+            double                product = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              product += p[d] * (v[d] - own[d]);
+            if (thermal)
+              product -= 0.5 * (laws[i].thermal + laws[j].thermal) * (p * bonds.bond_vector(i, j));
+            const double size = springs[k] * product + t[i] + t[j];
+            for (unsigned int d = 0; d < dim; ++d)
+              force[d] += size * p[d];
+          }
+        for (unsigned int d = 0; d < dim; ++d)
+          y.local_element(dim * i + d) = -force[d];
+      }
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::multiply(Vector &y, const Vector &x) const
+  {
+    x.update_ghost_values();
+    sum_forces(y, x, false);
+    if (full)
+      add_geometric_forces(y, x);
+    x.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::initialize_vector(Vector &vector) const
+  {
+    vector.reinit(unknowns);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::apply(Vector &y, const Vector &x) const
+  {
+    ++this->applications;
+    multiply(y, x);
+    conditions->mask(y);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
+  {
+    unbalanced(r, u, t);
+    conditions->mask(r);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::unbalanced(Vector &r, const Vector &u, const double t) const
+  {
+    ++this->applications;
+    find_forces(r, u);
+    if (loads_vary)
+      find_loads(scratch, t);
+    r.sadd(-1., 1., loads_vary ? scratch : constant_loads);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::mechanical_loads(Vector &loads, const double t) const
+  {
+    find_loads(loads, t);
+    loads -= thermal_loads;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::distribute(Vector &u, const double t) const
+  {
+    conditions->distribute(u, t);
+  }
+
+  template <int dim>
+  void StateOperator<dim>::distribute_homogeneous(Vector &x) const
+  {
+    conditions->mask(x);
+  }
+
+  template <int dim>
+  void StateOperator<dim>::clear_constrained(Vector &y) const
+  {
+    conditions->mask(y);
+  }
+
+  template <int dim>
+  const Vector &StateOperator<dim>::lumped_capacity() const
+  {
+    return mass;
+  }
+
+  template <int dim>
+  const Vector &StateOperator<dim>::diagonal() const
+  {
+    return stiffness_diagonal;
+  }
+
+  template <int dim>
+  bool StateOperator<dim>::depends_on_time() const
+  {
+    return loads_vary || conditions->depends_on_time();
+  }
+
+  template <int dim>
+  bool StateOperator<dim>::has_steady_state() const
+  {
+    return true; // scenes that leave rigid motions free are refused when they are read
+  }
+
+  template <int dim>
+  bool StateOperator<dim>::surrogate_is_exact() const
+  {
+    return false;
+  }
+
+  template <int dim>
+  std::vector<Vector> StateOperator<dim>::near_null_space() const
+  {
+    std::vector<Point<dim>> positions;
+    for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
+      positions.push_back(bonds.nodes().position(i));
+    return rigid_motions(positions, mass);
+  }
+
+  template <int dim>
+  std::string StateOperator<dim>::place_of(const unsigned int local_index) const
+  {
+    const Point<dim>  &p = bonds.nodes().position(local_index / dim);
+    std::ostringstream text;
+    text << '(';
+    for (unsigned int d = 0; d < dim; ++d)
+      text << (d > 0 ? ", " : "") << p[d];
+    text << ')';
+    return text.str();
+  }
+
+  template <int dim>
+  OperatorSize StateOperator<dim>::size() const
+  {
+    const MPI_Comm all = bonds.nodes().communicator();
+    OperatorSize   size;
+    size.unknowns = unknowns->size();
+    size.bonds    = std::llround(Utilities::MPI::sum(n_bonds, all));
+    size.nonzeros =
+      std::llround(Utilities::MPI::sum(static_cast<double>(neighbors.size()) * (dim + 1.), all));
+    size.memory =
+      bonds.memory_consumption() +
+      neighbors.size() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
+      laws.size() * sizeof(NodeLaw);
+    size.form = "stored";
+    return size;
+  }
+
+  template <int dim>
+  unsigned int StateOperator<dim>::n_components() const
+  {
+    return dim;
+  }
+
+  template <int dim>
+  const Families<dim> &StateOperator<dim>::families() const
+  {
+    return bonds;
+  }
+
+
+  template <int dim>
+  template <typename Visit>
+  void StateOperator<dim>::for_each_load(const double t, const Visit &visit) const
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    const auto       &force = scene.initial_and_source.body_force;
+    for (unsigned int i = 0; i < nodes.n_owned() && !force.empty(); ++i)
+      for (unsigned int d = 0; d < dim; ++d)
+        visit(numbers::internal_face_boundary_id,
+              dim * i + d,
+              nodes.volume(i) * force[d].value(nodes.position(i), t));
+    for (const VectorCondition &condition : scene.boundary_conditions.traction)
+      for (const BoundaryShare &share : nodes.boundary_shares())
+        if (share.id == condition.id)
+          for (unsigned int d = 0; d < dim; ++d)
+            visit(condition.id,
+                  dim * share.node + d,
+                  share.area * condition.values[d]->value(nodes.position(share.node), t));
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_loads(Vector &loads, const double t) const
+  {
+    loads = thermal_loads;
+    for_each_load(t, [&](const auto, const unsigned int unknown, const double value) {
+      loads.local_element(unknown) += value;
+    });
+  }
+
+
+  template <int dim>
+  ForceBalance StateOperator<dim>::forces(const Vector &u, const double t) const
+  {
+    Vector loads, reactions;
+    initialize_vector(loads);
+    initialize_vector(reactions);
+    find_loads(loads, t);
+    find_forces(reactions, u);
+    reactions -= loads;
+    std::map<types::boundary_id, Tensor<1, dim>> sums;
+    conditions->add_reactions(reactions, sums);
+    for_each_load(t, [&](const auto side, const unsigned int unknown, const double value) {
+      sums[side][unknown % dim] += value;
+    });
+    return gather_forces(sums, scene, bonds.nodes().communicator());
+  }
+
+
+  template class StateOperator<1>;
+  template class StateOperator<2>;
+  template class StateOperator<3>;
+} // namespace PeriDeal

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// What follows from the displacements, and what a solver asks for beside K u.
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <perideal/base/interleaved.h>
+#include <perideal/operators/spectrum.h>
+#include <perideal/operators/state_operator.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  void StateOperator<dim>::find_diagonal()
+  {
+    // The energy is 1/4 sum over directed bonds of s (p . eta)^2 + 1/2 sum m_k (sum p . eta)^2 with m = c d/(q^2 V).
+    const Nodes<dim>   &nodes = bonds.nodes();
+    std::vector<double> factor(nodes.n_local());
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      {
+        const double q = weighted.local_element(i);
+        factor[i]      = volumetric ?
+                           laws[i].law.volumetric * laws[i].law.dilatation / (q * q * nodes.volume(i)) :
+                           0.;
+      }
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        Tensor<1, dim> sum, diagonal;
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            sum += moments[k];
+            for (unsigned int d = 0; d < dim; ++d)
+              diagonal[d] += (springs[k] + factor[neighbors[k]]) * moments[k][d] * moments[k][d];
+          }
+        for (unsigned int d = 0; d < dim; ++d)
+          stiffness_diagonal.local_element(dim * i + d) = diagonal[d] + factor[i] * sum[d] * sum[d];
+      }
+    conditions->mask(stiffness_diagonal, 1.);
+  }
+
+
+  template <int dim>
+  Spectrum StateOperator<dim>::spectrum() const
+  {
+    // Rows of |K|: twice the springs, and for the dilatations |c_ij| summed over both of their ends.
+    const Nodes<dim> &nodes = bonds.nodes();
+    source.zero_out_ghost_values();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        double         length = 0.;
+        Tensor<1, dim> sum;
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            length += moments[k].norm();
+            sum += moments[k];
+          }
+        const double q          = weighted.local_element(i);
+        source.local_element(i) = volumetric ?
+                                    std::abs(laws[i].law.volumetric) * laws[i].law.dilatation *
+                                      (length + sum.norm()) / (q * q * nodes.volume(i)) :
+                                    0.;
+      }
+    source.update_ghost_values();
+    double bound = 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        double         row = 0.;
+        Tensor<1, dim> sum;
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            row += 2. * springs[k] * moments[k].norm_square() +
+                   source.local_element(neighbors[k]) * moments[k].norm();
+            sum += moments[k];
+          }
+        for (std::size_t k = starts[i]; full && k < starts[i + 1]; ++k)
+          row += 2. * std::abs(across[k]);
+        row += source.local_element(i) * sum.norm();
+        bound =
+          std::max(bound, std::sqrt(static_cast<double>(dim)) * row / mass.local_element(dim * i));
+      }
+    bound = Utilities::MPI::max(bound, nodes.communicator());
+    return {bound, sharp_bound(*this, bound, [&](Vector &vector) { fill_noise(vector); })};
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::energy(const Vector &u) const
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    u.update_ghost_values();
+    if (volumetric && full)
+      find_deformed_dilatation_forces(u);
+    else if (volumetric)
+      find_dilatation_forces(u, any_thermal);
+    double sum = 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            const double product = extension_moment(u.begin(), i, k);
+            sum += 0.25 * springs[k] * product * product;
+          }
+        const StateLaw &law = laws[i].law;
+        if (volumetric && law.volumetric != 0.)
+          {
+            const double theta = tau.local_element(i) * weighted.local_element(i) / law.volumetric;
+            sum += 0.5 * law.volumetric / law.dilatation * nodes.volume(i) * theta * theta;
+          }
+      }
+    u.set_ghost_state(false);
+    return Utilities::MPI::sum(sum, nodes.communicator());
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::dilatations(const Vector &u, std::vector<double> &theta) const
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    u.update_ghost_values();
+    theta.assign(nodes.n_owned(), 0.);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          theta[i] += extension_moment(u.begin(), i, k);
+        theta[i] *= laws[i].law.dilatation / (weighted.local_element(i) * nodes.volume(i));
+      }
+    u.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  NodalTensors<dim> StateOperator<dim>::tensors(const Vector &u) const
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    NodalTensors<dim> result;
+    result.stress.resize(nodes.n_owned());
+    result.strain.resize(nodes.n_owned());
+    u.update_ghost_values();
+    if (volumetric && full)
+      find_deformed_dilatation_forces(u);
+    else if (volumetric)
+      find_dilatation_forces(u, any_thermal);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        Tensor<2, dim> gradient, shape, stress;
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            const unsigned int   j  = neighbors[k];
+            const Tensor<1, dim> xi = bonds.bond_vector(i, j);
+            Tensor<1, dim>       eta;
+            for (unsigned int d = 0; d < dim; ++d)
+              eta[d] = u.begin()[dim * j + d] - u.begin()[dim * i + d];
+            const double x2      = xi.norm_square();
+            const double weight  = full ? lengths[k] / std::sqrt(x2) : (moments[k] * xi) / x2; // W
+            const double product = extension_moment(u.begin(), i, k); // W x e
+            gradient += weight * outer_product(eta, xi);
+            shape += weight * outer_product(xi, xi);
+            // V_i V_j t/x, of this end or the mean of both
+            const double         own   = laws[i].law.extension / weighted.local_element(i);
+            const double         force = several_phases ?
+                                           0.5 * (weight * (tau.local_element(i) + tau.local_element(j)) +
+                                          springs[k] * weight * product) :
+                                           weight * tau.local_element(i) + own * product / x2;
+            const Tensor<1, dim> y     = xi + eta;
+            if (full)
+              stress += force * std::sqrt(x2) / y.norm() * outer_product(y, y);
+            else
+              stress += force * outer_product(xi, xi);
+          }
+        const Tensor<2, dim> slopes = gradient * invert(shape);
+        result.strain[i]            = symmetrize(slopes);
+        result.stress[i]            = symmetrize(stress) / nodes.volume(i);
+        if (!full)
+          continue;
+        result.strain[i] += 0.5 * symmetrize(transpose(slopes) * slopes);
+        result.stress[i] /= determinant(Tensor<2, dim>(unit_symmetric_tensor<dim>()) + slopes);
+      }
+    u.set_ghost_state(false);
+    return result;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    // Springs between the nearest nodes, diagonals of cells included, as stiff as the bond-based solid.
+    const Nodes<dim>        &nodes = bonds.nodes();
+    const IndexSet           owned = unknowns->locally_owned_range();
+    std::vector<std::size_t> first{0};
+    std::vector<std::size_t> near; // of the stored bonds
+    Vector                   sums(nodes.partitioner());
+    const auto               is_near = [&](const unsigned int i, const Tensor<1, dim> &xi) {
+      const double size = std::pow(nodes.volume(i), 1. / dim);
+      if (!nodes.lattice())
+        return xi.norm() < 1.8 * size;
+      bool is = true;
+      for (unsigned int d = 0; d < dim; ++d)
+        is = is && std::abs(xi[d]) < 1.5 * nodes.lattice()->spacing[d];
+      return is;
+    };
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            const Tensor<1, dim> xi = bonds.bond_vector(i, neighbors[k]);
+            if (!is_near(i, xi) && !is_near(neighbors[k], xi))
+              continue;
+            near.push_back(k);
+            sums.local_element(i) += nodes.volume(neighbors[k]) * xi.norm_square();
+          }
+        first.push_back(near.size());
+      }
+    sums.update_ghost_values();
+    Vector marked;
+    initialize_vector(marked);
+    conditions->mask(marked, 1.);
+    marked.update_ghost_values();
+
+    TrilinosWrappers::SparsityPattern    pattern(owned,
+                                              nodes.communicator(),
+                                              dim * (dim == 3 ? 27 :
+                                                        dim == 2 ? 9 :
+                                                                   3));
+    std::vector<types::global_dof_index> columns;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        columns.clear();
+        for (unsigned int d = 0; d < dim; ++d)
+          columns.push_back(unknowns->local_to_global(dim * i + d));
+        for (std::size_t n = first[i]; n < first[i + 1]; ++n)
+          for (unsigned int d = 0; d < dim; ++d)
+            columns.push_back(unknowns->local_to_global(dim * neighbors[near[n]] + d));
+        for (unsigned int d = 0; d < dim; ++d)
+          pattern.add_entries(columns[d], columns.begin(), columns.end());
+      }
+    pattern.compress();
+    matrix.reinit(pattern);
+    const auto stiffness_of = [&](const unsigned int i) {
+      const Moduli moduli = scene.material.moduli(nodes.position(i));
+      return bond_law(moduli, dim, scene.elasticity.plane).extension;
+    };
+    std::vector<double> extension(nodes.n_local());
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      extension[i] = stiffness_of(i);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        Tensor<2, dim> own;
+        const auto     add = [&](const unsigned int j, const Tensor<2, dim> &block) {
+          for (unsigned int d = 0; d < dim; ++d)
+            for (unsigned int e = 0; e < dim; ++e)
+              {
+                const unsigned int row = dim * i + d, column = dim * j + e;
+                const bool         held = marked.local_element(row) > 0. ||
+                                  marked.local_element(column) > 0.;
+                const double value = !held ? block[d][e] : (row == column ? 1. : 0.);
+                matrix.set(unknowns->local_to_global(row),
+                           unknowns->local_to_global(column),
+                           value);
+              }
+        };
+        for (std::size_t n = first[i]; n < first[i + 1]; ++n)
+          {
+            const unsigned int   j  = neighbors[near[n]];
+            const Tensor<1, dim> xi = bonds.bond_vector(i, j);
+            const double         spring =
+              nodes.volume(i) * nodes.volume(j) *
+              (extension[i] / sums.local_element(i) + extension[j] / sums.local_element(j)) /
+              xi.norm_square();
+            const Tensor<2, dim> block = spring * outer_product(xi, xi);
+            own += block;
+            add(j, -block);
+          }
+        for (unsigned int d = 0; d < dim; ++d) // a node that springs alone would not hold
+          own[d][d] += 1e-8 * stiffness_diagonal.local_element(dim * i + d);
+        add(i, own);
+      }
+    matrix.compress(VectorOperation::insert);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                 \
+  template void     StateOperator<dim>::find_diagonal();                                          \
+  template Spectrum StateOperator<dim>::spectrum() const;                                         \
+  template double   StateOperator<dim>::energy(const Vector &) const;                             \
+  template void     StateOperator<dim>::dilatations(const Vector &, std::vector<double> &) const; \
+  template NodalTensors<dim> StateOperator<dim>::tensors(const Vector &) const;                   \
+  template void              StateOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &) const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

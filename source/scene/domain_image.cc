@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// `Shape = image`: the entries of section `Domain` for it, and the body that they describe.
+
+#include <perideal/base/user_error.h>
+#include <perideal/scene/domain.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  void Domain<dim>::declare_image()
+  {
+    declare(
+      "Image",
+      EntryType::text,
+      "",
+      "",
+      "With `Shape = image`: a PNG, PGM or PPM file, relative to the working directory or else to the folder of the scene file. "
+      "Its top row is the largest y.");
+    declare(
+      "Image colors",
+      EntryType::list,
+      "",
+      "",
+      "What the pixels are: `name: colour`, several separated by `;`. A colour is `rgb(255,0,0)`, one grey `128`, or a range of "
+      "greys `40..140` (0.299 red + 0.587 green + 0.114 blue), which counts where no colour is near. A name may come several times. Names are "
+      "phases of the material, as in section `Material/Phases`; the name `void` is where there is none, and so are transparent pixels.");
+    declare(
+      "Color tolerance",
+      EntryType::number,
+      "30",
+      "1",
+      "How far a pixel may be from the nearest colour of `Image colors`, as a distance in (red, green, blue) from 0 to 441.");
+    declare(
+      "Pixels per cell",
+      EntryType::whole_number,
+      "1",
+      "1",
+      "Edge of the block of pixels that is one cell, of the phase of its middle pixel (of an even number, that right of and below the "
+      "middle). Incomplete blocks at the right and lower edge are left out.");
+    declare("Cells per pixel",
+            EntryType::whole_number,
+            "1",
+            "1",
+            "Edge of the block of cells that one pixel, or one block of pixels, is divided into.");
+    declare(
+      "Pixel size",
+      EntryType::text,
+      "",
+      "length",
+      "Edge of a pixel; the image then begins at `Lower corner`. Empty: it fills the box between `Lower corner` and `Upper corner`.");
+    declare(
+      "Islands",
+      EntryType::choice,
+      "error",
+      "",
+      "What to do with parts of an image that no side holds, where the solution would not be determined: an error that names them; "
+      "`remove` them; or `pin` each at two of its points (elasticity).",
+      {"error", "remove", "pin"});
+  }
+
+
+  template <int dim>
+  void Domain<dim>::refuse_image_entries() const
+  {
+    for (const std::string entry : {"Image",
+                                    "Image colors",
+                                    "Color tolerance",
+                                    "Pixels per cell",
+                                    "Cells per pixel",
+                                    "Pixel size",
+                                    "Islands"})
+      if (is_given(entry))
+        error(entry, "is given, but 'Shape' is '" + text("Shape") + "', not 'image'.");
+  }
+
+
+  template <int dim>
+  void Domain<dim>::set_size_of_image()
+  {
+    if (text("Pixel size").empty())
+      return;
+    const double size = parse_number(text("Pixel size"), where("Pixel size"));
+    if (!(size > 0.))
+      error("Pixel size", "found " + text("Pixel size") + ", needs a length greater than 0.");
+    if (is_given("Upper corner"))
+      error("Pixel size", "'Upper corner' is given, too: give one of the two.");
+    const double cell = size * whole_number("Pixels per cell") / whole_number("Cells per pixel");
+    for (unsigned int d = 0; d < dim; ++d)
+      upper[d] = lower[d] + cell * cells[d];
+  }
+
+
+  template <int dim>
+  void Domain<dim>::parse_image()
+  {
+    if (dim != 2)
+      error("Shape", "'image' needs 'Dimension' 2.");
+    for (const std::string entry : {"Cells", "Node spacing"})
+      if (is_given(entry))
+        error(
+          entry,
+          "is given, but with 'Shape = image' the pixels are the cells; use 'Pixels per cell' or 'Cells per pixel'.");
+    if (text("Image").empty())
+      error("Image", "is empty, but 'Shape' is 'image'.");
+    const double tolerance = number("Color tolerance");
+    if (tolerance < 0.)
+      error("Color tolerance", "found " + text("Color tolerance") + ", needs 0 or more.");
+    for (const std::string entry : {"Pixels per cell", "Cells per pixel"})
+      if (whole_number(entry) < 1 || whole_number(entry) > 1000)
+        error(entry, "found " + text(entry) + ", needs a number from 1 to 1000.");
+
+    const std::filesystem::path beside = std::filesystem::path(scene_folder) / text("Image");
+    image_file = std::filesystem::exists(text("Image")) || !std::filesystem::exists(beside) ?
+                   text("Image") :
+                   beside.string();
+    Picture picture;
+    try
+      {
+        picture = read_picture(image_file, communicator);
+      }
+    catch (const UserError &fault)
+      {
+        error("Image", fault.message());
+      }
+    if (text("Image colors").empty())
+      error("Image colors",
+            "is empty; it says which colour is which phase. The colours of the image are: " +
+              frequent_colors(picture, 6) + ".");
+    const unsigned int block = whole_number("Pixels per cell");
+    if (picture.n_columns < block || picture.n_rows < block)
+      error("Pixels per cell",
+            "found " + text("Pixels per cell") + ", more than the image has: " +
+              std::to_string(picture.n_columns) + " x " + std::to_string(picture.n_rows) + ".");
+    const ImageColors colors(text("Image colors"), tolerance, where("Image colors"));
+    image = std::make_shared<PhaseMap>(make_phase_map(picture,
+                                                      colors,
+                                                      block,
+                                                      whole_number("Cells per pixel"),
+                                                      where("Image colors")));
+    for (unsigned int d = 0; d < dim; ++d)
+      cells[d] = image->n_cells[std::min(d, 1u)];
+    require_countable("Image");
+    set_size_of_image();
+    for (unsigned int d = 0; d < dim && d < 2; ++d)
+      {
+        image->lower[d]   = lower[d];
+        image->spacing[d] = (upper[d] - lower[d]) / cells[d];
+      }
+    islands = choice<IslandRule>("Islands");
+    if (picture.n_columns % block != 0 || picture.n_rows % block != 0)
+      notes.push_back("'Pixels per cell' leaves out " + std::to_string(picture.n_columns % block) +
+                      " columns of pixels at the right and " +
+                      std::to_string(picture.n_rows % block) + " rows at the lower edge.");
+  }
+
+
+  template <int dim>
+  bool Domain<dim>::has_cell_at(const Point<dim> &center) const
+  {
+    if constexpr (dim == 2)
+      if (image)
+        return image->at(center[0], center[1]) != PhaseMap::empty;
+    return !in_hole(center);
+  }
+
+
+  template <int dim>
+  bool Domain<dim>::leaves_body(const Point<dim> &a, const Point<dim> &b) const
+  {
+    // Between two crossings of lattice planes the way stays in one cell, or on the edge of several.
+    const Tensor<1, dim> h = spacing();
+    std::vector<double>  crossings{0., 1.};
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double from = (a[d] - lower[d]) / h[d], to = (b[d] - lower[d]) / h[d];
+        for (double k = std::ceil(std::min(from, to)); k < std::max(from, to); ++k)
+          if (k > std::min(from, to))
+            crossings.push_back((k - from) / (to - from));
+      }
+    std::sort(crossings.begin(), crossings.end());
+    constexpr double slack = 1e-7;
+    for (std::size_t k = 1; k < crossings.size(); ++k)
+      {
+        if (crossings[k] - crossings[k - 1] < slack)
+          continue;
+        const double     s = 0.5 * (crossings[k] + crossings[k - 1]);
+        const Point<dim> p(a + s * (b - a));
+        bool             exists = false;
+        for (unsigned int side = 0; side < (1u << dim); ++side)
+          {
+            Point<dim> center;
+            bool       inside = true;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const double i =
+                  std::floor((p[d] - lower[d]) / h[d] + ((side >> d) % 2 == 1 ? slack : -slack));
+                inside    = inside && i >= 0. && i < cells[d];
+                center[d] = lower[d] + (i + 0.5) * h[d];
+              }
+            exists = exists || (inside && has_cell_at(center));
+          }
+        if (!exists)
+          return true;
+      }
+    return false;
+  }
+
+
+  template <int dim>
+  bool Domain<dim>::has_voids() const
+  {
+    return shape == Shape::plate_with_hole || (image && image->has_voids());
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                       \
+  template void Domain<dim>::declare_image();                                           \
+  template void Domain<dim>::refuse_image_entries() const;                              \
+  template void Domain<dim>::set_size_of_image();                                       \
+  template void Domain<dim>::parse_image();                                             \
+  template bool Domain<dim>::leaves_body(const Point<dim> &, const Point<dim> &) const; \
+  template bool Domain<dim>::has_cell_at(const Point<dim> &) const;                     \
+  template bool Domain<dim>::has_voids() const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

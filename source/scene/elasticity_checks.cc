@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// What elasticity needs of the rest of a scene.
+
+#include <perideal/scene/lists.h>
+#include <perideal/scene/rigid_motions.h>
+#include <perideal/scene/scene.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    bool runs(const Scene<dim> &scene, const Model model)
+    {
+      const std::vector<Model> &models = scene.general.models;
+      return std::find(models.begin(), models.end(), model) != models.end();
+    }
+
+
+    /** Entries of section `Peridynamics` that elasticity does not have. */
+    template <int dim>
+    void check_peridynamics(const Scene<dim> &scene)
+    {
+      const Peridynamics &pd     = scene.peridynamics;
+      const auto          refuse = [&](const bool         given,
+                              const std::string &entry,
+                              const std::string &what,
+                              const std::string &remedy) {
+        if (given)
+          entry_error(pd.where(entry), what + " with 'Physics = elasticity'; " + remedy);
+      };
+      const std::string no_effect = "has no effect";
+      // On square cells any factor cancels; on others the factors of `discrete` make theta exact (doc/elasticity.md).
+      refuse(pd.calibration != Calibration::discrete,
+             "Calibration",
+             "'analytic' is not for use",
+             "bonds are scaled by the sums over their own families. Leave the entry out.");
+      refuse(pd.self_term != SelfTerm::none, "Self term", no_effect, "use 'none'.");
+      refuse(pd.flux_treatment != FluxTreatment::natural,
+             "Flux treatment",
+             no_effect,
+             "use 'natural', and 'Traction layer' in section 'Boundary conditions'.");
+      refuse(pd.surface_correction == SurfaceCorrection::energy,
+             "Surface correction",
+             "'energy' is not defined",
+             "use 'none' or 'crack scaling'.");
+      refuse(pd.treatment == BoundaryTreatment::fictitious_mirror ||
+               pd.treatment == BoundaryTreatment::fictitious_constant,
+             "Boundary treatment",
+             "fictitious nodes are not defined",
+             "use 'none' or 'layer'.");
+      refuse(pd.treatment == BoundaryTreatment::exchange &&
+               scene.elasticity.model == ElasticModel::state_based &&
+               runs(scene, Model::peridynamics),
+             "Boundary treatment",
+             "'exchange' has no place for the nonlocal dilatation of 'Model = state-based'",
+             "use 'none', or 'Model = bond-based' in section 'Elasticity'.");
+    }
+
+
+    template <int dim>
+    void check_coupling_of_elasticity(const Scene<dim> &scene)
+    {
+      if (!runs(scene, Model::coupled))
+        return;
+      if (scene.coupling.zone == ZoneKind::adaptive)
+        entry_error(
+          scene.coupling.where("Zone"),
+          "'adaptive' is for what diffuses; with 'Physics = elasticity' use 'cracks: 1' or a formula.");
+      if (scene.domain.shape == Shape::mesh_file)
+        entry_error(
+          scene.domain.where("Shape"),
+          "'mesh file' is not for 'Models = coupled' with 'Physics = elasticity', whose bonds lie on a lattice. Use 'box' or 'plate with hole'.");
+      if (scene.elasticity.kinematics == Kinematics::full)
+        entry_error(
+          scene.elasticity.where("Kinematics"),
+          "'full' is not for 'Models = coupled', whose coefficients are those of the undeformed body.");
+    }
+
+
+    bool is_for_motion(const std::string &stepper)
+    {
+      return stepper == "verlet" || stepper == "newmark";
+    }
+
+
+    /** An equilibrium has no time. */
+    template <int dim>
+    void check_time(const Scene<dim> &scene)
+    {
+      const BoundaryConditions<dim> &bc      = scene.boundary_conditions;
+      const InitialAndSource        &loads   = scene.initial_and_source;
+      const std::string             &stepper = scene.time.stepper;
+      if (stepper != "auto" && !is_for_motion(stepper))
+        entry_error(
+          scene.time.where("Stepper"),
+          "'" + stepper +
+            "' is for what diffuses; with 'Physics = elasticity' the 'Solver' in section 'Elasticity' decides. Use 'auto', and with "
+            "'dynamics' also 'verlet' or 'newmark'.");
+      if (stepper != "auto" && scene.elasticity.is_static())
+        entry_error(scene.time.where("Stepper"),
+                    "'" + stepper + "' is for motion, but 'Solver' in section 'Elasticity' is '" +
+                      scene.elasticity.solver_name() + "'. Use 'Solver = dynamics'.");
+      if (!scene.elasticity.is_static())
+        {
+          if (scene.time.steady)
+            entry_error(
+              scene.time.where("Steady"),
+              "is true, but 'Solver' in section 'Elasticity' is 'dynamics'. Use another solver for the equilibrium.");
+          return;
+        }
+      const auto refuse = [&](const bool depends, const std::string &where) {
+        if (depends)
+          entry_error(where,
+                      "depends on t, but 'Solver' in section 'Elasticity' is '" +
+                        scene.elasticity.solver_name() +
+                        "', which finds an equilibrium. Use 'dynamics', or leave t out.");
+      };
+      for (const VectorCondition &condition : bc.displacement)
+        refuse(condition.depends_on_time(),
+               bc.where("Displacement") + ", side '" + condition.name + "'");
+      for (const VectorCondition &condition : bc.traction)
+        refuse(condition.depends_on_time(),
+               bc.where("Traction") + ", side '" + condition.name + "'");
+      const auto has_start = [&](const std::vector<Expression> &list, const std::string &entry) {
+        if (!list.empty())
+          entry_error(loads.where(entry),
+                      "has no effect: 'Solver' in section 'Elasticity' is '" +
+                        scene.elasticity.solver_name() +
+                        "', which finds an equilibrium. Use 'dynamics', or leave the entry out.");
+      };
+      has_start(loads.initial_displacement, "Initial displacement");
+      has_start(loads.initial_velocity, "Initial velocity");
+      for (const Expression &force : loads.body_force)
+        refuse(force.depends_on_time(), loads.where("Body force"));
+    }
+
+
+    /** Every rigid motion has to be held by some side. */
+    template <int dim>
+    void check_rigid_motions(const Scene<dim> &scene)
+    {
+      if (!scene.elasticity.is_static())
+        return; // a free body may move
+      const std::vector<std::string> motions = free_rigid_motions(scene);
+      if (!motions.empty())
+        entry_error(scene.boundary_conditions.where("Displacement"),
+                    "nothing holds the body against: " + join_names(motions) +
+                      ". Give displacements, or 'Symmetry', on sides that do.");
+    }
+  } // namespace
+
+
+  template <int dim>
+  void Scene<dim>::check_elasticity() const
+  {
+    if (general.physics != Physics::elasticity)
+      {
+        if (is_for_motion(time.stepper))
+          entry_error(time.where("Stepper"),
+                      "'" + time.stepper +
+                        "' is for motion ('Physics = elasticity'); 'Physics' is '" +
+                        names_of(general.physics).physics + "'. Use 'auto'.");
+        return;
+      }
+    const bool changes_temperature = !is_zero(elasticity.temperature_change);
+    if (changes_temperature && material.thermal_expansion.is_constant() &&
+        material.thermal_expansion.value(Point<dim>()) == 0.)
+      entry_error(elasticity.where("Temperature change"),
+                  "has no effect: 'Thermal expansion' in section 'Material' is 0.");
+    if (cracks.mesh == CrackMesh::pairs && !cracks.cracks.empty())
+      entry_error(
+        cracks.where("Mesh"),
+        "'pairs' conduct what diffuses; with 'Physics = elasticity' use 'removed' or 'faces'.");
+    if (cracks.conduct())
+      entry_error(
+        cracks.where(cracks.contact_conductance < 0. ? "Transmission" : "Contact conductance"),
+        "is for what diffuses; cracks transmit no force with 'Physics = elasticity'.");
+    if (boundary_conditions.traction_layer > 0. && domain.shape != Shape::mesh_file)
+      {
+        double longest = 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          longest = std::max(longest, domain.upper[d] - domain.lower[d]);
+        if (boundary_conditions.traction_layer > longest)
+          entry_error(boundary_conditions.where("Traction layer"),
+                      "found " + number_text(boundary_conditions.traction_layer) +
+                        ", wider than the body, " + number_text(longest) + ".");
+      }
+    check_time(*this);
+    check_peridynamics(*this);
+    check_coupling_of_elasticity(*this);
+    check_rigid_motions(*this);
+  }
+
+
+  template void Scene<1>::check_elasticity() const;
+  template void Scene<2>::check_elasticity() const;
+  template void Scene<3>::check_elasticity() const;
+} // namespace PeriDeal

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// The parts of an image that no side holds, and what the user should know of the image.
+
+#include <perideal/scene/lists.h>
+#include <perideal/scene/scene.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    using Offset = std::array<int, 2>;
+
+    bool runs(const Scene<2> &scene, const Model model)
+    {
+      const std::vector<Model> &models = scene.general.models;
+      return std::find(models.begin(), models.end(), model) != models.end();
+    }
+
+
+    bool is_elastic(const Scene<2> &scene)
+    {
+      return scene.general.physics == Physics::elasticity;
+    }
+
+
+    std::string place_text(const Point<2> &p)
+    {
+      char text[80];
+      std::snprintf(text, sizeof text, "(%.6g, %.6g)", p[0], p[1]);
+      return text;
+    }
+
+
+    std::string percent(const double share)
+    {
+      char text[40];
+      std::snprintf(text, sizeof text, "%.3g %%", 100. * share);
+      return text;
+    }
+
+
+    /** Half of the offsets between cells that are connected: those with a common face; for bonds alone, all within the horizon. */
+    std::vector<Offset> connections(const Scene<2> &scene)
+    {
+      std::vector<Offset> list{{{1, 0}}, {{0, 1}}};
+      if (runs(scene, Model::finite_elements) || runs(scene, Model::coupled) ||
+          scene.peridynamics.treatment == BoundaryTreatment::exchange)
+        return list;
+      const Tensor<1, 2> h       = scene.domain.spacing();
+      const double       horizon = scene.horizon() * (1. - 1e-9);
+      const int mx = static_cast<int>(horizon / h[0]), my = static_cast<int>(horizon / h[1]);
+      list.clear();
+      for (int j = 0; j <= my; ++j)
+        for (int i = -mx; i <= mx; ++i)
+          if ((j > 0 || i > 0) && std::hypot(i * h[0], j * h[1]) < horizon)
+            list.push_back({{i, j}});
+      return list;
+    }
+
+
+    /** What holds on a side of the body: components of the displacement, or in component 0 a value of what diffuses. */
+    std::array<bool, 2> held_on_side(const Scene<2> &scene, const types::boundary_id side)
+    {
+      const auto         &conditions = scene.boundary_conditions;
+      std::array<bool, 2> held{{false, false}};
+      if (is_elastic(scene))
+        {
+          for (const VectorCondition &condition : conditions.displacement)
+            if (condition.id == side)
+              for (unsigned int d = 0; d < 2; ++d)
+                held[d] = held[d] || condition.values[d].has_value();
+          for (const types::boundary_id id : conditions.symmetry)
+            if (id == side)
+              held[id / 2] = true;
+        }
+      else
+        held[0] = BoundaryConditions<2>::find(conditions.dirichlet, side) != nullptr ||
+                  BoundaryConditions<2>::find(conditions.convection, side) != nullptr;
+      return held;
+    }
+
+
+    /** One of the connected parts. */
+    struct Part
+    {
+      std::vector<std::size_t> cells;
+      Point<2>                 center;
+      double                   size = 0.; // farthest cell from the centre, at least a cell
+    };
+
+
+    std::vector<Part> find_parts(const PhaseMap &map, const std::vector<int> &part_of)
+    {
+      std::vector<Part> parts;
+      for (std::size_t c = 0; c < part_of.size(); ++c)
+        if (part_of[c] >= 0)
+          {
+            if (part_of[c] == static_cast<int>(parts.size()))
+              parts.emplace_back();
+            parts[part_of[c]].cells.push_back(c);
+          }
+      for (Part &part : parts)
+        {
+          for (const std::size_t c : part.cells)
+            part.center += (map.center(c) - Point<2>()) / static_cast<double>(part.cells.size());
+          part.size = std::hypot(map.spacing[0], map.spacing[1]);
+          for (const std::size_t c : part.cells)
+            part.size = std::max(part.size, map.center(c).distance(part.center));
+        }
+      return parts;
+    }
+
+
+    /** Whether the sides that a part touches hold it against all rigid motions, or give its value. */
+    class Holding
+    {
+    public:
+      explicit Holding(const Scene<2> &scene)
+        : scene(scene)
+        , map(*scene.domain.image)
+      {
+        for (types::boundary_id side = 0; side <= hole_boundary_id; ++side)
+          held[side] = held_on_side(scene, side);
+      }
+
+      bool holds(const Part &part) const
+      {
+        if (!is_elastic(scene))
+          return any_value(part);
+        const bool centers = scene.domain.nodes == NodePlacement::cell_centers;
+        const bool pd      = runs(scene, Model::peridynamics),
+                   others  = !pd || runs(scene, Model::finite_elements);
+        return ((!others && centers) || is_held(part, false)) &&
+               (!(pd && centers) || is_held(part, true));
+      }
+
+    private:
+      /** Call visit(side, face number, place of the cell) for the faces of a part that end the body. */
+      template <typename Visit>
+      void for_each_face(const Part &part, const Visit &visit) const
+      {
+        for (const std::size_t c : part.cells)
+          {
+            const auto [i, j] = map.place(c);
+            for (unsigned int f = 0; f < 4; ++f)
+              {
+                const int step = f % 2 == 0 ? -1 : 1, k = i + (f < 2 ? step : 0),
+                          l = j + (f < 2 ? 0 : step);
+                if (map.phase(k, l) != PhaseMap::empty)
+                  continue;
+                const bool outside = k < 0 || l < 0 || k >= static_cast<int>(map.n_cells[0]) ||
+                                     l >= static_cast<int>(map.n_cells[1]);
+                visit(outside ? f : hole_boundary_id, f, i, j);
+              }
+          }
+      }
+
+      bool any_value(const Part &part) const
+      {
+        bool any = false;
+        for_each_face(part, [&](const unsigned int side, unsigned int, int, int) {
+          any = any || held[side][0];
+        });
+        return any;
+      }
+
+      /** @param centers nodes are at the centres of cells, else at their corners */
+      bool is_held(const Part &part, const bool centers) const
+      {
+        Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+        for_each_face(
+          part,
+          [&](const unsigned int side, const unsigned int f, const int i, const int j) {
+            for (int v = 0; v < (centers ? 1 : 2); ++v)
+              {
+                const double a = centers ? 0.5 :
+                                 f < 2   ? f :
+                                           v,
+                             b = centers ? 0.5 :
+                                 f < 2   ? v :
+                                           f - 2;
+                const double x = (map.lower[0] + (i + a) * map.spacing[0] - part.center[0]) /
+                                 part.size,
+                             y = (map.lower[1] + (j + b) * map.spacing[1] - part.center[1]) /
+                                 part.size;
+                for (unsigned int d = 0; d < 2; ++d)
+                  if (held[side][d])
+                    {
+                      const Eigen::Vector3d row(d == 0 ? 1. : 0.,
+                                                d == 1 ? 1. : 0.,
+                                                d == 0 ? -y : x);
+                      sum += row * row.transpose();
+                    }
+              }
+          });
+        const auto eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvalues();
+        return eigenvalues[0] > 1e-10 * eigenvalues[2] && eigenvalues[2] > 0.;
+      }
+
+      const Scene<2>                                       &scene;
+      const PhaseMap                                       &map;
+      std::array<std::array<bool, 2>, hole_boundary_id + 1> held;
+    };
+
+
+    std::string describe(const std::vector<Part> &islands)
+    {
+      constexpr std::size_t n_named = 5;
+      std::string           text;
+      for (std::size_t k = 0; k < std::min(n_named, islands.size()); ++k)
+        text += (k > 0 ? ", " : "") + std::to_string(islands[k].cells.size()) +
+                (islands[k].cells.size() == 1 ? " cell at " : " cells around ") +
+                place_text(islands[k].center);
+      if (islands.size() > n_named)
+        text += " and " + std::to_string(islands.size() - n_named) + " more";
+      return text;
+    }
+
+
+    /** Hold an island at points that no other part shares: one of them in both directions, and against turning the one farthest from it. */
+    void pin(Scene<2> &scene, const std::vector<int> &part_of, const Part &island)
+    {
+      const PhaseMap &map    = *scene.domain.image;
+      const int       own    = part_of[island.cells.front()];
+      const auto      is_own = [&](const int i, const int j) {
+        for (int l = j - 1; l <= j; ++l)
+          for (int k = i - 1; k <= i; ++k)
+            if (map.phase(k, l) != PhaseMap::empty && part_of[map.index(k, l)] != own)
+              return false;
+        return true;
+      };
+      for (const bool at_center : {false, true})
+        {
+          std::vector<Point<2>> points;
+          for (const std::size_t c : island.cells)
+            {
+              const auto [i, j] = map.place(c);
+              if (at_center)
+                points.push_back(map.center(c));
+              else
+                for (int v = 0; v < 4; ++v)
+                  if (const int k = i + v % 2, l = j + v / 2; is_own(k, l))
+                    points.emplace_back(map.lower[0] + k * map.spacing[0],
+                                        map.lower[1] + l * map.spacing[1]);
+            }
+          if (points.empty())
+            continue;
+          const Point<2> first = points.front();
+          const Point<2> last  = *std::max_element(points.begin(),
+                                                  points.end(),
+                                                  [&](const Point<2> &a, const Point<2> &b) {
+                                                    return a.distance(first) <
+                                                           b.distance(first) - 1e-9 * island.size;
+                                                  });
+          scene.domain.pins.push_back({first, 0, at_center});
+          scene.domain.pins.push_back({first, 1, at_center});
+          const Tensor<1, 2> arm = last - first;
+          if (arm.norm() > 0.)
+            scene.domain.pins.push_back(
+              {last, std::abs(arm[0]) >= std::abs(arm[1]) ? 1u : 0u, at_center});
+        }
+    }
+
+
+    void treat_islands(Scene<2> &scene)
+    {
+      Domain<2> &domain     = scene.domain;
+      PhaseMap  &map        = *domain.image;
+      const bool determined = is_elastic(scene) ? !scene.elasticity.is_static() :
+                                                  !scene.time.steady;
+      if (domain.islands == IslandRule::pin && !is_elastic(scene))
+        entry_error(domain.where("Islands"), "'pin' is for 'Physics = elasticity'; use 'remove'.");
+      if ((determined && domain.islands != IslandRule::remove) || !map.has_voids())
+        return;
+      const std::vector<int> part_of = map.parts(connections(scene));
+      const Holding          holding(scene);
+      std::vector<Part>      islands;
+      std::size_t            n_cells = 0, n_solid = 0;
+      for (const Part &part : find_parts(map, part_of))
+        {
+          n_solid += part.cells.size();
+          if (!holding.holds(part))
+            {
+              islands.push_back(part);
+              n_cells += part.cells.size();
+            }
+        }
+      if (islands.empty())
+        return;
+      std::stable_sort(islands.begin(), islands.end(), [](const Part &a, const Part &b) {
+        return a.cells.size() > b.cells.size();
+      });
+      const std::string parts =
+        std::to_string(islands.size()) + (islands.size() == 1 ? " part" : " parts");
+      const std::string what = describe(islands);
+      if (domain.islands == IslandRule::error)
+        entry_error(domain.where("Islands"),
+                    "no side holds " + parts + " of the body in the image (" + what + "), whose " +
+                      (is_elastic(scene) ? "displacement" : "steady state") +
+                      " is not determined. Use '" +
+                      (is_elastic(scene) ? "remove' or 'pin" : "remove") +
+                      "', or give conditions on a side that each part touches.");
+      if (2 * n_cells > n_solid && domain.islands == IslandRule::remove)
+        entry_error(domain.where("Islands"),
+                    "'remove' would take away " + percent(double(n_cells) / n_solid) +
+                      " of the body, because no side holds " + parts + " of it (" + what +
+                      "). Give conditions on a side that the body touches.");
+      for (const Part &island : islands)
+        if (domain.islands == IslandRule::pin)
+          pin(scene, part_of, island);
+        else
+          for (const std::size_t c : island.cells)
+            map.phases[c] = PhaseMap::empty;
+      domain.notes.push_back("no side holds " + parts + " of the image, " + what + ": " +
+                             (domain.islands == IslandRule::pin ? "pinned" : "removed") +
+                             " ('Islands' in section 'Domain').");
+    }
+
+
+    void note_areas(Domain<2> &domain)
+    {
+      const PhaseMap                &map    = *domain.image;
+      const std::vector<std::size_t> counts = map.counts();
+      std::string text = "the image has " + std::to_string(map.n_cells[0]) + " x " +
+                         std::to_string(map.n_cells[1]) + " cells: ";
+      for (std::size_t k = 0; k < counts.size(); ++k)
+        if (k < map.names.size() || counts[k] > 0)
+          text += (k > 0 ? ", " : "") + (k < map.names.size() ? map.names[k] : void_name) + " " +
+                  percent(static_cast<double>(counts[k]) / map.phases.size()) + " (" +
+                  std::to_string(counts[k]) + ")";
+      domain.notes.push_back(text + ".");
+    }
+
+
+    /** Voids so thin that bonds along rows or columns of the image reach across them. */
+    void note_thin_voids(Scene<2> &scene)
+    {
+      const PhaseMap &map = *scene.domain.image;
+      if (!runs(scene, Model::peridynamics) || !map.has_voids() ||
+          scene.peridynamics.treatment == BoundaryTreatment::exchange ||
+          scene.peridynamics.across_voids == BondsAcrossVoids::cut)
+        return;
+      const double horizon  = scene.horizon() * (1. - 1e-9);
+      std::size_t  n_places = 0;
+      int          widest   = 0;
+      for (unsigned int d = 0; d < 2; ++d)
+        for (unsigned int row = 0; row < map.n_cells[1 - d]; ++row)
+          {
+            int last = -1; // cell of the row that is not empty
+            for (int k = 0; k < static_cast<int>(map.n_cells[d]); ++k)
+              {
+                const int r = static_cast<int>(row);
+                if ((d == 0 ? map.phase(k, r) : map.phase(r, k)) == PhaseMap::empty)
+                  continue;
+                if (last >= 0 && k - last > 1 && (k - last) * map.spacing[d] < horizon)
+                  {
+                    ++n_places;
+                    widest = std::max(widest, k - last - 1);
+                  }
+                last = k;
+              }
+          }
+      if (n_places > 0)
+        scene.domain.notes.push_back(
+          "peridynamics: in " + std::to_string(n_places) +
+          " places of rows and columns bonds reach across a void of up to " +
+          std::to_string(widest) + (widest == 1 ? " cell" : " cells") +
+          ", which is no gap to them. 'Bonds across voids = cut' (section 'Peridynamics') makes it one, and so does a smaller horizon or more cells ('Cells per pixel' in section 'Domain').");
+    }
+  } // namespace
+
+
+  template <int dim>
+  void Scene<dim>::check_image()
+  {
+    if constexpr (dim == 2)
+      if (domain.image)
+        {
+          treat_islands(*this);
+          note_areas(domain);
+          note_thin_voids(*this);
+        }
+  }
+
+
+  template void Scene<1>::check_image();
+  template void Scene<2>::check_image();
+  template void Scene<3>::check_image();
+} // namespace PeriDeal

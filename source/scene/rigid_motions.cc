@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/scene/rigid_motions.h>
+#include <perideal/scene/scene.h>
+
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** A component of the displacement that a side holds. */
+    struct Held
+    {
+      types::boundary_id side;
+      unsigned int       component;
+    };
+
+
+    template <int dim>
+    std::vector<Held> held_components(const Scene<dim> &scene)
+    {
+      std::vector<Held> list;
+      for (const VectorCondition &condition : scene.boundary_conditions.displacement)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (condition.values[c])
+            list.push_back({condition.id, c});
+      if (scene.domain.shape != Shape::mesh_file)
+        for (const types::boundary_id side : scene.boundary_conditions.symmetry)
+          list.push_back({side, side / 2});
+      return list;
+    }
+
+
+    /** Corners of a side of the box, or points around the hole. */
+    template <int dim>
+    std::vector<Point<dim>> points_of_side(const Domain<dim> &domain, const types::boundary_id side)
+    {
+      std::vector<Point<dim>> points;
+      for (unsigned int k = 0; k < (1u << dim); ++k)
+        {
+          Point<dim> p;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const bool up = (k >> d) % 2 == 1;
+              p[d]          = up ? domain.upper[d] : domain.lower[d];
+              if (side == hole_boundary_id && d < 2 && !domain.image)
+                p[d] = domain.hole_center[d] + (up ? 1. : -1.) * domain.hole_radius;
+            }
+          if (side == hole_boundary_id || (k >> (side / 2)) % 2 == side % 2)
+            points.push_back(p);
+        }
+      return points;
+    }
+
+
+    constexpr unsigned int n_motions(const unsigned int dim)
+    {
+      return dim * (dim + 1) / 2;
+    }
+
+
+    /** Components of translations and rotations at a point, in the order of their names. */
+    template <int dim>
+    Eigen::RowVectorXd row(const Point<dim> &p, const unsigned int component)
+    {
+      Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(n_motions(dim));
+      row[component]         = 1.;
+      // about the axis a, the displacement is e_a x p
+      for (unsigned int axis = dim == 3 ? 0 : 2; dim > 1 && axis < 3; ++axis)
+        {
+          const unsigned int next = (axis + 1) % 3, last = (axis + 2) % 3;
+          const unsigned int k = dim == 3 ? 3 + axis : 2;
+          if (component == next)
+            row[k] = -p[last];
+          else if (component == last)
+            row[k] = p[next];
+        }
+      return row;
+    }
+
+
+    /** Whether some vector of the space that the columns span has the unit vector @p k in its rows from @p first on. */
+    bool spans(const Eigen::MatrixXd &columns, const unsigned int first, const unsigned int k)
+    {
+      if (columns.cols() == 0)
+        return false;
+      const Eigen::MatrixXd part = columns.bottomRows(columns.rows() - first);
+      Eigen::VectorXd       unit = Eigen::VectorXd::Zero(part.rows());
+      unit[k - first]            = 1.;
+      const Eigen::VectorXd x    = part.completeOrthogonalDecomposition().solve(unit);
+      return (part * x - unit).norm() < 1e-6;
+    }
+  } // namespace
+
+
+  template <int dim>
+  std::vector<std::string> free_rigid_motions(const Scene<dim> &scene)
+  {
+    const std::vector<Held>  held = held_components(scene);
+    std::vector<std::string> motions;
+    if (scene.domain.shape == Shape::mesh_file)
+      {
+        std::array<bool, dim> holds{};
+        for (const Held &entry : held)
+          holds[entry.component] = true;
+        for (unsigned int c = 0; c < dim && scene.boundary_conditions.symmetry.empty(); ++c)
+          if (!holds[c])
+            motions.push_back(std::string("translation in ") + "xyz"[c]);
+        return motions;
+      }
+
+    const Domain<dim> &domain = scene.domain;
+    const double       size   = (domain.upper - domain.lower).norm();
+    Eigen::MatrixXd    rows(0, n_motions(dim));
+    for (const Held &entry : held)
+      for (const Point<dim> &p : points_of_side(domain, entry.side))
+        {
+          rows.conservativeResize(rows.rows() + 1, Eigen::NoChange);
+          // about the middle of the body and in units of its size, so that all motions are alike
+          const Point<dim> relative(2. / size * (p - (domain.lower + domain.upper) / 2.));
+          rows.row(rows.rows() - 1) = row(relative, entry.component);
+        }
+    Eigen::MatrixXd null = Eigen::MatrixXd::Identity(n_motions(dim), n_motions(dim));
+    if (rows.rows() > 0)
+      {
+        Eigen::FullPivLU<Eigen::MatrixXd> lu(rows);
+        lu.setThreshold(1e-8);
+        null = lu.dimensionOfKernel() > 0 ? Eigen::MatrixXd(lu.kernel()) :
+                                            Eigen::MatrixXd(n_motions(dim), 0);
+      }
+    for (unsigned int c = 0; c < dim; ++c)
+      if (spans(null, 0, c))
+        motions.push_back(std::string("translation in ") + "xyz"[c]);
+    for (unsigned int k = dim; k < n_motions(dim); ++k)
+      if (spans(null, dim, k))
+        motions.push_back(std::string("rotation about ") + "xyz"[dim == 3 ? k - 3 : 2]);
+    if (motions.empty() && null.cols() > 0)
+      motions.emplace_back("a rotation about an oblique axis");
+    return motions;
+  }
+
+
+  template std::vector<std::string> free_rigid_motions(const Scene<1> &);
+  template std::vector<std::string> free_rigid_motions(const Scene<2> &);
+  template std::vector<std::string> free_rigid_motions(const Scene<3> &);
+} // namespace PeriDeal

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/vector_operation.h>
+
+#include <perideal/operators/elastic_elements.h>
+
+#include "elastic_fields.h"
+#include "model_runs.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    class ElementRun : public ElasticRun<dim>
+    {
+    public:
+      /** @param model finite elements or coupled */
+      ElementRun(const Model model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
+        : scene(scene)
+        , model(model)
+        , handler(mesh)
+      {
+        {
+          Timings::Scope scope(this->timings, "unknowns");
+          handler.distribute_dofs(FE_Q<dim>(degree()));
+          if (model == Model::coupled)
+            number_along_lattice(handler, scene.domain);
+        }
+        Timings::Scope                        scope(this->timings, "operator");
+        std::unique_ptr<ElasticCoupling<dim>> coupling;
+        if (model == Model::coupled)
+          {
+            node_set = std::make_unique<Nodes<dim>>(handler,
+                                                    scene.domain,
+                                                    scene.cracks,
+                                                    NodalVolume::partial);
+            coupling = make_elastic_coupling(*node_set, scene);
+          }
+        elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
+      }
+
+      std::string name() const override
+      {
+        return to_string(model);
+      }
+
+      const DoFHandler<dim> &dofs() const override
+      {
+        return handler;
+      }
+
+      const Nodes<dim> *nodes() const override
+      {
+        return nullptr;
+      }
+
+      ElasticOperator &op() const override
+      {
+        return *elements;
+      }
+
+      Point<dim> position(const unsigned int node) const override
+      {
+        return elements->position(node);
+      }
+
+      std::vector<double> at_points(const PointEvaluator<dim>              &reader,
+                                    const std::vector<std::vector<double>> &points) const override
+      {
+        std::array<std::vector<double>, dim>         u;
+        std::array<std::vector<Tensor<1, dim>>, dim> slopes;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            u[d]      = reader.evaluate(this->displacement, dim, d);
+            slopes[d] = reader.gradients(this->displacement, dim, d);
+          }
+        std::vector<double> rows;
+        for (std::size_t k = 0; k < points.size(); ++k)
+          {
+            Point<dim>     p;
+            Tensor<2, dim> gradient;
+            double         values[dim];
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                p[d]        = points[k][d];
+                values[d]   = u[d][k];
+                gradient[d] = slopes[d][k];
+              }
+            append_row(values, stress_of_strain(symmetrize(gradient), scene, p), dim, rows);
+          }
+        return rows;
+      }
+
+      std::vector<OutputField> fields() const override
+      {
+        std::vector<SymmetricTensor<2, 3>>   stress;
+        std::vector<SymmetricTensor<2, dim>> strain;
+        find_nodal_tensors(stress, strain);
+        ElasticFields<dim> list(elements->node_layout());
+        list.add_vector("displacement", this->displacement);
+        if (this->stepper)
+          list.add_vector("velocity", this->velocity);
+        list.add_stress(stress);
+        list.add_strain(strain);
+        return list.take();
+      }
+
+      SymmetricTensor<2, 3> mean_stress() const override
+      {
+        SymmetricTensor<2, 3> sum;
+        double                volume = 0.;
+        visit_cells(
+          QGauss<dim>(handler.get_fe().degree + 1),
+          [&](const auto &values, const unsigned int q, const auto &, const auto &gradient) {
+            volume += values.JxW(q);
+            if (!elements->cut_cells()[values.get_cell()->active_cell_index()])
+              sum += values.JxW(q) *
+                     stress_of_strain(symmetrize(gradient), scene, values.quadrature_point(q));
+          });
+        return Utilities::MPI::sum(sum, handler.get_communicator()) /
+               Utilities::MPI::sum(volume, handler.get_communicator());
+      }
+
+      std::vector<StressIntensity> stress_intensities() const override
+      {
+        std::vector<StressIntensity> list;
+        if constexpr (dim == 2)
+          {
+            std::vector<CrackEndIntegral> ends = crack_end_integrals(scene);
+            if (!ends.empty())
+              visit_cells(
+                QGauss<dim>(handler.get_fe().degree + 1),
+                [&](const auto &values, const unsigned int q, const auto &, const auto &gradient) {
+                  if (elements->cut_cells()[values.get_cell()->active_cell_index()])
+                    return;
+                  const Point<2>             &p = values.quadrature_point(q);
+                  const SymmetricTensor<2, 3> s = stress_of_strain(symmetrize(gradient), scene, p);
+                  SymmetricTensor<2, 2>       in_plane;
+                  for (unsigned int a = 0; a < 2; ++a)
+                    for (unsigned int b = a; b < 2; ++b)
+                      in_plane[a][b] = s[a][b];
+                  for (CrackEndIntegral &end : ends)
+                    end.add(p, values.JxW(q), gradient, in_plane);
+                });
+            for (const CrackEndIntegral &end : ends)
+              list.push_back(end.result(handler.get_communicator()));
+          }
+        return list;
+      }
+
+      std::vector<StressSample> stress_samples() const override
+      {
+        std::vector<StressSample> samples;
+        visit_cells(
+          QGauss<dim>(handler.get_fe().degree + 1),
+          [&](const auto &values, const unsigned int q, const auto &, const auto &gradient) {
+            if (elements->cut_cells()[values.get_cell()->active_cell_index()])
+              return;
+            if (q == 0)
+              samples.push_back(
+                {scene.material.phases.all().at(values.get_cell()->center()), 0., {}});
+            samples.back().volume += values.JxW(q);
+            samples.back().stress +=
+              values.JxW(q) *
+              stress_of_strain(symmetrize(gradient), scene, values.quadrature_point(q));
+          });
+        for (StressSample &sample : samples)
+          sample.stress /= sample.volume;
+        return samples;
+      }
+
+      std::vector<std::pair<std::string, std::string>> settings() const override
+      {
+        std::vector<std::pair<std::string, std::string>> list{
+          {"elements", "Q" + std::to_string(degree())}};
+        if (model == Model::coupled)
+          {
+            list.emplace_back("coupling", "exchange");
+            list.emplace_back("zone", scene.coupling.zone_text());
+            list.emplace_back("share of the body in the zone",
+                              to_text(100. * elements->bonds().zone_share()) + " %");
+            list.emplace_back("horizon", to_text(scene.horizon()));
+            list.emplace_back("surface correction",
+                              scene.peridynamics.surface_correction ==
+                                  SurfaceCorrection::crack_scaling ?
+                                "crack scaling" :
+                                "none");
+          }
+        if (!scene.cracks.cracks.empty())
+          list.emplace_back("cracks", scene.cracks.mesh == CrackMesh::faces ? "faces" : "removed");
+        return list;
+      }
+
+    private:
+      unsigned int degree() const
+      {
+        return model == Model::coupled ? 1 : scene.finite_elements.degree;
+      }
+
+      /** Call visit(values, point, indices of the nodes, gradient of the displacement) at the points of all own cells. */
+      template <typename Visit>
+      void visit_cells(const Quadrature<dim> &points, const Visit &visit) const
+      {
+        FEValues<dim>                        values(handler.get_fe(),
+                             points,
+                             update_gradients | update_quadrature_points | update_JxW_values);
+        std::vector<types::global_dof_index> indices(handler.get_fe().n_dofs_per_cell());
+        this->displacement.update_ghost_values();
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              values.reinit(cell);
+              cell->get_dof_indices(indices);
+              for (const unsigned int q : values.quadrature_point_indices())
+                {
+                  Tensor<2, dim> gradient;
+                  for (unsigned int i = 0; i < indices.size(); ++i)
+                    for (unsigned int d = 0; d < dim; ++d)
+                      gradient[d] +=
+                        this->displacement(dim * indices[i] + d) * values.shape_grad(i, q);
+                  visit(values, q, indices, gradient);
+                }
+            }
+        this->displacement.set_ghost_state(false);
+      }
+
+      /** Means over the cells around each node, by their volumes. Each cell's own material counts, so that a jump is smeared over one row of cells. */
+      void find_nodal_tensors(std::vector<SymmetricTensor<2, 3>>   &stress,
+                              std::vector<SymmetricTensor<2, dim>> &strain) const
+      {
+        constexpr unsigned int n_stresses = SymmetricTensor<2, 3>::n_independent_components,
+                               n_strains  = SymmetricTensor<2, dim>::n_independent_components;
+        const auto         &fe            = handler.get_fe();
+        std::vector<Vector> sums(n_stresses + 1 + n_strains);
+        for (Vector &sum : sums)
+          sum.reinit(elements->node_layout());
+        visit_cells(
+          Quadrature<dim>(fe.get_unit_support_points()),
+          [&](const auto &values, const unsigned int q, const auto &indices, const auto &gradient) {
+            const SymmetricTensor<2, dim> e    = symmetrize(gradient);
+            const auto                   &cell = values.get_cell();
+            if (elements->cut_cells()[cell->active_cell_index()])
+              return; // it carries nothing
+            const double size = cell->measure();
+            // The material inside the cell, not at its edge.
+            const Point<dim> p =
+              values.quadrature_point(q) + 1e-6 * (cell->center() - values.quadrature_point(q));
+            const SymmetricTensor<2, 3> s = stress_of_strain(e, scene, p);
+            for (unsigned int k = 0; k < n_stresses; ++k)
+              sums[k](indices[q]) += s.access_raw_entry(k) * size;
+            sums[n_stresses](indices[q]) += size;
+            for (unsigned int k = 0; k < n_strains; ++k)
+              sums[n_stresses + 1 + k](indices[q]) += e.access_raw_entry(k) * size;
+          });
+        for (Vector &sum : sums)
+          sum.compress(VectorOperation::add);
+        const unsigned int n = sums[0].locally_owned_size();
+        stress.resize(n);
+        strain.resize(n);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const double v = sums[n_stresses].local_element(i);
+            if (v == 0.)
+              continue; // all cells around are cut
+            for (unsigned int k = 0; k < n_stresses; ++k)
+              stress[i].access_raw_entry(k) = sums[k].local_element(i) / v;
+            for (unsigned int k = 0; k < n_strains; ++k)
+              strain[i].access_raw_entry(k) = sums[n_stresses + 1 + k].local_element(i) / v;
+          }
+      }
+
+      const Scene<dim>                     &scene;
+      const Model                           model;
+      DoFHandler<dim>                       handler;
+      std::unique_ptr<Nodes<dim>>           node_set; // of the coupled model
+      std::unique_ptr<ElasticElements<dim>> elements;
+    };
+  } // namespace
+
+
+  template <int dim>
+  std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Model               model,
+                                                            const Triangulation<dim> &mesh,
+                                                            const Scene<dim>         &scene)
+  {
+    return std::make_unique<ElementRun<dim>>(model, mesh, scene);
+  }
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                \
+  template std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Model,                \
+                                                                     const Triangulation<dim> &, \
+                                                                     const Scene<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

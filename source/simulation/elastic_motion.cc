@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Bodies in motion: from the initial displacement and velocity through the times of output.
+
+#include <perideal/base/user_error.h>
+#include <perideal/scene/lists.h>
+#include <perideal/simulation/elastic_simulation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "result_record.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  void ElasticSimulation<dim>::set_start(ElasticRun<dim> &model) const
+  {
+    const InitialAndSource &given = scene.initial_and_source;
+    const auto              fill  = [&](Vector &vector, const std::vector<Expression> &formulas) {
+      model.op().initialize_vector(vector);
+      for (unsigned int i = 0; i < vector.locally_owned_size() && !formulas.empty(); ++i)
+        vector.local_element(i) = formulas[i % dim].value(model.position(i / dim));
+    };
+    fill(model.displacement, given.initial_displacement);
+    fill(model.velocity, given.initial_velocity);
+    model.op().distribute(model.displacement, 0.);
+    // Supports have the velocity of their first step.
+    model.op().clear_constrained(model.velocity);
+    AssertThrow(
+      std::isfinite(model.displacement.l1_norm()) && std::isfinite(model.velocity.l1_norm()),
+      UserError(
+        "'Initial displacement' or 'Initial velocity' in section 'Initial and source' is not finite everywhere."));
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::make_steppers()
+  {
+    StepperOptions options;
+    options.time_step        = scene.time.time_step;
+    options.solver_tolerance = scene.solver.tolerance;
+    options.max_iterations   = scene.solver.max_iterations;
+    options.direct_up_to     = scene.solver.direct_up_to;
+    for (const auto &model : models)
+      {
+        Timings::Scope scope(model->timings, "stepper");
+        set_start(*model);
+        model->op().linearize(model->displacement);
+        model->stepper = make_motion_stepper(scene.time.stepper, model->op(), options);
+        std::ostringstream line;
+        line << model->name() << ": stepper " << model->stepper->name() << ", step "
+             << model->stepper->current_step() << ", "
+             << readable_count(static_cast<unsigned long long>(
+                  std::ceil(scene.time.end_time / model->stepper->current_step() * (1. - 1e-10))))
+             << " steps or a few more";
+        progress.line(line.str());
+      }
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::move()
+  {
+    constexpr unsigned int n_reports = 50; // of the progress between two times of output
+    std::vector<double>    times     = scene.output.write_times;
+    if (times.empty() || times.back() < scene.time.end_time)
+      times.push_back(scene.time.end_time);
+    progress.begin("time");
+    double now = 0.;
+    for (const double t : times)
+      {
+        if (t > now)
+          for (unsigned int k = 0; k < models.size(); ++k)
+            {
+              ElasticRun<dim> &model = *models[k];
+              Timings::Scope   scope(model.timings, "time stepping");
+              // Whole steps between two reports, so that these change no step.
+              const double       span = t - now, step = model.stepper->current_step();
+              const double       n_steps = std::max(1., std::ceil(span / step * (1. - 1e-10)));
+              const unsigned int n_parts = std::min(n_steps, static_cast<double>(n_reports));
+              double             from    = now;
+              for (unsigned int part = 1; part <= n_parts; ++part)
+                {
+                  const double to = part == n_parts ?
+                                      t :
+                                      now + span * std::floor(n_steps * part / n_parts) / n_steps;
+                  model.stepper->advance(model.displacement, model.velocity, from, to);
+                  from = to;
+                  progress.update(
+                    (now + (k + static_cast<double>(part) / n_parts) / models.size() * span) /
+                    scene.time.end_time);
+                }
+            }
+        now = t;
+        write_output(t);
+      }
+    progress.end();
+  }
+
+
+  template <int dim>
+  nlohmann::ordered_json ElasticSimulation<dim>::add_energies(const ElasticRun<dim> &model,
+                                                              const double           t)
+  {
+    const MotionEnergy     energy  = model.stepper->energy(model.displacement, model.velocity);
+    nlohmann::ordered_json balance = {{"kinetic", energy.kinetic},
+                                      {"strain", energy.strain},
+                                      {"start", energy.start},
+                                      {"work", energy.work},
+                                      {"imbalance", energy.imbalance()}};
+    const auto             row     = [&](const std::string &quantity, const double value) {
+      record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
+                        full_precision(value) + "\n";
+    };
+    row("kinetic energy", energy.kinetic);
+    row("work of loads and supports", energy.work);
+    row("energy imbalance", energy.imbalance());
+    return balance;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                               \
+  template void                   ElasticSimulation<dim>::make_steppers();                      \
+  template void                   ElasticSimulation<dim>::move();                               \
+  template nlohmann::ordered_json ElasticSimulation<dim>::add_energies(const ElasticRun<dim> &, \
+                                                                       const double);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+
+#include "elastic_fields.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  std::vector<std::string> elastic_columns(const unsigned int dim)
+  {
+    switch (dim)
+      {
+        case 1:
+          return {"ux", "sxx", "von_mises"};
+        case 2:
+          return {"ux", "uy", "sxx", "syy", "szz", "sxy", "von_mises"};
+        default:
+          return {"ux", "uy", "uz", "sxx", "syy", "szz", "sxy", "sxz", "syz", "von_mises"};
+      }
+  }
+
+
+  void append_row(const double                *displacement,
+                  const SymmetricTensor<2, 3> &stress,
+                  const unsigned int           dim,
+                  std::vector<double>         &rows)
+  {
+    rows.insert(rows.end(), displacement, displacement + dim);
+    rows.push_back(stress[0][0]);
+    if (dim > 1)
+      rows.insert(rows.end(), {stress[1][1], stress[2][2], stress[0][1]});
+    if (dim > 2)
+      rows.insert(rows.end(), {stress[0][2], stress[1][2]});
+    rows.push_back(von_mises(stress));
+  }
+
+
+  template <int dim>
+  std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model               model,
+                                                    const Triangulation<dim> &mesh,
+                                                    const Scene<dim>         &scene)
+  {
+    return model == Model::peridynamics ? make_state_run(mesh, scene) :
+                                          make_elastic_element_run(model, mesh, scene);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                        \
+  template std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model,                \
+                                                             const Triangulation<dim> &, \
+                                                             const Scene<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

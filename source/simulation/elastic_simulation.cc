@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/laws/elasticity.h>
+#include <perideal/mesh/material_ids.h>
+#include <perideal/mesh/mesh_builder.h>
+#include <perideal/scene/lists.h>
+#include <perideal/simulation/elastic_simulation.h>
+#include <perideal/solvers/static_solver.h>
+
+#include <algorithm>
+
+#include "elastic_phases.h"
+#include "elastic_summary.h"
+#include "result_record.h"
+#include "summary_parts.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  ElasticSimulation<dim>::ElasticSimulation(const Scene<dim> &scene,
+                                            const SceneText  &text,
+                                            const MPI_Comm    communicator,
+                                            const bool        quiet)
+    : scene(scene)
+    , text(text)
+    , communicator(communicator)
+    , progress(communicator, quiet)
+    , probes(scene.output.probes, dim, elastic_columns(dim))
+    , line(scene.output.line, dim, elastic_columns(dim))
+    , record(std::make_unique<ResultRecord>())
+  {}
+
+
+  template <int dim>
+  ElasticSimulation<dim>::~ElasticSimulation() = default;
+
+
+  namespace
+  {
+    /** What cannot be computed, so that no scene is silently taken for another. */
+    template <int dim>
+    void refuse_what_is_not_computed(const Scene<dim> &scene)
+    {
+      const auto require = [](const bool ok, const std::string &what) {
+        AssertThrow(ok, UserError(what));
+      };
+      const auto &models = scene.general.models;
+      require(
+        scene.elasticity.kinematics == Kinematics::linear ||
+          std::find(models.begin(), models.end(), Model::finite_elements) == models.end(),
+        "'Kinematics' in section 'Elasticity': 'full' is for 'Models = peridynamics' alone; finite elements have small displacements. "
+        "Leave them out, or use 'linear'.");
+      require(scene.cracks.tips.empty(),
+              "'Growth' in section 'Cracks' cannot be used with 'Physics = elasticity' yet.");
+      require(
+        std::find(models.begin(), models.end(), Model::coupled) == models.end() ||
+          scene.coupling.scheme == CouplingScheme::exchange,
+        "'Scheme' in section 'Coupling' has to be 'exchange' with 'Physics = elasticity' so far.");
+      require(scene.domain.coarsening == 0,
+              "'Coarsening' in section 'Domain' cannot be used with 'Physics = elasticity' yet.");
+      require(
+        scene.boundary_conditions.traction_layer < 0.,
+        "'Traction layer' in section 'Boundary conditions' cannot be used yet; leave it empty.");
+      require(
+        !scene.material.fracture_energy && !scene.material.critical_stretch,
+        "'Fracture energy' and 'Critical stretch' in section 'Material' cannot be used yet; leave them empty.");
+      require(
+        scene.peridynamics.treatment == BoundaryTreatment::none,
+        "'Boundary treatment' in section 'Peridynamics' has to be 'none' with 'Physics = elasticity'.");
+      require(scene.reference.solution.empty(),
+              "'Solution' in section 'Reference' cannot be used with 'Physics = elasticity' yet.");
+    }
+
+
+    /** Bonds alone have a Poisson ratio of their own, and keep the bulk modulus. Collective. */
+    template <int dim>
+    void note_own_poisson_ratio(const Scene<dim>         &scene,
+                                const Triangulation<dim> &mesh,
+                                std::vector<std::string> &notes)
+    {
+      const auto &models = scene.general.models;
+      if (dim == 1 || scene.elasticity.model != ElasticModel::bond_based ||
+          std::find(models.begin(), models.end(), Model::peridynamics) == models.end())
+        return;
+      const double own    = bond_based_poisson(dim, scene.elasticity.plane);
+      double       lowest = 1., highest = -1.;
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const double nu = scene.material.moduli(cell->center()).poisson();
+            lowest          = std::min(lowest, nu);
+            highest         = std::max(highest, nu);
+          }
+      lowest  = Utilities::MPI::min(lowest, mesh.get_communicator());
+      highest = Utilities::MPI::max(highest, mesh.get_communicator());
+      if (std::max(highest - own, own - lowest) < 1e-3)
+        return;
+      std::string found = number_text(lowest);
+      if (highest > lowest)
+        found += " to " + number_text(highest);
+      notes.push_back(
+        "'Model = bond-based' in section 'Elasticity' has a Poisson ratio of " + number_text(own) +
+        " whatever 'Material' says, which is " + found +
+        ": only the stiffness against equal strains in all directions is that of the material. "
+        "Use 'state-based', or that Poisson ratio.");
+    }
+  } // namespace
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::build()
+  {
+    refuse_what_is_not_computed(scene);
+    const unsigned int n_proc = Utilities::MPI::n_mpi_processes(communicator);
+    progress.line(scene.general.title + "  (" + text.file_name + ", " + std::to_string(n_proc) +
+                  (n_proc == 1 ? " process)" : " processes)"));
+    {
+      Timings::Scope scope(timings, "mesh");
+      mesh = build_mesh(scene, communicator, record->notes);
+      set_material_ids(*mesh, scene.material.phases.all());
+    }
+    note_own_poisson_ratio(scene, *mesh, record->notes);
+    progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
+    for (const Model kind : scene.general.models)
+      {
+        models.push_back(make_elastic_run(kind, *mesh, scene));
+        const ElasticRun<dim> &model = *models.back();
+        const OperatorSize     size  = model.op().size();
+        std::string line = model.name() + ": " + readable_count(size.unknowns) + " unknowns";
+        if (size.bonds > 0)
+          line += ", " + readable_count(size.bonds) + " bonds";
+        line += ", " + readable_count(size.nonzeros) + " stored numbers";
+        const double memory = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
+        progress.line(line + ", " + readable_bytes(memory));
+      }
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::solve(ElasticRun<dim> &model)
+  {
+    Timings::Scope   scope(model.timings, "solving");
+    ElasticOperator &op = model.op();
+    StaticOptions    options;
+    options.tolerance      = scene.solver.tolerance;
+    options.max_iterations = scene.solver.most_iterations(scene.elasticity.solver);
+    options.direct_up_to   = scene.solver.direct_up_to;
+    options.multigrid      = scene.elasticity.multigrid;
+    const double size      = start_statics(op, model.displacement, 0., options);
+    const auto   solver    = make_static_solver(scene.elasticity.solver_name(), op, options);
+    model.n_iterations     = solver->solve(model.displacement, 0., size);
+    op.linearize(model.displacement);
+    progress.line(model.name() + ": " + std::to_string(model.n_iterations) + " iterations");
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::write_points(const double t)
+  {
+    const auto add = [&](const std::vector<std::vector<double>>            &points,
+                         const std::string                                 &entry,
+                         std::vector<std::unique_ptr<PointEvaluator<dim>>> &readers,
+                         PointTable                                        &table) {
+      if (points.empty())
+        return;
+      if (readers.empty())
+        for (const auto &model : models)
+          readers.push_back(std::make_unique<PointEvaluator<dim>>(model->dofs(),
+                                                                  model->nodes(),
+                                                                  scene.cracks,
+                                                                  points,
+                                                                  entry));
+      for (unsigned int k = 0; k < models.size(); ++k)
+        table.add(t, models[k]->name(), models[k]->at_points(*readers[k], points));
+    };
+    add(scene.output.probes, "Probes", probe_readers, probes);
+    add(scene.output.line, "Line", line_readers, line);
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::write_fields(const double t)
+  {
+    if (!scene.output.vtu && !scene.output.hdf5)
+      return;
+    nlohmann::ordered_json files = nlohmann::ordered_json::object();
+    for (unsigned int k = 0; k < models.size(); ++k)
+      {
+        const ElasticRun<dim> &model  = *models[k];
+        std::string            series = model.name();
+        std::replace(series.begin(), series.end(), ' ', '_');
+        if (writers.size() == k)
+          writers.push_back(std::make_unique<FieldWriter<dim>>(model.dofs(),
+                                                               scene.general.output_directory,
+                                                               series));
+        const std::string name =
+          writers[k]->write(model.fields(), t, scene.output.vtu, scene.output.hdf5);
+        if (!name.empty())
+          files[model.name()] = name;
+      }
+    record->fields.push_back({{"time", t}, {"files", files}});
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::add_totals(const ElasticRun<dim> &model, const double t)
+  {
+    const auto row = [&](const std::string &quantity, const double value) {
+      record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
+                        full_precision(value) + "\n";
+    };
+    const ForceBalance balance = model.op().forces(model.displacement, t);
+    const double       energy  = model.op().energy(model.displacement);
+    row("strain energy", energy);
+    for (const auto &[side, force] : balance.sides)
+      for (unsigned int d = 0; d < dim; ++d)
+        row("force on " + side + " in " + "xyz"[d], force[d]);
+    for (unsigned int d = 0; d < dim; ++d)
+      row(std::string("body force in ") + "xyz"[d], balance.body[d]);
+    row("throughput", balance.throughput());
+    if (!model.stepper) // of a motion it is the rate of its momentum
+      row("imbalance", balance.imbalance());
+    const SymmetricTensor<2, 3> mean   = model.mean_stress();
+    nlohmann::ordered_json      stress = nlohmann::ordered_json::object();
+    for (unsigned int a = 0; a < 3; ++a)
+      for (unsigned int b = a; b < 3; ++b)
+        if (b < dim || (dim == 2 && a == 2))
+          {
+            const std::string name = std::string(1, "xyz"[a]) + "xyz"[b];
+            row("mean stress " + name, mean[a][b]);
+            stress[name] = mean[a][b];
+          }
+    stress["von mises"]         = von_mises(mean);
+    nlohmann::ordered_json ends = nlohmann::ordered_json::object();
+    for (const StressIntensity &end : model.stress_intensities())
+      {
+        row("J-integral at " + end.name, end.j);
+        row("stress intensity I at " + end.name, end.mode_1);
+        row("stress intensity II at " + end.name, end.mode_2);
+        ends[end.name] = {{"J-integral", end.j}, {"I", end.mode_1}, {"II", end.mode_2}};
+      }
+    record->balances[model.name()] = {{"boundary force", balance.sides},
+                                      {"strain energy", energy},
+                                      {"mean stress", stress}};
+    if (model.stepper)
+      record->balances[model.name()]["energy balance"] = add_energies(model, t);
+    else
+      record->balances[model.name()]["force balance"] = {{"throughput", balance.throughput()},
+                                                         {"imbalance", balance.imbalance()}};
+    if (!ends.empty())
+      record->balances[model.name()]["stress intensity"] = ends;
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::run()
+  {
+    prepare_directory(scene.general.output_directory, text.file_name, communicator);
+    write_image_as_read(scene, communicator);
+    build();
+    if (scene.elasticity.is_static())
+      {
+        for (const auto &model : models)
+          solve(*model);
+        write_output(0.);
+      }
+    else
+      {
+        make_steppers();
+        move();
+      }
+    for (const std::string &note : record->notes)
+      progress.note(note);
+    write_summary();
+    progress.line("Results: " + scene.general.output_directory);
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::write_output(const double t)
+  {
+    Timings::Scope scope(timings, "output");
+    write_points(t);
+    write_fields(t);
+    for (const auto &model : models)
+      add_totals(*model, t);
+    compare_displacements(models, t, record->comparison);
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::dry_run()
+  {
+    build();
+    if (!scene.elasticity.is_static())
+      make_steppers();
+    for (const std::string &note : record->notes)
+      progress.note(note);
+    progress.line("The scene is valid. Nothing was computed.");
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::write_summary()
+  {
+    using json           = nlohmann::ordered_json;
+    json summary         = describe_scene(scene, text, *mesh, communicator);
+    summary["cracks"]    = corners_of(scene.cracks.pieces(scene.cracks.end_time));
+    summary["steady"]    = scene.elasticity.is_static();
+    summary["solver"]    = scene.elasticity.solver_name();
+    summary["end time"]  = scene.elasticity.is_static() ? 0. : scene.time.end_time;
+    summary["sides"]     = describe_elastic_sides(scene);
+    summary["notes"]     = record->notes;
+    summary["fields"]    = record->fields;
+    summary["wall time"] = timings.all();
+    summary["memory of mesh"] =
+      Utilities::MPI::sum(static_cast<double>(mesh->memory_consumption()), communicator);
+    for (const auto &model : models)
+      {
+        const OperatorSize size = model->op().size();
+        json               entry;
+        entry["unknowns"] = size.unknowns;
+        if (size.bonds > 0)
+          entry["bonds"] = size.bonds;
+        entry["nonzeros"]   = size.nonzeros;
+        entry["iterations"] = model->n_iterations;
+        if (model->stepper)
+          {
+            entry["stepper"]     = model->stepper->name();
+            entry["steps"]       = model->stepper->cost().steps;
+            entry["iterations"]  = model->stepper->cost().iterations;
+            entry["time step"]   = model->stepper->current_step();
+            entry["stable step"] = {{"sharp", stable_motion_step(model->op())},
+                                    {"method", "verlet"}};
+          }
+        entry["operator applications"] = model->op().n_applications();
+        entry["operator form"]         = size.form;
+        entry["settings"]              = json::object();
+        for (const auto &[name, value] : model->settings())
+          entry["settings"][name] = value;
+        entry["wall time"] = model->timings.all();
+        entry["memory"]    = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
+        Utilities::System::MemoryStats stats;
+        Utilities::System::get_memory_stats(stats);
+        entry["peak memory"] =
+          1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
+        entry.update(record->balances.at(model->name()));
+        if (const json phases = describe_phases(*model, scene, record->totals, communicator);
+            !phases.empty())
+          entry["phases"] = phases;
+        summary["models"][model->name()] = entry;
+      }
+    if (!record->comparison.empty())
+      summary["comparison"] = record->comparison;
+    Point<dim> lower, upper;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        lower[d] = summary["domain"]["lower"][d];
+        upper[d] = summary["domain"]["upper"][d];
+      }
+    summary["values on sides"] = values_on_sides(
+      scene,
+      lower,
+      upper,
+      scene.elasticity.solver == ElasticSolver::dynamics ? scene.time.end_time : 0.);
+    std::vector<std::pair<std::string, std::string>> files;
+    if (!scene.output.probes.empty())
+      files.emplace_back("probes.csv", probes.text());
+    if (!scene.output.line.empty())
+      files.emplace_back("line.csv", line.text());
+    files.emplace_back("totals.csv", record->totals);
+    files.emplace_back("scene.prm", scene_with_defaults());
+    files.emplace_back("summary.json", json_text(summary));
+    write_files(files, scene.general.output_directory, communicator);
+  }
+
+
+  template class ElasticSimulation<1>;
+  template class ElasticSimulation<2>;
+  template class ElasticSimulation<3>;
+} // namespace PeriDeal

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "elastic_summary.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+
+#include <perideal/analysis/comparison.h>
+#include <perideal/base/user_error.h>
+
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  using json = nlohmann::ordered_json;
+
+  namespace
+  {
+    std::string text_of(const VectorCondition &condition)
+    {
+      std::string text;
+      for (const auto &value : condition.values)
+        text += (text.empty() ? "" : ", ") + (value ? value->text() : std::string("free"));
+      return text;
+    }
+
+
+    /** Points spread evenly over a side of a box: 1 in one, 7 in two, 3 x 3 in three dimensions. */
+    template <int dim>
+    std::vector<Point<dim>> points_on_side(const unsigned int side,
+                                           const Point<dim>  &lower,
+                                           const Point<dim>  &upper)
+    {
+      const unsigned int      n = dim == 3 ? 3 : 7, normal = side / 2;
+      std::vector<Point<dim>> points;
+      for (unsigned int k = 0; k < (dim == 1 ? 1 : dim == 2 ? n : n * n); ++k)
+        {
+          Point<dim>   p;
+          unsigned int rest = k;
+          for (unsigned int d = 0; d < dim; ++d)
+            if (d == normal)
+              p[d] = side % 2 == 0 ? lower[d] : upper[d];
+            else
+              {
+                p[d] = lower[d] + (rest % n + 0.5) / n * (upper[d] - lower[d]);
+                rest /= n;
+              }
+          points.push_back(p);
+        }
+      return points;
+    }
+
+
+    template <int dim>
+    json values_at(const VectorCondition &condition, const Point<dim> &p, const double t)
+    {
+      json values = json::array();
+      for (const auto &value : condition.values)
+        try
+          {
+            values.push_back(value ? json(value->value(p, t)) : json());
+          }
+        catch (const UserError &) // no number at this point, which the run need not use
+          {
+            values.push_back(json());
+          }
+      return values;
+    }
+
+
+    /** One component of a vector with dim of them at each node, as a vector of the nodes with the ghosts of their cells. */
+    template <int dim>
+    Vector component_of(const DoFHandler<dim> &dofs, const Vector &u, const unsigned int d)
+    {
+      IndexSet relevant;
+      DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+      Vector component(dofs.locally_owned_dofs(), relevant, dofs.get_communicator());
+      for (unsigned int i = 0; i < component.locally_owned_size(); ++i)
+        component.local_element(i) = u.local_element(dim * i + d);
+      component.update_ghost_values();
+      return component;
+    }
+  } // namespace
+
+
+  template <int dim>
+  json describe_elastic_sides(const Scene<dim> &scene)
+  {
+    const auto &conditions = scene.boundary_conditions;
+    const bool  box_sides  = scene.domain.shape != Shape::mesh_file;
+    json        sides      = json::object();
+    if (box_sides)
+      for (unsigned int k = 0; k < 2 * dim; ++k)
+        sides[box_side_names()[k]] = "free";
+    const auto add = [&](const std::string &name, const std::string &text) {
+      if (sides.contains(name) && sides[name] != "free")
+        sides[name] = sides[name].template get<std::string>() + "; " + text;
+      else
+        sides[name] = text;
+    };
+    for (const auto side : conditions.symmetry)
+      add(name_of_side(side, box_sides), "symmetry");
+    for (const VectorCondition &c : conditions.displacement)
+      add(c.name, "displacement " + text_of(c));
+    for (const VectorCondition &c : conditions.traction)
+      add(c.name, "traction " + text_of(c));
+    return sides;
+  }
+
+
+  template <int dim>
+  json values_on_sides(const Scene<dim> &scene,
+                       const Point<dim> &lower,
+                       const Point<dim> &upper,
+                       const double      t)
+  {
+    json sides = json::object();
+    if (scene.domain.shape == Shape::mesh_file)
+      return sides;
+    const auto add = [&](const std::vector<VectorCondition> &list, const std::string &kind) {
+      for (const VectorCondition &condition : list)
+        if (condition.id < 2 * dim)
+          {
+            json at = json::array(), values = json::array();
+            for (const Point<dim> &p : points_on_side<dim>(condition.id, lower, upper))
+              {
+                json coordinates = json::array();
+                for (unsigned int d = 0; d < dim; ++d)
+                  coordinates.push_back(p[d]);
+                at.push_back(coordinates);
+                values.push_back(values_at(condition, p, t));
+              }
+            sides[condition.name][kind] = {{"at", at}, {"values", values}};
+          }
+    };
+    add(scene.boundary_conditions.displacement, "displacement");
+    add(scene.boundary_conditions.traction, "traction");
+    return sides;
+  }
+
+
+  template <int dim>
+  void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &models,
+                             const double                                         t,
+                             json                                                &comparison)
+  {
+    const ElasticRun<dim> *fem = nullptr, *pd = nullptr;
+    for (const auto &model : models)
+      if (model->name() == to_string(Model::finite_elements))
+        fem = model.get();
+      else if (model->name() == to_string(Model::peridynamics))
+        pd = model.get();
+    if (fem == nullptr || pd == nullptr || pd->nodes() == nullptr)
+      return;
+    const unsigned int  n = pd->nodes()->n_owned();
+    std::vector<double> squares(n);
+    double              square = 0., reference = 0., largest = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const Vector of_fem = component_of(fem->dofs(), fem->displacement, d),
+                     of_pd  = component_of(pd->dofs(), pd->displacement, d);
+        Vector interpolant(of_pd.get_partitioner());
+        interpolate_to(fem->dofs(), of_fem, pd->dofs(), interpolant);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const double value      = interpolant.local_element(i),
+                         difference = of_pd.local_element(i) - value, v = pd->nodes()->volume(i);
+            squares[i] += difference * difference;
+            square += v * difference * difference;
+            reference += v * value * value;
+          }
+      }
+    for (const double s : squares)
+      largest = std::max(largest, std::sqrt(s));
+    const MPI_Comm communicator = pd->dofs().get_communicator();
+    square                      = Utilities::MPI::sum(square, communicator);
+    reference                   = Utilities::MPI::sum(reference, communicator);
+    comparison["relative l2"].push_back(
+      {t, std::sqrt(reference > 0. ? square / reference : square)});
+    comparison["maximum"].push_back({t, Utilities::MPI::max(largest, communicator)});
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                            \
+  template json describe_elastic_sides(const Scene<dim> &);                                  \
+  template json values_on_sides(const Scene<dim> &,                                          \
+                                const Point<dim> &,                                          \
+                                const Point<dim> &,                                          \
+                                const double);                                               \
+  template void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &, \
+                                      const double,                                          \
+                                      json &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/simulation/elastic_run.h>
+
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** Side -> what holds there in words: `displacement 0, free`, `traction 1, 0`, `symmetry`, several separated by `; `, else `free`. */
+  template <int dim>
+  nlohmann::ordered_json describe_elastic_sides(const Scene<dim> &scene);
+
+  /**
+   * Side of a box -> `displacement`, `traction` -> `at` (points spread over the side) and `values` (at time @p t, a list of components for each point; null: free),
+   * what arrows in a sketch are drawn from. Sides of other bodies are left out.
+   */
+  template <int dim>
+  nlohmann::ordered_json values_on_sides(const Scene<dim>         &scene,
+                                         const dealii::Point<dim> &lower,
+                                         const dealii::Point<dim> &upper,
+                                         const double              t = 0.);
+
+  /**
+   * Append to `relative l2` and `maximum` of @p comparison the pair [t, value]: peridynamics minus the interpolant of finite elements at its nodes. The norm of the
+   * displacement vectors, weighted by nodal volumes, over that of the finite elements; and the largest length of a difference. Nothing where one
+   * of the models is absent. Collective.
+   */
+  template <int dim>
+  void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &models,
+                             const double                                         t,
+                             nlohmann::ordered_json                              &comparison);
+} // namespace PeriDeal

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/fe/fe_dgq.h>
+#include <deal.II/fe/fe_q.h>
+
+#include <perideal/operators/state_operator.h>
+
+#include "elastic_fields.h"
+#include "model_runs.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    class StateRun : public ElasticRun<dim>
+    {
+    public:
+      StateRun(const Triangulation<dim> &mesh, const Scene<dim> &scene)
+        : scene(scene)
+        , handler(mesh)
+      {
+        {
+          Timings::Scope scope(this->timings, "unknowns");
+          if (scene.domain.nodes == NodePlacement::vertices)
+            handler.distribute_dofs(FE_Q<dim>(1));
+          else
+            handler.distribute_dofs(FE_DGQ<dim>(0));
+          if (scene.domain.shape != Shape::mesh_file)
+            number_along_lattice(handler, scene.domain);
+          node_set = std::make_unique<Nodes<dim>>(handler,
+                                                  scene.domain,
+                                                  scene.cracks,
+                                                  scene.peridynamics.nodal_volume);
+        }
+        Timings::Scope scope(this->timings, "operator");
+        states = std::make_unique<StateOperator<dim>>(*node_set, scene);
+      }
+
+      std::string name() const override
+      {
+        return to_string(Model::peridynamics);
+      }
+
+      const DoFHandler<dim> &dofs() const override
+      {
+        return handler;
+      }
+
+      const Nodes<dim> *nodes() const override
+      {
+        return node_set.get();
+      }
+
+      ElasticOperator &op() const override
+      {
+        return *states;
+      }
+
+      Point<dim> position(const unsigned int node) const override
+      {
+        return node_set->position(node);
+      }
+
+      std::vector<double> at_points(const PointEvaluator<dim>              &reader,
+                                    const std::vector<std::vector<double>> &points) const override
+      {
+        constexpr unsigned int n_stresses = SymmetricTensor<2, 3>::n_independent_components;
+        const auto             stress     = nodal_stress(states->tensors(this->displacement));
+        std::vector<std::vector<double>> columns;
+        for (unsigned int d = 0; d < dim; ++d)
+          columns.push_back(reader.evaluate(this->displacement, dim, d));
+        // Von Mises' stress of interpolated components would be smaller than that of the nodes: it is interpolated itself.
+        for (unsigned int k = 0; k <= n_stresses; ++k)
+          {
+            Vector values(node_set->partitioner());
+            for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+              values.local_element(i) = k < n_stresses ? stress[i].access_raw_entry(k) :
+                                                         von_mises(stress[i]);
+            columns.push_back(reader.evaluate(values));
+          }
+        std::vector<double> rows;
+        for (std::size_t k = 0; k < points.size(); ++k)
+          {
+            double                values[dim];
+            SymmetricTensor<2, 3> at_point;
+            for (unsigned int d = 0; d < dim; ++d)
+              values[d] = columns[d][k];
+            for (unsigned int c = 0; c < n_stresses; ++c)
+              at_point.access_raw_entry(c) = columns[dim + c][k];
+            append_row(values, at_point, dim, rows);
+            rows.back() = columns.back()[k];
+          }
+        return rows;
+      }
+
+      std::vector<OutputField> fields() const override
+      {
+        const NodalTensors<dim> tensors = states->tensors(this->displacement);
+        std::vector<double>     theta;
+        states->dilatations(this->displacement, theta);
+        ElasticFields<dim> list(node_set->partitioner());
+        list.add_vector("displacement", this->displacement);
+        if (this->stepper)
+          list.add_vector("velocity", this->velocity);
+        list.add_stress(nodal_stress(tensors));
+        list.add_strain(tensors.strain);
+        list.add("dilatation", [&](const unsigned int i) { return theta[i]; });
+        list.add("node_volume", [&](const unsigned int i) { return node_set->volume(i); });
+        return list.take();
+      }
+
+      SymmetricTensor<2, 3> mean_stress() const override
+      {
+        const auto            stress = nodal_stress(states->tensors(this->displacement));
+        SymmetricTensor<2, 3> sum;
+        double                volume = 0.;
+        for (unsigned int i = 0; i < stress.size(); ++i)
+          {
+            sum += node_set->volume(i) * stress[i];
+            volume += node_set->volume(i);
+          }
+        return Utilities::MPI::sum(sum, handler.get_communicator()) /
+               Utilities::MPI::sum(volume, handler.get_communicator());
+      }
+
+      std::vector<StressSample> stress_samples() const override
+      {
+        const auto                stress = nodal_stress(states->tensors(this->displacement));
+        std::vector<StressSample> samples;
+        for (unsigned int i = 0; i < stress.size(); ++i)
+          samples.push_back({scene.material.phases.all().at(node_set->position(i)),
+                             node_set->volume(i),
+                             stress[i]});
+        return samples;
+      }
+
+      std::vector<std::pair<std::string, std::string>> settings() const override
+      {
+        return bond_settings(scene, states->families());
+      }
+
+    private:
+      std::vector<SymmetricTensor<2, 3>> nodal_stress(const NodalTensors<dim> &tensors) const
+      {
+        std::vector<SymmetricTensor<2, 3>> stress;
+        for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+          stress.push_back(full_stress(tensors.stress[i], scene, node_set->position(i)));
+        return stress;
+      }
+
+      const Scene<dim>                   &scene;
+      DoFHandler<dim>                     handler;
+      std::unique_ptr<Nodes<dim>>         node_set;
+      std::unique_ptr<StateOperator<dim>> states;
+    };
+  } // namespace
+
+
+  template <int dim>
+  std::unique_ptr<ElasticRun<dim>> make_state_run(const Triangulation<dim> &mesh,
+                                                  const Scene<dim>         &scene)
+  {
+    return std::make_unique<StateRun<dim>>(mesh, scene);
+  }
+
+#define PERIDEAL_INSTANTIATE(dim)                                                      \
+  template std::unique_ptr<ElasticRun<dim>> make_state_run(const Triangulation<dim> &, \
+                                                           const Scene<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "summary_parts.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/output/result_files.h>
+
+#include <limits>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  using json = nlohmann::ordered_json;
+
+  namespace
+  {
+    /** The comment paragraphs at the top of a scene file, without the comment marks. */
+    std::string teaching_text(const std::string &text)
+    {
+      std::istringstream lines(text);
+      std::string        line, result;
+      while (std::getline(lines, line))
+        {
+          const std::size_t first = line.find_first_not_of(" \t");
+          if (first == std::string::npos)
+            {
+              if (!result.empty())
+                result += "\n";
+              continue;
+            }
+          if (line[first] != '#')
+            break;
+          const std::size_t begin = line.find_first_not_of("# \t", first);
+          const std::string words = begin == std::string::npos ? "" : line.substr(begin);
+          if (words.rfind("SPDX", 0) == 0 || words.rfind("Copyright", 0) == 0)
+            continue;
+          result += words + "\n";
+        }
+      while (!result.empty() && result.back() == '\n')
+        result.pop_back();
+      return result;
+    }
+
+
+    template <int dim>
+    std::vector<double> coordinates(const Point<dim> &p)
+    {
+      std::vector<double> list;
+      for (unsigned int d = 0; d < dim; ++d)
+        list.push_back(p[d]);
+      return list;
+    }
+
+
+    /** Lowest and highest coordinates of the whole mesh. Collective. */
+    template <int dim>
+    std::pair<Point<dim>, Point<dim>> bounding_box(const Triangulation<dim> &mesh,
+                                                   const MPI_Comm            communicator)
+    {
+      std::vector<double> lowest(2 * dim, std::numeric_limits<double>::max()), all(2 * dim);
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                lowest[d]       = std::min(lowest[d], cell->vertex(v)[d]);
+                lowest[dim + d] = std::min(lowest[dim + d], -cell->vertex(v)[d]);
+              }
+      Utilities::MPI::min(lowest, communicator, all);
+      std::pair<Point<dim>, Point<dim>> corners;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          corners.first[d]  = all[d];
+          corners.second[d] = -all[dim + d];
+        }
+      return corners;
+    }
+    json describe_image(const std::string &file_name, const PhaseMap &map)
+    {
+      json       phases = json::object();
+      const auto counts = map.counts();
+      for (std::size_t k = 0; k < counts.size(); ++k)
+        if (k < map.names.size() || counts[k] > 0)
+          phases[k < map.names.size() ? map.names[k] : void_name] = {
+            {"cells", counts[k]},
+            {"area fraction", static_cast<double>(counts[k]) / map.phases.size()},
+            {"color", {map.colors[k][0], map.colors[k][1], map.colors[k][2]}}};
+      return {{"file", file_name}, {"cells", map.n_cells}, {"phases", phases}};
+    }
+  } // namespace
+
+
+  template <int dim>
+  json describe_scene(const Scene<dim>         &scene,
+                      const SceneText          &text,
+                      const Triangulation<dim> &mesh,
+                      const MPI_Comm            communicator)
+  {
+    json summary;
+    summary["title"]                  = scene.general.title;
+    summary["text"]                   = teaching_text(text.text);
+    summary["scene file"]             = text.file_name;
+    summary["program"]                = std::string("PeriDeal ") + PERIDEAL_VERSION;
+    summary["dimension"]              = dim;
+    summary["processes"]              = Utilities::MPI::n_mpi_processes(communicator);
+    summary["units"]                  = {{"length", scene.units.length},
+                                         {"time", scene.units.time},
+                                         {"temperature", scene.units.temperature},
+                                         {"field", scene.units.of_field(scene.general.physics)}};
+    const PhysicsNames &names         = names_of(scene.general.physics);
+    summary["physics"]                = names.physics;
+    summary["names"]                  = {{"field", names.field},
+                                         {"flux", names.flux},
+                                         {"content", names.content},
+                                         {"flow", names.flow},
+                                         {"quantity", names.quantity}};
+    static const char *const shapes[] = {"box", "plate with hole", "mesh file", "image"};
+    const auto               corners  = bounding_box(mesh, communicator);
+    summary["domain"]                 = {{"lower", coordinates(corners.first)},
+                                         {"upper", coordinates(corners.second)},
+                                         {"shape", shapes[static_cast<int>(scene.domain.shape)]}};
+    summary["cells"]                  = mesh.n_global_active_cells();
+    if (scene.domain.image)
+      summary["image"] = describe_image(scene.domain.image_file, *scene.domain.image);
+    return summary;
+  }
+
+
+  template <int dim>
+  void write_image_as_read(const Scene<dim> &scene, const MPI_Comm communicator)
+  {
+    if (scene.domain.image)
+      write_files({{"image_as_read.png", encode_png(scene.domain.image->picture())}},
+                  scene.general.output_directory,
+                  communicator);
+  }
+
+
+  void write_files(const std::vector<std::pair<std::string, std::string>> &files,
+                   const std::string                                      &directory,
+                   const MPI_Comm                                          communicator)
+  {
+    std::string message;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      try
+        {
+          for (const auto &[name, content] : files)
+            write_file(directory + "/" + name, content);
+        }
+      catch (const UserError &error)
+        {
+          message = error.message();
+        }
+    throw_on_all_if_any(communicator, message);
+  }
+
+
+  std::string json_text(const json &summary)
+  {
+    return summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                          \
+  template json describe_scene(const Scene<dim> &,         \
+                               const SceneText &,          \
+                               const Triangulation<dim> &, \
+                               const MPI_Comm);            \
+  template void write_image_as_read(const Scene<dim> &, const MPI_Comm);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/solvers/static_solver.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    /**
+     * Adaptive dynamic relaxation (Underwood 1983, Kilic and Madenci 2010): a motion with a fictitious diagonal mass Lambda and damping c Lambda, central
+     * differences and a step of one. Lambda = kappa/4 diag K makes that step stable, kappa (with a margin) the largest eigenvalue of diag(K)^-1 K; c = 2 omega
+     * damps critically what moves: omega^2 = v.Kv/v.Lambda v, the Rayleigh quotient of the last step, K v from the residuals before and after. (The
+     * published quotient, of u and a diagonal local stiffness, takes more iterations.) Iterations go with L/h.
+     */
+    class AdaptiveDynamicRelaxation : public StaticSolver
+    {
+    public:
+      AdaptiveDynamicRelaxation(ElasticOperator &op, const StaticOptions &options)
+        : op(op)
+        , options(options)
+      {
+        constexpr double margin = 1.1;
+        for (Vector *v : {&mass, &velocity, &residual, &last})
+          op.initialize_vector(*v);
+        mass = op.diagonal();
+        mass *= 0.25 * margin * op.scaled_bound();
+      }
+
+      std::string name() const override
+      {
+        return "adaptive dynamic relaxation";
+      }
+
+      unsigned int solve(Vector &u, const double t, const double size) override
+      {
+        ResidualGoal goal(name(), options, size);
+        op.distribute(u, t);
+        op.residual(residual, u, t);
+        velocity       = 0.;
+        unsigned int n = 0;
+        for (; !goal.reached(residual, n); ++n)
+          {
+            const double       damping = n == 0 ? 0. : find_damping(u);
+            const double       keep    = (2. - damping) / (2. + damping);
+            const double       push    = n == 0 ? 0.5 : 2. / (2. + damping);
+            const unsigned int n_own   = mass.locally_owned_size();
+            for (unsigned int i = 0; i < n_own; ++i)
+              velocity.local_element(i) = keep * velocity.local_element(i) +
+                                          push * residual.local_element(i) / mass.local_element(i);
+            u += velocity;
+            last.swap(residual);
+            op.residual(residual, u, t);
+          }
+        return n;
+      }
+
+    private:
+      double find_damping(const Vector &u) const
+      {
+        constexpr double   most   = 1.9; // below 2: velocities must not turn round
+        double             sum[2] = {0., 0.};
+        const unsigned int n      = mass.locally_owned_size();
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const double v = velocity.local_element(i);
+            sum[0] += v * (last.local_element(i) - residual.local_element(i));
+            sum[1] += v * v * mass.local_element(i);
+          }
+        for (double &s : sum)
+          s = dealii::Utilities::MPI::sum(s, u.get_mpi_communicator());
+        return sum[0] > 0. ? std::min(2. * std::sqrt(sum[0] / sum[1]), most) : 0.;
+      }
+
+      ElasticOperator    &op;
+      const StaticOptions options;
+      Vector              mass, velocity, residual, last;
+    };
+  } // namespace
+
+
+  std::unique_ptr<StaticSolver> make_adaptive_dynamic_relaxation(ElasticOperator     &op,
+                                                                 const StaticOptions &options)
+  {
+    return std::make_unique<AdaptiveDynamicRelaxation>(op, options);
+  }
+} // namespace PeriDeal

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/solvers/linear_solver.h>
+#include <perideal/solvers/static_solver.h>
+
+#include <cmath>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    /** One linear system by conjugate gradients with multigrid. */
+    class LinearStatics : public StaticSolver
+    {
+    public:
+      LinearStatics(ElasticOperator &op, const StaticOptions &options)
+        : op(op)
+        , solver(op, options.tolerance, options.max_iterations, options.direct_up_to)
+      {
+        AssertThrow(
+          !op.nonlinear(),
+          UserError(
+            "'Solver = linear' in section 'Elasticity' needs 'Kinematics = linear'; use 'conjugate gradients'."));
+        op.initialize_vector(residual);
+        op.initialize_vector(change);
+      }
+
+      std::string name() const override
+      {
+        return "linear";
+      }
+
+      unsigned int solve(Vector &u, const double t, const double) override
+      {
+        op.distribute(u, t);
+        op.residual(residual, u, t);
+        change                          = 0.;
+        const unsigned int n_iterations = solver.solve(0., 1., change, residual);
+        u += change;
+        AssertThrow(
+          std::isfinite(u.l1_norm()),
+          UserError(
+            "The displacement is not finite. Check the material, the boundary values and whether every part of the body is held."));
+        return n_iterations;
+      }
+
+    private:
+      ElasticOperator &op;
+      LinearSolver     solver;
+      Vector           residual, change;
+    };
+  } // namespace
+
+
+  std::unique_ptr<StaticSolver> make_linear_statics(ElasticOperator     &op,
+                                                    const StaticOptions &options)
+  {
+    return std::make_unique<LinearStatics>(op, options);
+  }
+} // namespace PeriDeal

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/solvers/linear_solver.h>
+#include <perideal/solvers/motion_stepper.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    /**
+     * Newmark's method with beta = 1/4, gamma = 1/2 (the mean acceleration): second order, stable for any step, keeps the energy of linear bodies. Each step
+     * solves (4/dt^2 M + K) du = f - K u - M a, again with K the tangent at the new u where forces are not linear (Newton).
+     */
+    class Newmark : public MotionStepper
+    {
+    public:
+      Newmark(ElasticOperator &op, const StepperOptions &options)
+        : MotionStepper(op, options.time_step)
+        , tolerance(options.solver_tolerance)
+        , solver(op, options.solver_tolerance, options.max_iterations, options.direct_up_to)
+      {
+        for (Vector *x : {&acceleration, &predicted, &residual, &change})
+          op.initialize_vector(*x);
+      }
+
+      std::string name() const override
+      {
+        return "newmark";
+      }
+
+    protected:
+      void step(Vector &u, Vector &v, const double t, const double dt) override
+      {
+        const double factor = 4. / (dt * dt);
+        residual            = unbalanced;
+        op.clear_constrained(residual);
+        const double before = residual.l2_norm();
+        accelerate(acceleration, unbalanced);
+        v.add(0.5 * dt, acceleration);
+        u.add(dt, last_velocity);
+        u.add(0.25 * dt * dt, acceleration);
+        op.distribute(u, t + dt);
+        predicted = u; // where the new acceleration would be zero
+        op.unbalanced(unbalanced, u, t + dt);
+        residual = unbalanced;
+        op.clear_constrained(residual);
+        const double size = std::max(before, residual.l2_norm());
+        for (unsigned int round = 0;; ++round)
+          {
+            if (op.nonlinear())
+              {
+                op.linearize(u);
+                if (round > 0)
+                  solver.operator_changed();
+              }
+            change = 0.;
+            spent.iterations += solver.solve(factor, 1., change, residual);
+            u += change;
+            op.unbalanced(unbalanced, u, t + dt);
+            if (!op.nonlinear())
+              break;
+            find_residual(u, factor);
+            if (is_small(size, u, round, t))
+              break;
+          }
+        // Also to the solver's tolerance the acceleration of the forces, so that the next step starts from them.
+        accelerate(acceleration, unbalanced);
+        v.add(0.5 * dt, acceleration);
+        follow_supports(v, u, dt);
+      }
+
+    private:
+      /** Forces less M a. */
+      void find_residual(const Vector &u, const double factor)
+      {
+        for (unsigned int i = 0; i < held.size(); ++i)
+          residual.local_element(i) =
+            held[i] ?
+              0. :
+              unbalanced.local_element(i) -
+                factor * (u.local_element(i) - predicted.local_element(i)) / inverse_mass[i];
+      }
+
+      bool is_small(const double size, const Vector &u, const unsigned int round, const double t)
+      {
+        constexpr unsigned int most = 30;
+        const double           now  = residual.l2_norm();
+        if (now <= std::max(10. * tolerance, 1e-12) * size || size == 0.)
+          return true;
+        // After large rotations round-off leaves more than that of small forces.
+        const double last_change = change.l2_norm();
+        change                   = u;
+        change -= last;
+        if (last_change <= std::max(tolerance, 1e-11) * change.l2_norm())
+          return true;
+        std::ostringstream message;
+        message << "Newton's iterations of the stepper 'newmark' did not converge at t = " << t
+                << ". Choose a smaller 'Time step' in section 'Time', or 'Stepper = verlet'.";
+        AssertThrow(round < most && std::isfinite(now), UserError(message.str()));
+        return false;
+      }
+
+      const double tolerance;
+      LinearSolver solver;
+      Vector       acceleration, predicted, residual, change;
+    };
+  } // namespace
+
+
+  std::unique_ptr<MotionStepper> make_newmark(ElasticOperator &op, const StepperOptions &options)
+  {
+    return std::make_unique<Newmark>(op, options);
+  }
+} // namespace PeriDeal

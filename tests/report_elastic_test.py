@@ -1,0 +1,298 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Tests of the report of elastic bodies on output directories made up here.
+
+    python3 tests/report_elastic_test.py
+"""
+
+import json
+import re
+import unittest
+
+import numpy as np
+
+from report_test import ReportCase
+from report_cases import FEM, PD, box_mesh
+
+import animate
+import contours
+import deformed
+import difference
+import elastic_tables
+import sketch
+import style
+import supports
+from raster import View
+from read_run import Mesh, Run
+from report_elastic_cases import column_values, make_elastic
+
+
+def rows_of(html):
+    """The rows of all tables: lists of texts, the first the head of the row."""
+    return [[re.sub("<[^>]*>", "", part) for part in re.findall("<t[hd][^>]*>(.*?)</t[hd]>", row)]
+            for row in re.findall("<tr[^>]*>(.*?)</tr>", html, re.DOTALL)]
+
+
+class Pages(ReportCase):
+    """Whole pages of bodies of one, two and three dimensions."""
+
+    def report(self, **options):
+        """(page, rows of its tables, names of its figures)."""
+        make_elastic(self.directory, **options)
+        figures = self.directory.parent / "figures"
+        page = self.page("", "--figures", figures)
+        html = (self.directory / "report.html").read_text(encoding="utf-8")
+        return page, rows_of(html), sorted(p.stem for p in figures.iterdir())
+
+    def check_probes(self, rows, dimension):
+        """The table of probes has the numbers of probes.csv."""
+        run = Run(self.directory)
+        points = elastic_tables.probe_points(run.probes)
+        found = [r for r in rows if len(r) == 4 and
+                 re.sub(r" \(mm\)", "", r[0]).replace("von Mises", "von_mises") in run.probe_columns]
+        columns = list(run.probe_columns)
+        self.assertEqual(len(found), 2 * len(columns))
+        for k in range(2):
+            exact = {m: column_values(m, 1.0, points[k:k + 1])[0] for m in (FEM, PD)}
+            for c, row in enumerate(found[k * len(columns):(k + 1) * len(columns)]):
+                self.assertEqual(row[1:], [
+                    style.plain(float(exact[FEM][c]), 6), style.plain(float(exact[PD][c]), 6),
+                    style.plain(float(exact[PD][c] - exact[FEM][c]), 3)])
+        self.assertEqual(points.shape[1], dimension)
+
+    def check_forces(self, rows, dimension):
+        """The table of forces has the numbers of summary.json."""
+        for d, axis in enumerate("xyz"[:dimension]):
+            row = next(r for r in rows if r[0] == f"right, in {axis}")
+            self.assertEqual(row[2:], ["1", "1.02"] if d == 0 else ["0", "0"])
+            row = next(r for r in rows if r[0] == f"Sum in {axis}")
+            self.assertEqual(row[2:], ["0", "0"])
+
+    def test_plate(self):
+        page, rows, figures = self.report()
+        self.assertEqual(figures, ["displacement_magnitude", "displacement_x", "displacement_y",
+                                   "line", "pressure", "problem", "stress_xx", "stress_xy",
+                                   "von_mises"])
+        self.check_probes(rows, 2)
+        self.check_forces(rows, 2)
+        text = "".join(page.text)
+        for part in ("2D, static", "units: mm", "in plane stress at rest was computed by",
+                     "displacements magnified 100 times", "contours of equal displacement",
+                     "Zero everywhere, not drawn: stress yy.", "tractions t in orange",
+                     "Peridynamics differs from finite elements by 2 % in the relative L2 norm",
+                     "by at most 2.1×10⁻⁵ mm, reached at (",
+                     "The strain energy is 0.04567 (finite elements) and 0.04658 (peridynamics)",
+                     "The forces on the body are in balance: their sum is at most 2×10⁻¹² of",
+                     "Zero along the line, not drawn: displacement in y, stress yy, stress zz."):
+            self.assertIn(part, text)
+        largest = np.hypot(1, 0.3) * 1e-3
+        self.assertIn(["Largest magnitude of the displacement (mm)",
+                       f"{style.plain(largest, 6)} at (−1, −1)",
+                       f"{style.plain(1.02 * largest, 6)} at (−1, −1)"], rows)
+        self.assertIn(["Solver iterations", "21", "21"], rows)
+        self.assertIn(["At rest", "0.02", "2.1×10⁻⁵"], rows)
+        self.assertIn(["Force imbalance", "2×10⁻¹²", "2×10⁻¹²"], rows)
+        self.assertIn(["Von Mises stress of the mean stress", "0.2123", "0.2123"], rows)
+
+    def test_materials(self):
+        _, rows, _ = self.report()
+        shear = 200 / 2.6
+        self.assertIn(["Shear modulus", style.plain(shear, 6), style.plain(2 * shear, 6),
+                       style.plain(shear, 6)], rows)
+        self.assertIn(["Young modulus", "200", "400", "200"], rows)
+        self.assertIn(["Density", "2.5", "2.5", "2.5"], rows)
+        self.assertIn(["Where", "", "hypot(x, y) &lt; 0.2", "x &gt; 0.9"], rows)
+
+    def test_bar(self):
+        page, rows, figures = self.report(dimension=1)
+        self.assertEqual(figures, ["displacement_x", "line", "problem", "stress_xx"])
+        self.check_probes(rows, 1)
+        self.check_forces(rows, 1)
+        self.assertIn(["Largest displacement in x (mm)", "0.001 at x = 1", "0.00102 at x = 1"], rows)
+        self.assertIn("The displacement of a bar", "".join(page.text))
+
+    def test_body(self):
+        page, rows, figures = self.report(dimension=3, cells=5)
+        self.assertEqual(figures, ["displacement_magnitude", "displacement_x", "displacement_y",
+                                   "displacement_z", "line", "pressure", "problem", "stress_xx",
+                                   "stress_xy", "von_mises"])
+        self.check_probes(rows, 3)
+        self.check_forces(rows, 3)
+        self.assertIn("displacements magnified 100 times", "".join(page.text))
+
+    def test_cell_centers_with_a_crack(self):
+        page, _, _ = self.report(centers=True, crack=True)
+        self.assertIn("with a crack", "".join(page.text))
+
+    def test_one_model(self):
+        page, _, _ = self.report(models=(PD,))
+        self.assertNotIn("Finite elements", page.cells)
+
+    def test_later_fields(self):
+        page, rows, figures = self.report(extras=("damage", "temperature"), phases=True)
+        self.assertIn("damage", figures)
+        self.assertIn("temperature", figures)
+        self.assertIn(["Phase", "Mean", "99th percentile", "Maximum"], rows)
+        self.assertEqual([r for r in rows if len(r) == 4 and r[1] in ("0.1", "10.1", "1.1", "11.1")],
+                         [["Finite elements", "0.1", "0.2", "0.3"],
+                          ["Peridynamics", "10.1", "10.2", "10.3"],
+                          ["Finite elements", "1.1", "1.2", "1.3"],
+                          ["Peridynamics", "11.1", "11.2", "11.3"]])
+        self.assertIn("that are broken", "".join(page.text))
+
+    def test_several_times(self):
+        page, rows, figures = self.report(times=(0.5, 1.0, 1.5), extras=("damage",))
+        self.assertEqual([f for f in figures if re.search(r"_000\d$", f)], [
+            f"{name}_{i:04d}" for name in ("damage", "displacement_magnitude") for i in range(3)]
+            + ["displacement_x_0002", "displacement_y_0002", "pressure_0002", "stress_xx_0002",
+               "stress_xy_0002"] + [f"von_mises_{i:04d}" for i in range(3)])
+        for figure in ("probes", "totals"):
+            self.assertIn(figure, figures)
+        text = "".join(page.text)
+        for part in ("2D, dynamic", "units: mm, s", "up to t = 1.5 s", "t = 0.5 s",
+                     "displacements magnified 50 times"):
+            self.assertIn(part, text)
+        self.assertIn(["Strain energy", style.plain(0.04567 * 1.5, 6),
+                       style.plain(0.04567 * 1.5 * 1.02, 6)], rows)
+        folder = animate.make(self.directory, PD, field="von_mises")
+        self.assertEqual(sorted(p.name for p in folder.iterdir()),
+                         ["contact_sheet.png", "frame_0000.png", "frame_0001.png", "frame_0002.png"])
+
+    def test_without_fields(self):
+        make_elastic(self.directory)
+        path = self.directory / "summary.json"
+        summary = json.loads(path.read_text())
+        summary["fields"] = []
+        for entry in ("sides", "values on sides", "comparison"):
+            del summary[entry]
+        for model in summary["models"].values():
+            del model["boundary force"], model["mean stress"]
+        path.write_text(json.dumps(summary))
+        (self.directory / "scene.prm").unlink()
+        page = self.page("")
+        self.assertEqual(len(page.images), 2)  # problem and line
+
+
+class Shapes(ReportCase):
+    """Deformed shapes are where the displacement takes them."""
+
+    def shape(self, u, segments=(), on_faces=False, cells=10, factor=10.0):
+        """A square of the size 2 with a displacement given as a function of the vertices and their cells' centres."""
+        nodes, quads = box_mesh([-1, -1], [1, 1], [cells, cells])
+        centers = np.repeat(nodes[quads].mean(axis=1), 4, axis=0)
+        shape = deformed.Shape(Mesh(nodes, quads), u(nodes, centers), factor, segments, on_faces)
+        view = View([-2, -2], [2, 2], 200)
+        shape.draw_on(view)
+        return nodes, shape, view
+
+    def test_stretched_and_turned(self):
+        gradient = np.array([[0.03, -0.02], [0.01, -0.01]])
+        nodes, shape, view = self.shape(lambda p, c: p @ gradient.T)
+        picture = shape.picture(3 * nodes[:, 0] - 2 * nodes[:, 1])
+        x, y = np.meshgrid(*view.centers())
+        rest = np.stack([x, y], axis=-1) @ np.linalg.inv(np.eye(2) + 10 * gradient).T
+        inside = np.abs(rest).max(axis=-1) <= 1
+        self.assertTrue((np.isfinite(picture) == inside).mean() > 0.999)
+        both = inside & np.isfinite(picture)
+        self.assertLess(np.abs(picture - (3 * rest[..., 0] - 2 * rest[..., 1]))[both].max(), 1e-9)
+
+    def test_a_crack_opens(self):
+        # Inside cells and along them, cut into the mesh or not, at vertices and at cell centres.
+        for cells, on_faces, at_centers in ((11, False, False), (10, False, False),
+                                            (10, True, False), (10, False, True)):
+            with self.subTest(cells=cells, on_faces=on_faces, at_centers=at_centers):
+                def u(nodes, centers):
+                    y = centers[:, 1] if on_faces or at_centers else nodes[:, 1]
+                    return np.stack([0 * y, 0.02 * (y > -1e-9)], axis=1)
+                crack = [np.array([[-1.0, 0], [1.0, 0]])]
+                nodes, shape, view = self.shape(u, crack, on_faces, cells)
+                picture = shape.picture(np.ones(len(nodes)))
+                y = view.centers()[1]
+                column = np.isfinite(picture)[:, 100]
+                expected = ((y > -1) & (y < 0)) | ((y > 0.2) & (y < 1.2))
+                self.assertEqual(column.tolist(), expected.tolist())
+
+    def test_faces_of_a_crack(self):
+        make_elastic(self.directory, crack=True)
+        run = Run(self.directory)
+        maps = contours.Maps(run)
+        maps.on_faces = True
+        shapes = deformed.Shapes(maps, [0], [FEM], 100.0)
+        upper, lower = shapes.faces(0, FEM)
+        pixel = maps.view().pixel.max()
+        inner = slice(2, -2)
+        self.assertLess(np.abs(upper[inner, 1] - 0.02).max(), pixel)
+        self.assertLess(np.abs(lower[inner, 1]).max(), pixel)
+        self.assertLess(np.abs(upper[inner, 0] / np.linspace(-1, 1, len(upper))[inner] - 1.1).max(),
+                        0.05)
+
+    def test_factors(self):
+        for factor, rounded in ((3030, 2000), (3500, 5000), (0.7, 1), (0.2, 1), (0.1, 0.1),
+                                (8.2, 10), (1.3, 1), (1e-3, 1e-3)):
+            self.assertAlmostEqual(deformed.round_factor(factor), rounded, delta=1e-9 * rounded)
+        make_elastic(self.directory)
+        run = Run(self.directory)
+        factor = deformed.magnification(run, [0])
+        largest = factor * 1.02e-3 * np.hypot(1, 0.3)
+        self.assertEqual(factor, 100)  # 0.05 * 2/1.065e-3 is 93.9
+        self.assertAlmostEqual(largest / 2, 0.053, delta=5e-4)
+
+
+class Parts(ReportCase):
+    """Numbers that tables and sketches are made of."""
+
+    def test_moduli(self):
+        exact = {"Bulk modulus": 1e5, "Shear modulus": 3e5 * 0.2 / 2.8, "Young modulus": 6e4,
+                 "Poisson ratio": 0.4}
+        names = list(exact)
+        for i, a in enumerate(names):
+            for b in names[i + 1:]:
+                found = elastic_tables.all_moduli({a: exact[a], b: exact[b]})
+                for title, value in exact.items():
+                    self.assertAlmostEqual(found[title] / value, 1, delta=1e-11)
+        self.assertEqual(elastic_tables.all_moduli({"Young modulus": 1.0}), {})
+        self.assertEqual(elastic_tables.of_phases("a: f(1; 2) ; b: x > 0 ? 1 : 2"),
+                         {"a": "f(1; 2)", "b": "x > 0 ? 1 : 2"})
+
+    def test_difference_of_displacements(self):
+        make_elastic(self.directory)
+        run = Run(self.directory)
+        gap = difference.displacement_gap(run, 0)
+        nodes = run.mesh(0, PD).nodes
+        self.assertLess(np.abs(gap - 2e-5 * np.hypot(nodes[:, 0], 0.3 * nodes[:, 1])).max(), 1e-18)
+
+    def test_difference_at_cell_centers(self):
+        make_elastic(self.directory, centers=True)
+        run = Run(self.directory)
+        mesh = run.mesh(0, PD)
+        x = np.repeat(mesh.nodes[mesh.cells].mean(axis=1)[:, 0], 4)
+        self.assertLess(np.abs(difference.difference_field(run, 0, "displacement_x")
+                               - 2e-5 * x).max(), 1e-17)
+
+    def test_supports(self):
+        make_elastic(self.directory)
+        run = Run(self.directory)
+        self.assertEqual([supports.kind_of_support(run, s) for s in ("left", "right", "top")],
+                         ["slides", "", ""])
+        run.summary["values on sides"]["left"]["displacement"]["values"] = [[0.0, 0.0]]
+        self.assertEqual(supports.kind_of_support(run, "left"), "held")
+        run.summary["values on sides"]["left"]["displacement"]["values"] = [[0.1, 0.0]]
+        self.assertEqual(supports.kind_of_support(run, "left"), "")
+        self.assertEqual((supports.longest(run, "traction"), supports.longest(run, "displacement")),
+                         (0.2, 0.1))
+        figure = sketch.problem_sketch(contours.Maps(run), run.words)
+        arrows = [p for p in figure.axes[0].patches if hasattr(p, "get_arrowstyle")]
+        self.assertEqual(len(arrows), 2)
+
+    def test_outliers_do_not_rule_the_colours(self):
+        values = np.concatenate([np.linspace(0, 1, 10_000), [40.0]])
+        scale = style.value_scale([values], outliers=0.002)
+        self.assertLess(scale.levels[-1], 1.2)
+        self.assertEqual(scale.extend, "max")
+        scale = style.value_scale([values])
+        self.assertGreaterEqual(scale.levels[-1], 40)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""What elastic runs say of themselves, and the report that is made of it.
+
+    elastic_report.py bar | plate | body      a run, its summary, and the numbers in the tables of its report
+"""
+
+import math
+import os
+import re
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+from scene_test import SOURCE_DIR, check, check_close, finish, run_scene
+
+FEM, PD = "finite elements", "peridynamics"
+
+BAR = """set Title = Bar
+set Dimension = 1
+set Physics = elasticity
+set Models = finite elements, peridynamics
+subsection Domain
+  set Upper corner = 10
+  set Cells = 40
+end
+subsection Material
+  set Young modulus = 200
+  set Poisson ratio = 0.3
+end
+subsection Boundary conditions
+  set Displacement = left: 0
+  set Traction = right: 1
+end
+subsection Output
+  set Probes = 5 ; 10
+  set Line = 0 ; 10 ; 21
+end
+"""
+
+PLATE = """# A cracked plate of two materials.
+set Title = Plate
+set Dimension = 2
+set Physics = elasticity
+set Models = finite elements, peridynamics
+subsection Domain
+  set Lower corner = -1, -1
+  set Upper corner = 1, 1
+  set Cells = 24, 24
+end
+subsection Material
+  set Bulk modulus = 1e5
+  set Poisson ratio = 0.4
+  subsection Phases
+    set Regions = stiff: y > 0.5
+    set Bulk modulus = stiff: 2e5
+  end
+end
+subsection Cracks
+  set Segments = -0.5, 0 ; 0.5, 0
+  set Mesh = faces
+end
+subsection Boundary conditions
+  set Displacement = bottom: 0, 0
+  set Traction = top: 0.5*x, 1
+end
+subsection Output
+  set Probes = 0, 1 ; 0.52, 0.3
+  set Line = 0.1, -1 ; 0.1, 1 ; 41
+end
+"""
+
+BODY = """set Title = Body
+set Dimension = 3
+set Physics = elasticity
+set Models = finite elements, peridynamics
+subsection Domain
+  set Upper corner = 2, 1, 1
+  set Cells = 12, 6, 6
+end
+subsection Material
+  set Young modulus = 1000
+  set Poisson ratio = 0.3
+end
+subsection Boundary conditions
+  set Displacement = left: 0, 0, 0
+  set Traction = right: 0, -1, 0
+end
+subsection Peridynamics
+  set Horizon ratio = 2
+end
+subsection Output
+  set Probes = 2, 0.5, 0.5 ; 1, 1, 0.5
+  set Line = 0, 1, 0.5 ; 2, 1, 0.5 ; 21
+end
+"""
+
+
+def written(value, digits=6):
+    """A number as the report writes it."""
+    sys.path.insert(0, os.path.join(SOURCE_DIR, "applications", "report"))
+    import style
+    return style.plain(value, digits)
+
+
+def report_of(run):
+    """(rows of all tables, text) of the report."""
+    script = os.path.join(SOURCE_DIR, "applications", "report", "report.py")
+    done = subprocess.run([sys.executable, script, run.folder], capture_output=True, text=True, check=False)
+    check(done.returncode == 0, f"the report is drawn {done.stderr}")
+    with open(os.path.join(run.folder, "report.html"), encoding="utf-8") as file:
+        html = file.read()
+    rows = [[re.sub("<[^>]*>", "", part) for part in re.findall("<t[hd][^>]*>(.*?)</t[hd]>", row)]
+            for row in re.findall("<tr[^>]*>(.*?)</tr>", html, re.DOTALL)]
+    return rows, re.sub("<[^>]*>", "", re.sub(r"base64,[^\"]*", "", html)), html.count("<img ")
+
+
+def check_tables(run, rows):
+    """Numbers of tables are those of probes.csv, totals.csv and summary.json."""
+    columns = [c for c in run.probes[0] if c not in ("time", "model", "x", "y", "z")]
+    of_model = {m: run.rows(m) for m in (FEM, PD)}
+    expected = [[written(of_model[m][k][c]) for m in (FEM, PD)] for k in range(len(of_model[FEM])) for c in columns]
+    names = [c.replace("von_mises", "von Mises") for c in columns]
+    found = [row[1:3] for row in rows if len(row) == 4 and row[0].split(" (")[0] in names]
+    check(found == expected, "the table of probes has the numbers of probes.csv")
+    totals = {(r["model"], r["quantity"]): r["value"] for r in run.totals}
+    for quantity in ("strain energy", "mean stress xx"):
+        row = next((r for r in rows if r[0] == quantity.capitalize()), None)
+        check(row is not None and row[1:] == [written(totals[m, quantity]) for m in (FEM, PD)], f"{quantity} is that of totals.csv")
+    for side, force in run.model(PD)["boundary force"].items():
+        for d, value in enumerate(force):
+            row = next(r for r in rows if r[0] == f"{side}, in {'xyz'[d]}")
+            check(row[2:] == [written(run.model(FEM)["boundary force"][side][d]), written(value)], f"force on {side} in {'xyz'[d]}")
+
+
+def check_comparison(run, dimension):
+    """The comparison in the summary against that of the fields, whose nodes share the cells around them."""
+    u = {}
+    for model in (FEM, PD):
+        with h5py.File(os.path.join(run.folder, run.summary["fields"][-1]["files"][model])) as file:
+            u[model] = file["displacement"][:, :dimension]
+    # Field files have single precision, 6e-8 of the displacement. On a lattice each vertex of a cell has an equal share of its volume.
+    gap = np.linalg.norm(u[PD] - u[FEM], axis=1)
+    relative = math.sqrt((gap ** 2).sum() / (u[FEM] ** 2).sum())
+    found = run.summary["comparison"]
+    check_close(found["relative l2"][-1][1], relative, relative=1e-6, what="relative L2 difference of the displacements")
+    check_close(found["maximum"][-1][1], gap.max(), relative=2e-7, what="largest difference of the displacements")
+
+
+def bar():
+    run = run_scene(BAR)
+    rows, text, n_images = report_of(run)
+    check(n_images == 4, f"sketch, displacement, stress and line are drawn: {n_images}")
+    check_tables(run, rows)
+    check_comparison(run, 1)
+    check(run.summary["sides"] == {"left": "displacement 0", "right": "traction 1"}, f"sides are {run.summary['sides']}")
+    check(run.summary["values on sides"]["right"] == {"traction": {"at": [[10.0]], "values": [[1.0]]}}, "the traction at the end")
+    check("The largest magnitude" in text and "1D, static" in text, "a bar at rest")
+    check_close(run.probe(FEM, (10,), column="ux"), 10 / 200, relative=1e-12, what="elongation")
+
+
+def plate():
+    runs = [run_scene(PLATE, ranks=ranks) for ranks in (1, 2)]
+    for kind in ("relative l2", "maximum"):
+        one, two = (run.summary["comparison"][kind][-1][1] for run in runs)
+        check_close(two, one, relative=1e-11, what=f"{kind} on two processes")
+    run = runs[1]
+    rows, text, n_images = report_of(run)
+    check(n_images == 10, f"sketch, 3 displacements, 5 stresses and the line are drawn: {n_images}")
+    check_tables(run, rows)
+    check_comparison(run, 2)
+    sides = run.summary["sides"]
+    check(sides == {"left": "free", "right": "free", "bottom": "displacement 0, 0", "top": "traction 0.5*x, 1"}, f"sides are {sides}")
+    load = run.summary["values on sides"]["top"]["traction"]
+    check(np.allclose(load["values"], [[0.5 * x, 1] for x, _ in load["at"]], atol=1e-15) and len(load["at"]) == 7
+          and all(y == 1 for _, y in load["at"]), f"tractions along the top: {load}")
+    with h5py.File(os.path.join(run.folder, run.summary["fields"][-1]["files"][PD])) as file:
+        largest = np.linalg.norm(file["displacement"][:], axis=1).max()
+        stress = file["von_mises"][:].max()
+    row = next(r for r in rows if r[0].startswith("Largest magnitude of the displacement"))
+    check(row[2].startswith(written(float(largest)) + " at "), f"the largest displacement is {largest}: {row}")
+    row = next(r for r in rows if r[0] == "Largest von Mises stress")
+    check(row[2].startswith(written(float(stress)) + " at "), f"the largest von Mises stress is {stress}: {row}")
+    factor = float(re.search("displacements magnified (.*?) times", text)[1].replace("\u202f", ""))
+    check(0.03 < factor * largest / 2 < 0.08, f"displacements are drawn {factor} times as large, as {factor * largest / 2} of the body")
+    check(["Young modulus", written(6e4), written(1.2e5)] in rows, "the Young moduli that follow from bulk modulus and Poisson ratio")
+
+
+def body():
+    run = run_scene(BODY)
+    rows, text, n_images = report_of(run)
+    check(n_images == 12, f"sketch, 4 displacements, 6 stresses and the line are drawn: {n_images}")
+    check_tables(run, rows)
+    check_comparison(run, 3)
+    check("3D, static" in text and "traction 0, −1, 0" in text, "a body at rest")
+    check(len(run.summary["values on sides"]["left"]["displacement"]["at"]) == 9, "nine points of a side")
+
+
+def main():
+    parts = {function.__name__: function for function in (bar, plate, body)}
+    for name in sys.argv[1:] or parts:
+        parts[name]()
+    finish()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/solvers/linear_solver.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+
+#include "elastic_test_tools.h"
+
+using namespace PeriDeal;
+using namespace PeriDeal::OperatorTests;
+
+namespace
+{
+  template <int dim>
+  double trace_of(const dealii::Tensor<2, dim> &g)
+  {
+    return trace(g);
+  }
+
+
+  template <int dim>
+  void check_operator(const Settings &more, const Model model)
+  {
+    const Body<dim>        body(box<dim>() + more, model);
+    const ElasticOperator &op = body.op();
+    Vector                 y, x = body.values(bumpy_vector<dim>);
+    op.initialize_vector(y);
+    const auto multiply = [&](Vector &image, const Vector &u) {
+      // Without conditions: residual of no loads.
+      if (body.states)
+        body.states->multiply(image, u);
+      else
+        body.elements->multiply(image, u);
+    };
+    // Rigid motions make no force, and forces no resultant and no moment.
+    const double size = op.diagonal().linfty_norm();
+    for (const Vector &motion : op.near_null_space())
+      {
+        multiply(y, motion);
+        EXPECT_LT(y.linfty_norm(), 1e-13 * size);
+        multiply(y, x);
+        EXPECT_LT(std::abs(y * motion), 1e-11 * size);
+      }
+    // Symmetric on the free unknowns; the diagonal is that of K; the bound holds.
+    const DenseProperties dense(op);
+    EXPECT_LT(dense.asymmetry, 1e-13);
+    EXPECT_GT(dense.smallest, -1e-12 * dense.largest);
+    const Spectrum spectrum = op.spectrum();
+    EXPECT_LE(dense.largest, spectrum.safe * (1. + 1e-12));
+    EXPECT_LE(dense.largest, spectrum.sharp * 1.01);
+    EXPECT_LT(spectrum.sharp, 1.3 * dense.largest);
+    // The energy is half of u K u.
+    multiply(y, x);
+    EXPECT_NEAR(op.energy(x), 0.5 * (x * y), 1e-12 * op.energy(x));
+    const unsigned int n = x.locally_owned_size();
+    std::mt19937       random(5);
+    for (unsigned int k = 0; k < 3; ++k)
+      {
+        const auto global = random() % x.size();
+        Vector     one(x);
+        one = 0.;
+        if (one.in_local_range(global))
+          one(global) = 1.;
+        op.clear_constrained(one);
+        const double here = one.l2_norm();
+        op.apply(y, one);
+        if (here > 0. && one.in_local_range(global))
+          {
+            EXPECT_NEAR(y(global), op.diagonal()(global), 1e-12 * size);
+          }
+      }
+    EXPECT_GT(n, 0u);
+  }
+
+
+  /** A uniform strain, prescribed on all sides, comes out in the body, with its stress and energy. */
+  template <int dim>
+  void patch_of_elements(const Settings &more)
+  {
+    const dealii::Tensor<2, dim> g = some_gradient<dim>();
+    std::string                  sides;
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      {
+        sides += (side > 0 ? "; " : "") + box_side_names()[side] + ": ";
+        for (unsigned int a = 0; a < dim; ++a)
+          {
+            sides += a > 0 ? ", " : "";
+            for (unsigned int b = 0; b < dim; ++b)
+              sides += (b > 0 ? " + (" : "(") + std::to_string(g[a][b]) + ")*" + "xyz"[b];
+          }
+      }
+    const Body<dim>  body(box<dim>() + Settings{{"Boundary conditions/Displacement", sides}} + more,
+                         Model::finite_elements);
+    ElasticOperator &op = body.op();
+    Vector           u, rhs, change;
+    for (Vector *v : {&u, &rhs, &change})
+      op.initialize_vector(*v);
+    op.distribute(u, 0.);
+    op.residual(rhs, u, 0.);
+    LinearSolver(op, 1e-14, 500).solve(0., 1., change, rhs);
+    u += change;
+    Vector expected = body.values([&](const dealii::Point<dim> &p) { return g * p; });
+    expected -= u;
+    EXPECT_LT(expected.linfty_norm(), 1e-12);
+    const auto strain = symmetrize(g);
+    const auto sigma =
+      stress(body.scene.material.moduli(dealii::Point<dim>()), body.scene.elasticity.plane, strain);
+    double volume = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      volume *= body.scene.domain.upper[d];
+    EXPECT_NEAR(op.energy(u), 0.5 * volume * (sigma * strain), 1e-12);
+    EXPECT_LT(op.forces(u, 0.).imbalance(), 1e-12 * op.forces(u, 0.).throughput());
+  }
+
+
+  /** Dilatation, strain and stress of a uniform strain where families are complete. */
+  template <int dim>
+  void patch_of_states(const Settings &more, const double stress_error)
+  {
+    const Body<dim>              body(box<dim>() + more, Model::peridynamics);
+    const dealii::Tensor<2, dim> g = some_gradient<dim>();
+    const Vector        u = body.values([&](const dealii::Point<dim> &p) { return g * p; });
+    std::vector<double> theta;
+    body.states->dilatations(u, theta);
+    const NodalTensors<dim> tensors = body.states->tensors(u);
+    const auto              strain  = symmetrize(g);
+    const auto              sigma =
+      stress(body.scene.material.moduli(dealii::Point<dim>()), body.scene.elasticity.plane, strain);
+    const double reach = body.states->families().reach();
+    double       worst = 0., n = 0.;
+    for (unsigned int i = 0; i < theta.size(); ++i)
+      {
+        const dealii::Point<dim> &p        = body.position(i);
+        bool                      complete = true;
+        for (unsigned int d = 0; d < dim; ++d)
+          complete = complete && p[d] > reach * (1. - 1e-9) &&
+                     p[d] < body.scene.domain.upper[d] - reach * (1. - 1e-9);
+        EXPECT_LT((tensors.strain[i] - strain).norm(), 1e-12); // also of families that are cut off
+        if (!complete)
+          continue;
+        n += 1.;
+        EXPECT_NEAR(theta[i], trace_of(g), 1e-12);
+        worst = std::max(worst, (tensors.stress[i] - sigma).norm() / sigma.norm());
+      }
+    n     = dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD);
+    worst = dealii::Utilities::MPI::max(worst, MPI_COMM_WORLD);
+    EXPECT_GT(n, 0.);
+    EXPECT_LT(worst, stress_error);
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      std::cout << dim << "D: " << n << " complete families, stress wrong by " << worst
+                << std::endl;
+  }
+
+
+  template <int dim>
+  std::map<std::string, double> by_place(const Body<dim> &body, const Vector &v, const MPI_Comm)
+  {
+    std::map<std::string, double> values;
+    for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+      values[body.op().place_of(i) + std::to_string(i % dim)] = v.local_element(i);
+    return values;
+  }
+
+
+  template <int dim>
+  void same_on_all(const Settings &more, const Model model, const double bound)
+  {
+    const Body<dim> all(box<dim>() + more, model), alone(box<dim>() + more, model, MPI_COMM_SELF);
+    Vector          a, b;
+    all.op().initialize_vector(a);
+    alone.op().initialize_vector(b);
+    all.op().residual(a, all.values(bumpy_vector<dim>), 0.);
+    alone.op().residual(b, alone.values(bumpy_vector<dim>), 0.);
+    const auto   there = by_place(alone, b, MPI_COMM_SELF);
+    const double size  = b.linfty_norm();
+    for (const auto &[place, value] : by_place(all, a, MPI_COMM_WORLD))
+      EXPECT_NEAR(value, there.at(place), bound * size) << place;
+    const double energy = alone.op().energy(alone.values(bumpy_vector<dim>));
+    EXPECT_NEAR(all.op().energy(all.values(bumpy_vector<dim>)), energy, 1e-13 * energy);
+  }
+} // namespace
+
+
+TEST(ElasticOperator, symmetric_and_without_resultant)
+{
+  for (const Model model : {Model::finite_elements, Model::peridynamics})
+    {
+      check_operator<1>({}, model);
+      for (const std::string nu : {"-0.4", "0.45"})
+        for (const std::string plane : {"stress", "strain"})
+          check_operator<2>(
+            {{"Domain/Cells", "8, 6"}, {"Material/Poisson ratio", nu}, {"Elasticity/Plane", plane}},
+            model);
+      check_operator<3>({{"Domain/Cells", "4, 3, 2"}}, model);
+    }
+  check_operator<2>({{"Domain/Cells", "4, 3"}, {"Finite elements/Degree", "2"}},
+                    Model::finite_elements);
+  check_operator<2>({{"Domain/Cells", "8, 6"}, {"Elasticity/Model", "bond-based"}},
+                    Model::peridynamics);
+  check_operator<2>({{"Domain/Cells", "8, 6"}, {"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}},
+                    Model::peridynamics);
+  check_operator<2>({{"Domain/Cells", "8, 6"}, {"Domain/Nodes", "cell centers"}},
+                    Model::peridynamics);
+}
+
+
+TEST(ElasticElements, uniform_strain)
+{
+  patch_of_elements<1>({});
+  for (const std::string plane : {"stress", "strain"})
+    for (const std::string nu : {"-0.5", "0", "0.45"})
+      patch_of_elements<2>({{"Elasticity/Plane", plane}, {"Material/Poisson ratio", nu}});
+  patch_of_elements<2>({{"Finite elements/Degree", "2"}});
+  patch_of_elements<3>({});
+}
+
+
+TEST(StateOperator, uniform_strain)
+{
+  patch_of_states<1>({}, 1e-12);
+  for (const std::string plane : {"stress", "strain"})
+    for (const std::string nu : {"-0.5", "0", "0.3", "0.45"})
+      patch_of_states<2>({{"Elasticity/Plane", plane}, {"Material/Poisson ratio", nu}}, 0.2);
+  patch_of_states<3>({{"Domain/Cells", "16, 12, 8"}, {"Material/Poisson ratio", "0.3"}}, 0.2);
+}
+
+
+TEST(ElasticOperator, same_on_all_processes)
+{
+  const Settings warm{{"Material/Thermal expansion", "0.1"},
+                      {"Elasticity/Temperature change", "1 + x*x"},
+                      {"Boundary conditions/Traction", "right: 1, 2"},
+                      {"Initial and source/Body force", "x, y"}};
+  for (const Model model : {Model::finite_elements, Model::peridynamics})
+    same_on_all<2>(warm, model, 1e-13);
+  same_on_all<2>({{"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}}, Model::peridynamics, 1e-13);
+  same_on_all<3>({}, Model::peridynamics, 1e-13);
+}
+
+
+namespace
+{
+  /** A body that no side holds back expands freely and without stress: u = alpha dT x, also where families are cut off. */
+  template <int dim>
+  void expand_freely(const Model model, const Settings &more, const double factor = 1.)
+  {
+    const Body<dim>  body(box<dim>() +
+                           Settings{{"Boundary conditions/Displacement", ""},
+                                    {"Boundary conditions/Symmetry",
+                                     dim == 1 ? "left" :
+                                      dim == 2 ? "left, bottom" :
+                                                 "left, bottom, back"},
+                                    {"Material/Thermal expansion", "0.02"},
+                                    {"Elasticity/Temperature change", "3"}} +
+                           more,
+                         model);
+    ElasticOperator &op = body.op();
+    Vector           u, rhs;
+    op.initialize_vector(u);
+    op.initialize_vector(rhs);
+    op.residual(rhs, u, 0.);
+    LinearSolver(op, 1e-13, 500).solve(0., 1., u, rhs);
+    Vector expected = body.values(
+      [&](const dealii::Point<dim> &p) { return 0.06 * factor * dealii::Tensor<1, dim>(p); });
+    expected -= u;
+    EXPECT_LT(expected.linfty_norm(), 1e-12);
+  }
+} // namespace
+
+
+TEST(ElasticOperator, free_thermal_expansion)
+{
+  for (const Model model : {Model::finite_elements, Model::peridynamics})
+    {
+      expand_freely<1>(model, {});
+      expand_freely<2>(model, {});
+      expand_freely<2>(model, {{"Elasticity/Plane", "strain"}}, 1.2); // 1 + nu
+      expand_freely<3>(model, {});
+    }
+}
+
+
+TEST(ElasticOperator, linear_solver_says_why_it_stopped)
+{
+  for (const Model model : {Model::finite_elements, Model::peridynamics})
+    {
+      const Body<2> body(box<2>(), model);
+      Vector        x, rhs = body.values(bumpy_vector<2>);
+      body.op().initialize_vector(x);
+      body.op().clear_constrained(rhs);
+      const auto message = [&](const unsigned int most) -> std::string {
+        try
+          {
+            LinearSolver(body.op(), 1e-12, most, 50).solve(0., 1., x, rhs);
+          }
+        catch (const UserError &error)
+          {
+            return error.what();
+          }
+        return "";
+      };
+      EXPECT_NE(message(3).find("Maximum iterations"), std::string::npos);
+      rhs = std::numeric_limits<double>::quiet_NaN();
+      x   = 0.;
+      EXPECT_NE(message(100).find("loads are not finite"), std::string::npos);
+    }
+}

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/elastic_elements.h>
+#include <perideal/operators/state_operator.h>
+
+#include "operator_test_tools.h"
+
+namespace PeriDeal
+{
+  namespace OperatorTests
+  {
+    /** An elastic body with one of its models. */
+    template <int dim>
+    struct Body
+    {
+      Body(const Settings &settings,
+           const Model     model,
+           const MPI_Comm  communicator = MPI_COMM_WORLD)
+      {
+        scene.general.set("Models", to_string(model));
+        scene.general.set("Physics", "elasticity");
+        set(scene, settings);
+        std::vector<std::string> notes;
+        mesh = build_mesh(scene, communicator, notes);
+        handler.reinit(*mesh);
+        if (model != Model::peridynamics)
+          {
+            handler.distribute_dofs(dealii::FE_Q<dim>(scene.finite_elements.degree));
+            std::unique_ptr<ElasticCoupling<dim>> coupling;
+            if (model == Model::coupled)
+              {
+                number_along_lattice(handler, scene.domain);
+                nodes    = std::make_unique<Nodes<dim>>(handler,
+                                                     scene.domain,
+                                                     scene.cracks,
+                                                     NodalVolume::partial);
+                coupling = make_elastic_coupling(*nodes, scene);
+              }
+            elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
+          }
+        else
+          {
+            if (scene.domain.nodes == NodePlacement::cell_centers)
+              handler.distribute_dofs(dealii::FE_DGQ<dim>(0));
+            else
+              handler.distribute_dofs(dealii::FE_Q<dim>(1));
+            if (scene.domain.shape != Shape::mesh_file)
+              number_along_lattice(handler, scene.domain);
+            nodes  = std::make_unique<Nodes<dim>>(handler,
+                                                 scene.domain,
+                                                 scene.cracks,
+                                                 scene.peridynamics.nodal_volume);
+            states = std::make_unique<StateOperator<dim>>(*nodes, scene);
+          }
+      }
+
+      ElasticOperator &op() const
+      {
+        return elements ? static_cast<ElasticOperator &>(*elements) : *states;
+      }
+
+      const dealii::Point<dim> &position(const unsigned int node) const
+      {
+        return elements ? elements->position(node) : nodes->position(node);
+      }
+
+      /** A vector with the values f(p)[component] at the owned nodes. */
+      template <typename Function>
+      Vector values(const Function &f) const
+      {
+        Vector v;
+        op().initialize_vector(v);
+        for (unsigned int i = 0; i < v.locally_owned_size() / dim; ++i)
+          {
+            const dealii::Tensor<1, dim> value = f(position(i));
+            for (unsigned int d = 0; d < dim; ++d)
+              v.local_element(dim * i + d) = value[d];
+          }
+        return v;
+      }
+
+      Scene<dim>                                  scene;
+      std::unique_ptr<dealii::Triangulation<dim>> mesh;
+      dealii::DoFHandler<dim>                     handler;
+      std::unique_ptr<Nodes<dim>>                 nodes;
+      std::unique_ptr<ElasticElements<dim>>       elements;
+      std::unique_ptr<StateOperator<dim>>         states;
+    };
+
+
+    inline const char *const lists[] = {"", "1", "1, 0.75", "1, 0.75, 0.5"};
+    inline const char *const cells[] = {"", "24", "16, 12", "8, 6, 4"};
+    inline const char *const zeros[] = {"", "0", "0, 0", "0, 0, 0"};
+
+
+    /** A box with cubic cells, held on its left side. */
+    template <int dim>
+    Settings box()
+    {
+      return {{"Domain/Lower corner", zeros[dim]},
+              {"Domain/Upper corner", lists[dim]},
+              {"Domain/Cells", cells[dim]},
+              {"Peridynamics/Horizon ratio", dim == 3 ? "2" : "3"},
+              {"Material/Young modulus", "3"},
+              {"Material/Poisson ratio", "0.2"},
+              {"Boundary conditions/Displacement", std::string("left: ") + zeros[dim]}};
+    }
+
+
+    /** u = G x with some gradient. */
+    template <int dim>
+    dealii::Tensor<2, dim> some_gradient()
+    {
+      const double           g[9] = {0.3, -0.2, 0.15, 0.45, -0.1, 0.25, -0.35, 0.2, 0.4};
+      dealii::Tensor<2, dim> gradient;
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int b = 0; b < dim; ++b)
+          gradient[a][b] = g[3 * a + b];
+      return gradient;
+    }
+
+
+    /** Some vector that depends on places only. */
+    template <int dim>
+    dealii::Tensor<1, dim> bumpy_vector(const dealii::Point<dim> &p)
+    {
+      dealii::Tensor<1, dim> value;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          double phase = d + 1.;
+          for (unsigned int e = 0; e < dim; ++e)
+            phase += (3. + 2. * e + d) * p[e];
+          value[d] = std::sin(phase);
+        }
+      return value;
+    }
+  } // namespace OperatorTests
+} // namespace PeriDeal

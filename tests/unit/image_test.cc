@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/grid/grid_tools.h>
+
+#include <perideal/analysis/phase_statistics.h>
+#include <perideal/operators/elastic_elements.h>
+#include <perideal/operators/state_operator.h>
+#include <perideal/solvers/linear_solver.h>
+
+#include <fstream>
+
+#include "operator_test_tools.h"
+#include "scene_test_tools.h"
+
+namespace PeriDeal
+{
+  using namespace OperatorTests;
+  using dealii::Point;
+  using SceneTests::expect_parts;
+  using SceneTests::message_of;
+
+  namespace
+  {
+    /** A PGM file for the time of a test, of rows of digits: greys of 10 times as much. Each process has one of its own. */
+    class Image
+    {
+    public:
+      explicit Image(const std::vector<std::string> &rows)
+        : name("image_test_" + std::to_string(getpid()) + ".pgm")
+      {
+        std::ofstream file(name);
+        file << "P2 " << rows.front().size() << ' ' << rows.size() << " 255\n";
+        for (const std::string &row : rows)
+          for (const char c : row)
+            file << 10 * (c - '0') << '\n';
+      }
+
+      ~Image()
+      {
+        std::remove(name.c_str());
+      }
+
+      Settings settings(const Settings &more = {}) const
+      {
+        return Settings{{"Domain/Shape", "image"},
+                        {"Domain/Image", name},
+                        {"Domain/Image colors", "matrix: 90 ; fibre: 50 ; void: 0"},
+                        {"Domain/Color tolerance", "5"},
+                        {"Domain/Pixel size", "1"}} +
+               more;
+      }
+
+    private:
+      std::string name;
+    };
+
+
+    Settings elastic(const Settings &more = {})
+    {
+      return Settings{{"Physics", "elasticity"},
+                      {"Material/Young modulus", "10"},
+                      {"Material/Poisson ratio", "0.25"},
+                      {"Peridynamics/Boundary treatment", "none"},
+                      {"Boundary conditions/Displacement", "left: 0, 0 ; right: 1, 0"}} +
+             more;
+    }
+
+
+    /** As set() of the tools, with entries outside all sections. */
+    void fill(Scene<2> &scene, const Settings &settings)
+    {
+      scene.general.set("Dimension", "2");
+      for (const auto &[path, text] : settings)
+        {
+          const auto        slash   = path.rfind('/');
+          const std::string section = slash == std::string::npos ? "" : path.substr(0, slash);
+          for (SceneSection *s : scene.sections())
+            if (s->name() == section)
+              s->set(slash == std::string::npos ? path : path.substr(slash + 1), text);
+        }
+      scene.parse_and_validate();
+    }
+
+
+    std::string fault(const Settings &settings)
+    {
+      return message_of([&] {
+        Scene<2> scene;
+        fill(scene, settings);
+      });
+    }
+
+
+    const std::vector<std::string> small{"9950", "9550", "9999"};
+  } // namespace
+
+
+  TEST(Image, colors_and_ranges)
+  {
+    const ImageColors colors(
+      "silver: rgb(255,255,255) ; oxide: 40..140 ; void: 0 ; void: rgb(255,0,0)",
+      30.,
+      "'E'");
+    EXPECT_EQ(colors.names(), (std::vector<std::string>{"silver", "oxide"}));
+    EXPECT_EQ(colors.phase_of({250, 240, 250, 255}), 0);
+    EXPECT_EQ(colors.phase_of({40, 40, 40, 255}), 1);
+    EXPECT_EQ(colors.phase_of({140, 140, 140, 255}), 1);
+    EXPECT_EQ(colors.phase_of({0, 200, 0, 255}), 1); // its grey is 117
+    EXPECT_EQ(colors.phase_of({10, 10, 10, 255}), ImageColors::empty);
+    EXPECT_EQ(colors.phase_of({240, 10, 10, 255}), ImageColors::empty);
+    EXPECT_EQ(colors.phase_of({255, 255, 255, 127}), ImageColors::empty);
+    EXPECT_EQ(colors.phase_of({180, 180, 180, 255}), ImageColors::unknown);
+    EXPECT_EQ(colors.color_of(1), (Pixel{90, 90, 90, 255}));
+    for (const auto &[text, parts] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {"a: rgb(1,2)", {"phase 'a'", "three numbers"}},
+           {"a: rgb(1,2,300)", {"phase 'a'", "300", "255"}},
+           {"a: red", {"phase 'a'", "red", "rgb(255,128,0)"}},
+           {"a: 9..3", {"phase 'a'", "ends before"}},
+           {"a: 1..5 ; b: 5..9", {"'a'", "'b'", "overlapping"}},
+           {"a: 7 ; b: rgb(7,7,7)", {"'a'", "'b'", "same colour"}},
+           {"void: 0", {"void", "nothing is left"}}})
+      expect_parts(message_of([&] { ImageColors(text, 0., "'E'"); }), parts);
+  }
+
+
+  TEST(Image, phases_of_cells)
+  {
+    const Image image(small);
+    Scene<2>    scene;
+    fill(scene,
+         image.settings({{"Material/Phases/Conductivity", "fibre: 3"},
+                         {"Material/Conductivity", "2"},
+                         {"Domain/Lower corner", "10, 20"},
+                         {"Domain/Pixel size", "0.5"}}));
+    EXPECT_EQ(scene.domain.cells, (std::array<unsigned int, 2>{{4, 3}}));
+    EXPECT_EQ(scene.domain.upper, Point<2>(12., 21.5));
+    EXPECT_EQ(scene.domain.nodes, NodePlacement::cell_centers);
+    const PhaseMap &map = *scene.domain.image;
+    EXPECT_EQ(map.counts(), (std::vector<std::size_t>{7, 3, 2}));
+    const auto &conductivity = scene.material.conductivity;
+    EXPECT_EQ(conductivity.value(Point<2>(10.25, 20.25)),
+              2.); // the lowest row is the last of the file
+    EXPECT_EQ(conductivity.value(Point<2>(10.75, 20.75)), 3.);
+    EXPECT_EQ(conductivity.value(Point<2>(11.25, 21.25)), 3.);
+    EXPECT_EQ(map.at(11.75, 20.75), PhaseMap::empty);
+    EXPECT_EQ(map.at(9., 20.75), PhaseMap::empty);
+    EXPECT_EQ(map.at(11., 21.), 1);    // corner of three cells of fibre and one of matrix
+    EXPECT_EQ(map.at(11.75, 20.5), 0); // the edge of an empty cell
+    EXPECT_EQ(map.at(10.5, 20.75), 0); // matrix and fibre: the one named first
+    const Picture picture = map.picture();
+    EXPECT_EQ(picture.at(2, 0), (Pixel{50, 50, 50, 255}));
+    EXPECT_EQ(picture.at(3, 0), (Pixel{0, 0, 0, 0}));
+    EXPECT_EQ(
+      make_phase_map(picture, ImageColors("matrix: 90 ; fibre: 50", 0., "'E'"), 1, 1, "'E'").phases,
+      map.phases);
+  }
+
+
+  TEST(Image, blocks_of_pixels_and_of_cells)
+  {
+    // Of a block of 2 x 2 the lower right pixel, of 3 x 3 the middle one.
+    const Image image({"99559", "95999", "95559", "99909"});
+    Scene<2>    two, three, half;
+    fill(two,
+         image.settings({{"Domain/Pixels per cell", "2"}, {"Peridynamics/Horizon ratio", "1"}}));
+    EXPECT_EQ(two.domain.cells, (std::array<unsigned int, 2>{{2, 2}}));
+    EXPECT_EQ(two.domain.image->phases, (std::vector<int>{0, PhaseMap::empty, 1, 0}));
+    EXPECT_EQ(two.domain.upper, Point<2>(4., 4.));
+    expect_parts(two.domain.notes.front(), {"1 columns", "0 rows"});
+    fill(three,
+         image.settings({{"Domain/Pixels per cell", "3"}, {"Peridynamics/Horizon ratio", "1"}}));
+    EXPECT_EQ(three.domain.image->phases, (std::vector<int>{1}));
+    fill(half, image.settings({{"Domain/Cells per pixel", "2"}}));
+    EXPECT_EQ(half.domain.cells, (std::array<unsigned int, 2>{{10, 8}}));
+    for (unsigned int j = 0; j < 8; ++j)
+      for (unsigned int i = 0; i < 10; ++i)
+        EXPECT_EQ(half.domain.image->phase(i, j),
+                  std::vector<std::string>({"99909", "95559", "95999", "99559"})[j / 2][i / 2] ==
+                      '9' ?
+                    0 :
+                    (i / 2 == 3 && j / 2 == 0 ? PhaseMap::empty : 1));
+  }
+
+
+  TEST(Image, mesh_without_empty_cells)
+  {
+    const Image image({"9999", "9009", "9999"});
+    for (const std::string placement : {"auto", "vertices"})
+      {
+        const Problem<2>    problem(image.settings({{"Domain/Nodes", placement},
+                                                    {"Peridynamics/Horizon ratio", "2"},
+                                                    {"Peridynamics/Boundary treatment", "none"}}));
+        std::vector<double> sums(9, 0.), all(9);
+        for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)
+          sums[8] += problem.nodes->volume(i);
+        for (const BoundaryShare &share : problem.nodes->boundary_shares())
+          sums[share.id] += share.area;
+        dealii::Utilities::MPI::sum(sums, MPI_COMM_WORLD, all);
+        EXPECT_EQ(problem.mesh->n_global_active_cells(), 10u);
+        EXPECT_NEAR(all[8], 10., 1e-12);
+        EXPECT_NEAR(all[0], 3., 1e-12);
+        EXPECT_NEAR(all[2], 4., 1e-12);
+        EXPECT_NEAR(all[hole_boundary_id], 6., 1e-12);
+        EXPECT_EQ(problem.nodes->n_global(), placement == "auto" ? 10u : 20u);
+      }
+  }
+
+
+  TEST(Image, conducts_in_series)
+  {
+    // Columns of 1, 3 and 1 in series between 0 and 1, three high: heat 3/(4/1 + 2/3).
+    const Image      image({"995599", "995599", "995599"});
+    const Settings   layers = image.settings({{"Material/Phases/Conductivity", "fibre: 3"},
+                                              {"Boundary conditions/Dirichlet", "left: 0 ; right: 1"},
+                                              {"Time/Steady", "true"}});
+    const Problem<2> problem(layers, Model::finite_elements);
+    Vector           u = problem.vector();
+    solve_steady(problem.op(), u, 0., 1e-12, 1000);
+    EXPECT_NEAR(problem.op().balance(u, 0., true).sides.at("right"), 3. / (4. + 2. / 3.), 1e-10);
+    const Problem<2> all(layers + Settings{{"Domain/Cells per pixel", "3"}}),
+      alone(layers + Settings{{"Domain/Cells per pixel", "3"}}, Model::peridynamics, MPI_COMM_SELF);
+    Vector v = all.vector(), w = alone.vector();
+    solve_steady(all.op(), v, 0., 1e-12, 1000);
+    solve_steady(alone.op(), w, 0., 1e-12, 1000);
+    EXPECT_LT(difference(all, v, alone, w), 1e-9);
+    EXPECT_NEAR(all.op().balance(v, 0., true).sides.at("right"), 3. / (4. + 2. / 3.), 0.12);
+  }
+
+
+  TEST(Image, islands_are_named_and_removed)
+  {
+    // 3 cells that hang in the air.
+    const Image    image({"99900099", "99000099", "99050099", "99055099", "99000099", "99999999"});
+    const Settings body = image.settings({{"Domain/Nodes", "vertices"}});
+    expect_parts(fault(body + elastic()),
+                 {"'Islands' in section 'Domain'",
+                  "1 part",
+                  "3 cells around (3.83333, 2.83333)",
+                  "'remove' or 'pin'"});
+    EXPECT_EQ(fault(body + Settings{{"Time/End time", "1"}}), ""); // heat stays in a part
+    expect_parts(
+      fault(body + Settings{{"Time/Steady", "true"}, {"Boundary conditions/Dirichlet", "left: 0"}}),
+      {"'Islands' in section 'Domain'", "3 cells", "steady state"});
+    EXPECT_EQ(
+      fault(body + Settings{{"Time/Steady", "true"}, {"Boundary conditions/Dirichlet", "hole: 0"}}),
+      "");
+    Scene<2> scene;
+    fill(scene, body + elastic({{"Domain/Islands", "remove"}}));
+    EXPECT_EQ(scene.domain.image->counts().back(), 48u - 29u);
+    expect_parts(scene.domain.notes.front(), {"3 cells", "removed"});
+    // Bonds alone reach across the gap of one cell with m = 3.
+    Scene<2> bonds;
+    fill(bonds, image.settings() + elastic({{"Models", "peridynamics"}}));
+    EXPECT_EQ(bonds.domain.image->counts().back(), 48u - 32u);
+    expect_parts(bonds.domain.notes.back(), {"reach across a void", "'Bonds across voids = cut'"});
+    // What is held in one direction only is no better.
+    const Image half({"9900999", "9900999"});
+    expect_parts(fault(half.settings() + elastic({{"Boundary conditions/Displacement",
+                                                   "left: 0, 0 ; right: 1, free"}})),
+                 {"6 cells around (5.5, 1)"});
+    expect_parts(fault(half.settings() +
+                       elastic({{"Boundary conditions/Displacement", "left: 0, 0 ; right: 1, free"},
+                                {"Domain/Islands", "remove"}})),
+                 {"'remove'", "60 %"});
+  }
+
+
+  TEST(Image, pinned_islands_rest)
+  {
+    const Image image({"99900099", "99000099", "99050099", "99055099", "99000099", "99999999"});
+    for (const std::string placement : {"vertices", "cell centers"})
+      {
+        Scene<2> scene;
+        fill(scene,
+             image.settings({{"Domain/Nodes", placement},
+                             {"Domain/Islands", "pin"},
+                             {"Domain/Cells per pixel", "2"},
+                             {"Peridynamics/Horizon ratio", "2"}}) +
+               elastic());
+        EXPECT_EQ(scene.domain.pins.size(), 6u);
+        std::vector<std::string>         notes;
+        const auto                       mesh = build_mesh(scene, MPI_COMM_WORLD, notes);
+        dealii::DoFHandler<2>            handler(*mesh);
+        std::unique_ptr<Nodes<2>>        nodes;
+        std::unique_ptr<ElasticOperator> op;
+        std::vector<Point<2>>            positions;
+        if (placement == "vertices")
+          {
+            handler.distribute_dofs(dealii::FE_Q<2>(1));
+            auto elements = std::make_unique<ElasticElements<2>>(handler, scene);
+            for (unsigned int i = 0; i < handler.n_locally_owned_dofs(); ++i)
+              positions.push_back(elements->position(i));
+            op = std::move(elements);
+          }
+        else
+          {
+            handler.distribute_dofs(dealii::FE_DGQ<2>(0));
+            number_along_lattice(handler, scene.domain);
+            nodes =
+              std::make_unique<Nodes<2>>(handler, scene.domain, scene.cracks, NodalVolume::partial);
+            for (unsigned int i = 0; i < nodes->n_owned(); ++i)
+              positions.push_back(nodes->position(i));
+            op = std::make_unique<StateOperator<2>>(*nodes, scene);
+          }
+        Vector u, r, change;
+        for (Vector *v : {&u, &r, &change})
+          op->initialize_vector(*v);
+        op->distribute(u, 0.);
+        op->residual(r, u, 0.);
+        LinearSolver solver(*op, 1e-12, 2000, 0);
+        solver.solve(0., 1., change, r);
+        u += change;
+        for (unsigned int i = 0; i < positions.size(); ++i)
+          if (std::abs(positions[i][0] - 4.) < 1.01 && std::abs(positions[i][1] - 3.) < 1.01)
+            {
+              for (unsigned int d = 0; d < 2; ++d)
+                EXPECT_NEAR(u.local_element(2 * i + d), 0., 1e-8)
+                  << placement << " at " << positions[i];
+            }
+        EXPECT_NEAR(op->forces(u, 0.).imbalance(), 0., 1e-8 * op->forces(u, 0.).throughput());
+      }
+  }
+
+
+  TEST(Image, bonds_across_voids)
+  {
+    const Image    image({"999099", "999099", "999099"});
+    const Settings body  = image.settings({{"Peridynamics/Boundary treatment", "none"}});
+    const auto     bonds = [&](const std::string &rule) {
+      const Problem<2> problem(body + Settings{{"Peridynamics/Bonds across voids", rule}});
+      return problem.op().size().bonds;
+    };
+    // A block of 3 x 3 and one of 2 x 3; m = 3 reaches three columns on, and half a cell farther.
+    EXPECT_GT(bonds("keep"), bonds("cut"));
+    EXPECT_EQ(bonds("auto"), bonds("keep"));
+    EXPECT_EQ(bonds("cut"), 36u + 15u);
+    Scene<2> scene;
+    fill(scene, body);
+    const Domain<2> &domain = scene.domain;
+    EXPECT_TRUE(domain.leaves_body(Point<2>(2.5, 0.5), Point<2>(4.5, 0.5)));
+    EXPECT_TRUE(domain.leaves_body(Point<2>(2.5, 0.5), Point<2>(4.5, 2.5)));
+    EXPECT_FALSE(domain.leaves_body(Point<2>(0.5, 0.5), Point<2>(2.5, 2.5)));
+    EXPECT_FALSE(domain.leaves_body(Point<2>(3., 0.), Point<2>(3., 3.))); // along the rim
+    EXPECT_TRUE(domain.leaves_body(Point<2>(3., 0.), Point<2>(4., 0.)));
+  }
+
+
+  TEST(Image, mistakes)
+  {
+    const Image image(small);
+    const auto  with = [&](const std::string &entry, const std::string &text) {
+      return fault(image.settings({{"Domain/" + entry, text}}));
+    };
+    expect_parts(with("Image", "missing.png"),
+                 {"'Image' in section 'Domain'", "missing.png", "cannot be read"});
+    expect_parts(with("Image", ""), {"'Image' in section 'Domain'", "empty"});
+    expect_parts(with("Image colors", ""),
+                 {"'Image colors'", "rgb(90,90,90) (7 pixels)", "rgb(50,50,50) (3 pixels)"});
+    expect_parts(with("Image colors", "matrix: 90 ; void: 0"),
+                 {"'Image colors'",
+                  "3 pixels",
+                  "rgb(50,50,50)",
+                  "column 3, row 1",
+                  "69.3 from 'matrix'",
+                  "'Color tolerance'"});
+    expect_parts(with("Image colors", "oxide: 200 ; void: 0..150"),
+                 {"'Image colors'", "no pixel", "material"});
+    expect_parts(with("Color tolerance", "-1"), {"'Color tolerance'"});
+    expect_parts(with("Pixels per cell", "0"), {"'Pixels per cell'", "1 to 1000"});
+    expect_parts(with("Pixels per cell", "4"), {"'Pixels per cell'", "4 x 3"});
+    expect_parts(with("Pixel size", "-2"), {"'Pixel size'", "greater than 0"});
+    expect_parts(with("Upper corner", "4, 3"), {"'Pixel size'", "'Upper corner'"});
+    expect_parts(with("Cells", "4, 3"), {"'Cells'", "'Pixels per cell'"});
+    expect_parts(with("Shape", "box"), {"'Image'", "'box'"});
+    expect_parts(fault(image.settings({{"Material/Phases/Conductivity", "fiber: 3"}})),
+                 {"'Conductivity' in section 'Material/Phases'", "'fiber'", "'fibre'"});
+    expect_parts(fault(image.settings({{"Material/Phases/Regions", "fibre: x"},
+                                       {"Material/Phases/Conductivity", "fibre: 3"}})),
+                 {"'Regions' in section 'Material/Phases'", "'fibre'", "'Image colors'"});
+    expect_parts(fault(image.settings({{"Domain/Islands", "pin"}})), {"'Islands'", "elasticity"});
+    expect_parts(message_of([&] { Problem<1>(image.settings()); }), {"'Shape'", "'Dimension' 2"});
+  }
+
+
+  TEST(Image, statistics_of_phases)
+  {
+    // 200 samples of volume 1 in one phase, of uniaxial stress 1 to 200, dealt out to the processes; one sample elsewhere.
+    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD),
+                       n    = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+    std::vector<StressSample> samples;
+    for (unsigned int k = 1; k <= 200; ++k)
+      if (k % n == rank)
+        {
+          samples.push_back({1, 1., {}});
+          samples.back().stress[0][0] = k;
+        }
+    if (rank == 0)
+      {
+        samples.push_back({-1, 50., {}});
+        samples.back().stress[1][1] = -3.;
+      }
+    const auto list = phase_statistics(samples, {"empty", "solid"}, MPI_COMM_WORLD);
+    ASSERT_EQ(list.size(), 2u);
+    EXPECT_EQ(list[0].name, "solid");
+    EXPECT_NEAR(list[0].volume_fraction, 0.8, 1e-14);
+    EXPECT_NEAR(list[0].mean_stress[0][0], 100.5, 1e-12);
+    EXPECT_NEAR(list[0].mean_von_mises, 100.5, 1e-12);
+    EXPECT_NEAR(list[0].highest_percentile,
+                199.,
+                1e-12); // two samples, 1 %, are as large or larger
+    EXPECT_NEAR(list[0].largest_von_mises, 200., 1e-12);
+    EXPECT_EQ(list[1].name, "elsewhere");
+    EXPECT_NEAR(list[1].mean_stress[1][1], -3., 1e-14);
+    EXPECT_TRUE(phase_statistics(samples, {}, MPI_COMM_WORLD).empty());
+  }
+} // namespace PeriDeal

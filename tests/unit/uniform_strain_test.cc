@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Peridynamic solids under uniform strains, against classical ones and sums over the lattice.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "elastic_test_tools.h"
+
+using namespace PeriDeal;
+using namespace PeriDeal::OperatorTests;
+
+namespace
+{
+  /** Influence functions, and how stiff bonds of full families are against shear strains of the axes, relative to the shear modulus (sums over the lattice). */
+  struct ShearOfLattice
+  {
+    const char *kernel, *exponent, *ratio, *cells;
+    double      shear;
+  };
+
+
+  /**
+   * All uniform strains where families are complete. theta and the mean stress are exact; bonds see the fourth moments of the lattice, so that shear of the
+   * axes has the shear modulus g G, and differences of stretches (2 - g) G in two dimensions, (5 - 3 g)/2 G in three.
+   */
+  template <int dim>
+  void all_uniform_strains(const ShearOfLattice &lattice,
+                           const std::string    &plane,
+                           const std::string    &nu,
+                           const Settings       &more = {})
+  {
+    const Body<dim> body(box<dim>() +
+                           Settings{{"Domain/Upper corner", dim == 2 ? "1, 1" : "1, 1, 1"},
+                                    {"Domain/Cells", lattice.cells},
+                                    {"Elasticity/Plane", plane},
+                                    {"Material/Poisson ratio", nu},
+                                    {"Peridynamics/Horizon ratio", lattice.ratio},
+                                    {"Peridynamics/Kernel", lattice.kernel},
+                                    {"Peridynamics/Kernel exponent", lattice.exponent}} +
+                           more,
+                         Model::peridynamics);
+    const Moduli    moduli = body.scene.material.moduli(dealii::Point<dim>());
+    const double    reach  = body.states->families().reach();
+    double          n = 0., worst = 0.;
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = a; b < dim; ++b)
+        {
+          dealii::SymmetricTensor<2, dim> strain;
+          strain[a][b]       = 1.;
+          const auto   sigma = stress(moduli, body.scene.elasticity.plane, strain);
+          const Vector u     = body.values(
+            [&](const dealii::Point<dim> &p) { return dealii::Tensor<1, dim>(strain * p); });
+          const double shear       = lattice.shear,
+                       stretch     = dim == 2 ? 2. - shear : (5. - 3. * shear) / 2.;
+          const double        size = std::max(sigma.norm(), moduli.shear);
+          std::vector<double> theta;
+          body.states->dilatations(u, theta);
+          const NodalTensors<dim> found = body.states->tensors(u);
+          for (unsigned int i = 0; i < theta.size(); ++i)
+            {
+              bool complete = true;
+              for (unsigned int d = 0; d < dim; ++d)
+                complete = complete &&
+                           std::abs(body.position(i)[d] - 0.5) < 0.5 - reach * (1. - 1e-9);
+              if (!complete)
+                continue;
+              n += 1.;
+              EXPECT_NEAR(theta[i], trace(strain), 1e-12);
+              EXPECT_NEAR(trace(found.stress[i]), trace(sigma), 1e-12 * size);
+              const auto difference = deviator(found.stress[i]), wanted = deviator(sigma);
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int d = c; d < dim; ++d)
+                  {
+                    const double factor = c == d ? stretch : shear;
+                    worst =
+                      std::max(worst,
+                               std::abs(difference[c][d] - factor * wanted[c][d]) / moduli.shear);
+                  }
+            }
+        }
+    EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 0.);
+    // The factor is given with five digits; nothing else is missing.
+    EXPECT_LT(dealii::Utilities::MPI::max(worst, MPI_COMM_WORLD), 2.2e-5)
+      << dim << ' ' << plane << ' ' << nu << ' ' << lattice.kernel << ' ' << lattice.ratio;
+  }
+
+
+  /** Energy of a square of n x n cells of size 1 under a uniform strain. */
+  double energy_of_square(const unsigned int                   n,
+                          const std::string                   &nu,
+                          const dealii::SymmetricTensor<2, 2> &strain)
+  {
+    const std::string size = std::to_string(n);
+    const Body<2>     body(box<2>() + Settings{{"Domain/Upper corner", size + ", " + size},
+                                           {"Domain/Cells", size + ", " + size},
+                                           {"Material/Poisson ratio", nu}},
+                       Model::peridynamics);
+    return body.op().energy(
+      body.values([&](const dealii::Point<2> &p) { return dealii::Tensor<1, 2>(strain * p); }));
+  }
+} // namespace
+
+
+TEST(StateOperator, all_uniform_strains)
+{
+  const ShearOfLattice in_2d[] = {{"conical", "2", "3", "12, 12", 0.86047},
+                                  {"conical", "2", "4", "12, 12", 0.91711},
+                                  {"conical", "2", "5", "12, 12", 0.94626},
+                                  {"conical", "2", "6", "14, 14", 0.96161},
+                                  {"conical", "0", "3", "12, 12", 0.98421},
+                                  {"conical", "0", "6", "14, 14", 0.99828},
+                                  {"constant", "0", "3", "12, 12", 0.96376},
+                                  {"constant", "1", "4", "12, 12", 0.99104}};
+  for (const ShearOfLattice &lattice : in_2d)
+    for (const std::string plane : {"stress", "strain"})
+      for (const std::string nu : {"-0.9", "-0.3", "0", "0.3", "0.499"})
+        all_uniform_strains<2>(lattice, plane, nu);
+  const ShearOfLattice in_3d[] = {{"conical", "2", "2", "6, 6, 6", 0.7895},
+                                  {"conical", "2", "3", "8, 8, 8", 0.92744},
+                                  {"conical", "0", "3", "8, 8, 8", 0.99572}};
+  for (const ShearOfLattice &lattice : in_3d)
+    for (const std::string nu : {"-0.9", "0.3", "0.499"})
+      all_uniform_strains<3>(lattice, "stress", nu);
+}
+
+
+TEST(StateOperator, energy_of_uniform_strain)
+{
+  // What one more row and column adds to what the last ones added is a full family's energy: faces and corners cancel.
+  for (const std::string nu : {"-0.9", "0.3", "0.499"})
+    {
+      const double young = 3., value = std::stod(nu), shear = young / (2. * (1. + value));
+      const double area = young / (2. * (1. - value)); // lambda + G of plane stress
+      dealii::SymmetricTensor<2, 2> strain;
+      strain[0][0]       = 0.3;
+      strain[1][1]       = -0.1;
+      strain[0][1]       = 0.2;
+      const double added = energy_of_square(14, nu, strain) -
+                           2. * energy_of_square(13, nu, strain) + energy_of_square(12, nu, strain);
+      const double g = 0.86047; // m = 3
+      const double wanted =
+        0.5 * area * 0.2 * 0.2 + shear * ((2. - g) * 0.5 * 0.4 * 0.4 + g * 2. * 0.2 * 0.2);
+      EXPECT_NEAR(0.5 * added, wanted, 3e-5 * wanted);
+    }
+}
+
+
+TEST(StateOperator, dilatation_on_rectangular_cells)
+{
+  // Direction factors of the lattice make theta exact on cells of any ratio.
+  const dealii::Tensor<2, 2> g = some_gradient<2>();
+  for (const std::string cells : {"40, 13", "14, 42"})
+    {
+      const Body<2>       body(box<2>() + Settings{{"Domain/Upper corner", "1, 1"},
+                                             {"Domain/Cells", cells},
+                                             {"Peridynamics/Horizon ratio", "6"}},
+                         Model::peridynamics);
+      std::vector<double> theta;
+      body.states->dilatations(body.values([&](const dealii::Point<2> &p) { return g * p; }),
+                               theta);
+      const double reach = body.states->families().reach();
+      double       n     = 0.;
+      for (unsigned int i = 0; i < theta.size(); ++i)
+        if (std::max(std::abs(body.position(i)[0] - 0.5), std::abs(body.position(i)[1] - 0.5)) <
+            0.5 - reach * (1. - 1e-9))
+          {
+            EXPECT_NEAR(theta[i], trace(g), 1e-12);
+            n += 1.;
+          }
+      EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 0.);
+    }
+}
