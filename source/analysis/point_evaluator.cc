@@ -96,6 +96,7 @@ namespace PeriDeal
           points[k][d] = coordinates[k][d];
         points[k] = off_cracks(points[k], geometries, shift);
       }
+    inner = points;
     if (on_lattice)
       locate_on_lattice(*nodes, points);
     else if (at_centers && nodes != nullptr)
@@ -235,10 +236,12 @@ namespace PeriDeal
     std::vector<types::global_dof_index> indices(n_slots);
     const MappingQ1<dim>                 mapping;
     std::vector<double>                  own; // slot, dof, weight, slope, slot, ...
+    std::vector<Tensor<1, dim>>          moved(points.size());
     for (unsigned int k = 0; k < points.size(); ++k)
       if (first[k] == me)
         {
           places[k].first->get_dof_indices(indices);
+          moved[k] = 1e-6 * (places[k].first->center() - points[k]);
           FEValues<dim> values(mapping,
                                fe,
                                Quadrature<dim>(places[k].second),
@@ -254,6 +257,8 @@ namespace PeriDeal
                 own.push_back(values.shape_grad(v, 0)[d]);
             }
         }
+    for (unsigned int k = 0; k < points.size(); ++k)
+      inner[k] += Utilities::MPI::sum(moved[k], communicator);
     // Each part goes to the owner of its dof: what ghosts a vector has, and in which order, depends on the model.
     const IndexSet &owned = dofs.locally_owned_dofs();
     for (const std::vector<double> &list : Utilities::MPI::all_gather(communicator, own))
@@ -336,6 +341,13 @@ namespace PeriDeal
       }
     return result;
   }
+
+  template <int dim>
+  const std::vector<Point<dim>> &PointEvaluator<dim>::inner_points() const
+  {
+    return inner;
+  }
+
 
   template class PointEvaluator<1>;
   template class PointEvaluator<2>;

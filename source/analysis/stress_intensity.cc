@@ -132,8 +132,9 @@ namespace PeriDeal
     const Material               &material = scene.material;
     const bool                    warm     = !scene.elasticity.temperature_change.is_constant() ||
                       scene.elasticity.temperature_change.value(Point<2>()) != 0.;
-    if (scene.domain.shape != Shape::box || !material.uniform_moduli() || warm ||
-        !scene.initial_and_source.body_force.empty())
+    const double size = 2. * scene.domain.spacing().norm(); // of cells: a ring has to hold some
+    if (!scene.elasticity.is_static() || scene.domain.shape != Shape::box ||
+        !material.uniform_moduli() || warm || !scene.initial_and_source.body_force.empty())
       return list;
     for (unsigned int k = 0; k < cracks.size(); ++k)
       for (unsigned int e = 0; e < 2; ++e)
@@ -147,7 +148,7 @@ namespace PeriDeal
           for (unsigned int other = 0; other < cracks.size(); ++other)
             if (other != k)
               room = std::min(room, distance_to_piece(cracks[other], end));
-          if (room < 0.02 * length)
+          if (0.45 * room < size)
             continue;
           list.emplace_back("crack " + std::to_string(k + 1) + " end " + std::to_string(e + 1),
                             end,

@@ -150,7 +150,7 @@ namespace PeriDeal
           data.cell = data.cell && at(other)->node != numbers::invalid_unsigned_int;
         }
       const Point<dim> low = lattice.position(site);
-      data.cell            = data.cell && !scene.domain.in_hole(low + 0.5 * lattice.spacing);
+      data.cell            = data.cell && scene.domain.has_cell_at(low + 0.5 * lattice.spacing);
       if (!data.cell)
         return;
       if (uniform)

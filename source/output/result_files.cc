@@ -26,16 +26,17 @@ namespace PeriDeal
     /** Files that a run writes, in its directory or in the folder of fields. Nothing else is ever removed. */
     bool is_result(const fs::path &path, const bool field)
     {
-      static const std::vector<std::string> names = {"summary.json",
-                                                     "report.html",
-                                                     "probes.csv",
-                                                     "line.csv",
-                                                     "grid.csv",
-                                                     "totals.csv",
-                                                     "image_as_read.png",
-                                                     "scene.prm"};
-      const std::string                     name  = path.filename().string();
-      const bool series = begins_with(name, "finite_elements") || begins_with(name, "peridynamics");
+      static const std::vector<std::string> names  = {"summary.json",
+                                                      "report.html",
+                                                      "probes.csv",
+                                                      "line.csv",
+                                                      "grid.csv",
+                                                      "totals.csv",
+                                                      "image_as_read.png",
+                                                      "scene.prm"};
+      const std::string                     name   = path.filename().string();
+      const bool                            series = begins_with(name, "finite_elements") ||
+                          begins_with(name, "peridynamics") || begins_with(name, "coupled");
       const std::string kind = path.extension().string();
       if (field)
         return series && (kind == ".vtu" || kind == ".pvtu" || kind == ".h5");

@@ -45,22 +45,37 @@ namespace PeriDeal
       refuse(pd.flux_treatment != FluxTreatment::natural,
              "Flux treatment",
              no_effect,
-             "use 'natural', and 'Traction layer' in section 'Boundary conditions'.");
-      refuse(pd.surface_correction == SurfaceCorrection::energy,
+             "use 'natural'.");
+      refuse(pd.surface_correction == SurfaceCorrection::energy ||
+               (pd.surface_correction == SurfaceCorrection::crack_scaling &&
+                !runs(scene, Model::coupled)),
              "Surface correction",
-             "'energy' is not defined",
-             "use 'none' or 'crack scaling'.");
-      refuse(pd.treatment == BoundaryTreatment::fictitious_mirror ||
-               pd.treatment == BoundaryTreatment::fictitious_constant,
+             pd.surface_correction == SurfaceCorrection::energy ?
+               "'energy' is not defined" :
+               "'crack scaling' without 'Models = coupled' " + no_effect,
+             "use 'none'.");
+      refuse(pd.treatment != BoundaryTreatment::none &&
+               pd.treatment != BoundaryTreatment::automatic,
              "Boundary treatment",
-             "fictitious nodes are not defined",
-             "use 'none' or 'layer'.");
-      refuse(pd.treatment == BoundaryTreatment::exchange &&
-               scene.elasticity.model == ElasticModel::state_based &&
-               runs(scene, Model::peridynamics),
-             "Boundary treatment",
-             "'exchange' has no place for the nonlocal dilatation of 'Model = state-based'",
-             "use 'none', or 'Model = bond-based' in section 'Elasticity'.");
+             pd.treatment == BoundaryTreatment::exchange ?
+               "'exchange' has no place for a nonlocal dilatation" :
+               "fictitious nodes and layers are not defined",
+             "use 'none'.");
+      refuse(pd.form == OperatorForm::lattice,
+             "Operator form",
+             "'lattice' is not defined",
+             "use 'auto'.");
+    }
+
+
+    /** Entries of other sections that elasticity does not have. */
+    template <int dim>
+    void check_other_sections(const Scene<dim> &scene)
+    {
+      if (scene.finite_elements.consistent_capacity)
+        entry_error(
+          scene.finite_elements.where("Capacity"),
+          "'consistent' is for what diffuses; masses are lumped with 'Physics = elasticity'.");
     }
 
 
@@ -69,6 +84,10 @@ namespace PeriDeal
     {
       if (!runs(scene, Model::coupled))
         return;
+      if (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty())
+        entry_error(
+          scene.cracks.where("Mesh"),
+          "'faces' is not for 'Models = coupled' with 'Physics = elasticity', whose bonds know one node at each place. Use 'removed'.");
       if (scene.coupling.zone == ZoneKind::adaptive)
         entry_error(
           scene.coupling.where("Zone"),
@@ -194,6 +213,7 @@ namespace PeriDeal
       }
     check_time(*this);
     check_peridynamics(*this);
+    check_other_sections(*this);
     check_coupling_of_elasticity(*this);
     check_rigid_motions(*this);
   }

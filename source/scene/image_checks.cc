@@ -48,15 +48,26 @@ namespace PeriDeal
     }
 
 
-    /** Half of the offsets between cells that are connected: those with a common face; for bonds alone, all within the horizon. */
+    /** Bonds of at least this length do not exist. */
+    double reach_of_bonds(const Scene<2> &scene)
+    {
+      const Tensor<1, 2> h = scene.domain.spacing();
+      return scene.peridynamics.volume_fraction == VolumeFraction::linear ?
+               (scene.horizon() + 0.5 * std::min(h[0], h[1])) * (1. - 1e-9) :
+               scene.horizon() * (1. + 1e-9);
+    }
+
+
+    /** Half of the offsets between cells that are connected: those with a common face; for bonds alone that may cross voids, all that they reach. */
     std::vector<Offset> connections(const Scene<2> &scene)
     {
       std::vector<Offset> list{{{1, 0}}, {{0, 1}}};
       if (runs(scene, Model::finite_elements) || runs(scene, Model::coupled) ||
-          scene.peridynamics.treatment == BoundaryTreatment::exchange)
+          scene.peridynamics.treatment == BoundaryTreatment::exchange ||
+          scene.peridynamics.across_voids == BondsAcrossVoids::cut)
         return list;
       const Tensor<1, 2> h       = scene.domain.spacing();
-      const double       horizon = scene.horizon() * (1. - 1e-9);
+      const double       horizon = reach_of_bonds(scene);
       const int mx = static_cast<int>(horizon / h[0]), my = static_cast<int>(horizon / h[1]);
       list.clear();
       for (int j = 0; j <= my; ++j)
@@ -349,7 +360,7 @@ namespace PeriDeal
           scene.peridynamics.treatment == BoundaryTreatment::exchange ||
           scene.peridynamics.across_voids == BondsAcrossVoids::cut)
         return;
-      const double horizon  = scene.horizon() * (1. - 1e-9);
+      const double horizon  = reach_of_bonds(scene);
       std::size_t  n_places = 0;
       int          widest   = 0;
       for (unsigned int d = 0; d < 2; ++d)

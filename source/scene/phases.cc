@@ -362,6 +362,10 @@ namespace PeriDeal
         if (std::find(list->names.begin(), list->names.end(), name_value.first) !=
             list->names.end())
           error("Regions", "the phase '" + name_value.first + "' is named twice.");
+        if (name_value.first.find_first_of(",\"") != std::string::npos)
+          error("Regions",
+                "the name of the phase '" + name_value.first +
+                  "' has a comma or a quotation mark.");
         list->names.push_back(name_value.first);
         list->regions.emplace_back(name_value.second,
                                    where("Regions") + ", phase '" + name_value.first + "'",

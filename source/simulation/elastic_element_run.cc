@@ -83,16 +83,17 @@ namespace PeriDeal
         std::vector<double> rows;
         for (std::size_t k = 0; k < points.size(); ++k)
           {
-            Point<dim>     p;
             Tensor<2, dim> gradient;
             double         values[dim];
             for (unsigned int d = 0; d < dim; ++d)
               {
-                p[d]        = points[k][d];
                 values[d]   = u[d][k];
                 gradient[d] = slopes[d][k];
               }
-            append_row(values, stress_of_strain(symmetrize(gradient), scene, p), dim, rows);
+            append_row(values,
+                       stress_of_strain(symmetrize(gradient), scene, reader.inner_points()[k]),
+                       dim,
+                       rows);
           }
         return rows;
       }

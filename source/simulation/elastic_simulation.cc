@@ -71,9 +71,6 @@ namespace PeriDeal
       require(
         !scene.material.fracture_energy && !scene.material.critical_stretch,
         "'Fracture energy' and 'Critical stretch' in section 'Material' cannot be used yet; leave them empty.");
-      require(
-        scene.peridynamics.treatment == BoundaryTreatment::none,
-        "'Boundary treatment' in section 'Peridynamics' has to be 'none' with 'Physics = elasticity'.");
       require(scene.reference.solution.empty(),
               "'Solution' in section 'Reference' cannot be used with 'Physics = elasticity' yet.");
     }
@@ -117,7 +114,6 @@ namespace PeriDeal
   template <int dim>
   void ElasticSimulation<dim>::build()
   {
-    refuse_what_is_not_computed(scene);
     const unsigned int n_proc = Utilities::MPI::n_mpi_processes(communicator);
     progress.line(scene.general.title + "  (" + text.file_name + ", " + std::to_string(n_proc) +
                   (n_proc == 1 ? " process)" : " processes)"));
@@ -262,6 +258,7 @@ namespace PeriDeal
   template <int dim>
   void ElasticSimulation<dim>::run()
   {
+    refuse_what_is_not_computed(scene);
     prepare_directory(scene.general.output_directory, text.file_name, communicator);
     write_image_as_read(scene, communicator);
     build();
@@ -298,6 +295,7 @@ namespace PeriDeal
   template <int dim>
   void ElasticSimulation<dim>::dry_run()
   {
+    refuse_what_is_not_computed(scene);
     build();
     if (!scene.elasticity.is_static())
       make_steppers();

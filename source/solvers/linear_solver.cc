@@ -129,7 +129,7 @@ namespace PeriDeal
           << "The linear solver stopped after " << failure.last_step
           << " iterations at a relative residual of " << failure.last_residual / size
           << ", above 'Tolerance' = " << tolerance
-          << " in section 'Solver'. Raise 'Tolerance' or 'Maximum iterations' there, or check for parts of the body that cracks have cut off.";
+          << " in section 'Solver'. Raise 'Tolerance' or 'Maximum iterations' there, or check for parts of the body that nothing holds, for instance because cracks have cut them off.";
         AssertThrow(false, UserError(message.str()));
       }
     n_last_iterations  = control.last_step();

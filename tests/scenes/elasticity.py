@@ -164,6 +164,9 @@ def thermal():
         for model, bound in zip((FEM, PD), bounds):
             for row, value, layer in zip(run.rows(model), wanted, ("core", "face")):
                 table.add(f"laminate {more or ''}, {model}: sxx in the {layer}", row["sxx"], value, absolute=bound * max(map(abs, wanted)))
+        between = run.rows(FEM)[2]["sxx"]
+        table.add_limit(f"laminate {more or ''}, {FEM}: sxx at the interface, gap to the nearer of core and face", min(abs(between - value) for value in wanted),
+                        bounds[0] * max(map(abs, wanted)))
     balanced(table, run)  # nothing acts on the others
     table.show()
 

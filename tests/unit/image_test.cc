@@ -8,6 +8,7 @@
 #include <perideal/operators/state_operator.h>
 #include <perideal/solvers/linear_solver.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "operator_test_tools.h"
@@ -27,7 +28,9 @@ namespace PeriDeal
     {
     public:
       explicit Image(const std::vector<std::string> &rows)
-        : name("image_test_" + std::to_string(getpid()) + ".pgm")
+        : name((std::filesystem::temp_directory_path() /
+                ("image_test_" + std::to_string(getpid()) + ".pgm"))
+                 .string())
       {
         std::ofstream file(name);
         file << "P2 " << rows.front().size() << ' ' << rows.size() << " 255\n";
@@ -380,6 +383,33 @@ namespace PeriDeal
                  {"'Regions' in section 'Material/Phases'", "'fibre'", "'Image colors'"});
     expect_parts(fault(image.settings({{"Domain/Islands", "pin"}})), {"'Islands'", "elasticity"});
     expect_parts(message_of([&] { Problem<1>(image.settings()); }), {"'Shape'", "'Dimension' 2"});
+  }
+
+
+  /** A void of one cell, whose corners all are nodes: the same bonds and conductances as in a plate with a hole of that cell. */
+  TEST(Image, void_of_one_cell)
+  {
+    std::vector<std::string> rows(11, std::string(11, '9'));
+    rows[5][5] = '0';
+    const Image      image(rows);
+    const Settings   both{{"Domain/Nodes", "vertices"},
+                        {"Peridynamics/Horizon ratio", "3"},
+                        {"Coupling/Zone", "everywhere"},
+                        {"Boundary conditions/Dirichlet", "left: 0 ; right: 1"}};
+    const Problem<2> from_image(image.settings(both), Model::coupled);
+    const Problem<2> plate(Settings{{"Domain/Shape", "plate with hole"},
+                                    {"Domain/Lower corner", "0, 0"},
+                                    {"Domain/Upper corner", "11, 11"},
+                                    {"Domain/Cells", "11, 11"},
+                                    {"Domain/Hole center", "5.5, 5.5"},
+                                    {"Domain/Hole radius", "0.4"}} +
+                             both,
+                           Model::coupled);
+    EXPECT_EQ(from_image.op().size().bonds, plate.op().size().bonds);
+    const Vector &found = from_image.op().diagonal(), &expected = plate.op().diagonal();
+    ASSERT_EQ(found.locally_owned_size(), expected.locally_owned_size());
+    for (unsigned int i = 0; i < found.locally_owned_size(); ++i)
+      EXPECT_NEAR(found.local_element(i), expected.local_element(i), 1e-12);
   }
 
 

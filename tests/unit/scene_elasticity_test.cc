@@ -443,16 +443,25 @@ end
     expect(elastic_fault({pd + "Self term=paper"}), pd + "Self term", {"has no effect"});
     expect(elastic_fault({pd + "Flux treatment=extrapolation"}),
            pd + "Flux treatment",
-           {"has no effect", "Traction layer"});
+           {"has no effect", "'natural'"});
     expect(elastic_fault({pd + "Surface correction=energy"}),
            pd + "Surface correction",
-           {"'energy'"});
-    expect(elastic_fault({pd + "Boundary treatment=fictitious mirror"}),
-           pd + "Boundary treatment",
-           {"'none' or 'layer'"});
+           {"'energy'", "'none'"});
+    expect(elastic_fault({pd + "Surface correction=crack scaling"}),
+           pd + "Surface correction",
+           {"has no effect", "coupled"});
+    for (const char *const treatment : {"fictitious mirror", "fictitious constant", "layer"})
+      expect(elastic_fault({pd + "Boundary treatment=" + treatment}),
+             pd + "Boundary treatment",
+             {"not defined", "use 'none'"});
     expect(elastic_fault({pd + "Boundary treatment=exchange"}),
            pd + "Boundary treatment",
-           {"dilatation", "bond-based"});
+           {"dilatation", "use 'none'"});
+    expect(elastic_fault({pd + "Operator form=lattice"}), pd + "Operator form", {"'auto'"});
+    expect(elastic_fault({"Output/Grid=5, 5"}), "Output/Grid", {"what diffuses"});
+    expect(elastic_fault({"Finite elements/Capacity=consistent"}),
+           "Finite elements/Capacity",
+           {"lumped"});
 
     const Overrides coupled = {"Models=coupled", c + "Zone=x - 0.5"};
     const auto      with    = [&](const Overrides &more) {
@@ -462,6 +471,9 @@ end
     };
     EXPECT_EQ(with({}), "");
     expect(with({c + "Zone=adaptive", "Domain/Coarsening=1"}), c + "Zone", {"'adaptive'"});
+    expect(with({"Cracks/Segments=0.2,0.3 ; 0.6,0.3", "Cracks/Mesh=faces"}),
+           "Cracks/Mesh",
+           {"'removed'", "coupled"});
     EXPECT_EQ(with({c + "Scheme=splice"}), "");
     EXPECT_EQ(with({e + "Model=bond-based"}), "");
     expect(with({e + "Model=bond-based", e + "Kinematics=full", e + "Solver=conjugate gradients"}),

@@ -41,6 +41,9 @@ namespace PeriDeal
                                                   const unsigned int n_components = 1,
                                                   const unsigned int component    = 0) const;
 
+    /** The points; those that were looked up in the mesh moved a little towards the middle of the cell, in whose material they are. */
+    const std::vector<dealii::Point<dim>> &inner_points() const;
+
   private:
     struct Part
     {
@@ -70,5 +73,7 @@ namespace PeriDeal
     MPI_Comm          communicator;
     unsigned int      n_points, n_slots;
     std::vector<Part> parts;
+
+    std::vector<dealii::Point<dim>> inner;
   };
 } // namespace PeriDeal

@@ -73,7 +73,7 @@ namespace PeriDeal
 
   /**
    * The ends of the cracks of a scene that lie in the body, away from its sides and from other cracks, with rings as wide as these and the crack allow; those without
-   * room have none. Empty unless the body has two dimensions, cracks and one material without thermal strain and body force.
+   * room for a ring of a few cells have none. Empty unless the body is at rest and has two dimensions, no holes, and one material without thermal strain and body force.
    */
   std::vector<CrackEndIntegral> crack_end_integrals(const Scene<2> &scene);
 } // namespace PeriDeal
