@@ -62,7 +62,7 @@ namespace PeriDeal
       dealii::Point<dim>         position;
     };
 
-    std::vector<Prescribed> prescribed; // in the order of unknowns
+    std::vector<Prescribed> prescribed; // first by conditions, then pinned ones
     bool                    varies = false;
   };
 
