@@ -406,6 +406,18 @@ namespace PeriDeal
 
 
   template <int dim>
+  double Nodes<dim>::volume_share(const std::function<bool(const unsigned int)> &holds) const
+  {
+    double share = 0., all = 0.;
+    for (unsigned int i = 0; i < n_owned(); ++i)
+      {
+        all += volume(i);
+        share += holds(i) ? volume(i) : 0.;
+      }
+    return Utilities::MPI::sum(share, communicator()) / Utilities::MPI::sum(all, communicator());
+  }
+
+  template <int dim>
   std::size_t Nodes<dim>::memory_consumption() const
   {
     return positions.capacity() * sizeof(Point<dim>) + volumes.capacity() * sizeof(double) +

@@ -87,26 +87,18 @@ namespace PeriDeal
     initialize_vector(mass);
     volumes.reinit(nodes);
     double energy = 0.;
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned())
+    for_each_own_cell([&](const Cell &cell, CellData &of_cell) {
+      change_cell(cell, of_cell);
+      energy += of_cell.thermal_energy;
+      of_cell.add_stiffness_to(stiffness);
+      for (unsigned int i = 0; i < of_cell.unknowns.size(); ++i)
         {
-          data.values.reinit(cell);
-          data.set_indices(cell);
-          assemble_cell(data);
-          change_cell(cell, data);
-          energy += data.thermal_energy;
-          for (unsigned int i = 0; i < data.unknowns.size(); ++i)
-            {
-              stiffness.add(data.unknowns[i],
-                            data.unknowns.size(),
-                            data.unknowns.data(),
-                            &data.stiffness(i, 0));
-              thermal_loads(data.unknowns[i]) += data.thermal(i);
-              mass(data.unknowns[i]) += data.mass(i / dim);
-            }
-          for (unsigned int i = 0; i < data.indices.size(); ++i)
-            volumes(data.indices[i]) += data.volume(i);
+          thermal_loads(of_cell.unknowns[i]) += of_cell.thermal(i);
+          mass(of_cell.unknowns[i]) += of_cell.mass(i / dim);
         }
+      for (unsigned int i = 0; i < of_cell.indices.size(); ++i)
+        volumes(of_cell.indices[i]) += of_cell.volume(i);
+    });
     thermal_energy = Utilities::MPI::sum(energy, dofs.get_communicator());
     if (coupling)
       {

@@ -8,9 +8,9 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/user_error.h>
-#include <perideal/scene/crack_geometry.h>
+#include <perideal/mesh/cut_cells.h>
+#include <perideal/operators/spectrum.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,18 +41,9 @@ namespace PeriDeal
     if (scene.cracks.mesh == CrackMesh::faces)
       return;
     const auto cracks = make_crack_geometries(scene.cracks.pieces(0.));
-    const auto is_cut = [&](const Cell &cell) {
-      for (const CrackGeometry<dim> &crack : cracks)
-        if (crack.is_near(cell->center(), cell->diameter()))
-          for (const unsigned int a : cell->vertex_indices())
-            for (unsigned int b = 0; b < a; ++b)
-              if (crack.separates(cell->vertex(a), cell->vertex(b)))
-                return true;
-      return false;
-    };
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial())
-        cut[cell->active_cell_index()] = is_cut(cell);
+        cut[cell->active_cell_index()] = is_cut(cell, cracks);
   }
 
 
@@ -117,6 +108,15 @@ namespace PeriDeal
 
 
   template <int dim>
+  double ElasticElements<dim>::bond_factor(const unsigned int i, const unsigned int j) const
+  {
+    return crack_factors.size() == 0 ?
+             1. :
+             0.5 * (crack_factors.local_element(i) + crack_factors.local_element(j));
+  }
+
+
+  template <int dim>
   void ElasticElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &matrix,
                                        const bool                      intact) const
   {
@@ -139,10 +139,7 @@ namespace PeriDeal
           {
             if (bond.cut && !intact)
               continue;
-            const double factor =
-              crack_factors.size() == 0 || intact ?
-                1. :
-                0.5 * (crack_factors.local_element(i) + crack_factors.local_element(bond.neighbor));
+            const double factor = intact ? 1. : bond_factor(i, bond.neighbor);
             for (unsigned int e = 0; e < dim; ++e)
               columns.push_back(dim * nodes->local_to_global(bond.neighbor) + e);
             for (unsigned int c = 0; c < dim; ++c)
@@ -161,6 +158,9 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::add_thermal_bonds()
   {
+    const Expression &change = scene.elasticity.temperature_change;
+    if (change.is_constant() && change.value(Point<dim>()) == 0.)
+      return;
     std::vector<typename ElasticCoupling<dim>::Bond> bonds;
     double                                           energy = 0.;
     for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
@@ -170,11 +170,8 @@ namespace PeriDeal
           {
             if (bond.cut)
               continue;
-            const double factor =
-              crack_factors.size() == 0 ?
-                1. :
-                0.5 * (crack_factors.local_element(i) + crack_factors.local_element(bond.neighbor));
-            const Tensor<1, dim> xi = positions[bond.neighbor] - positions[i];
+            const double         factor = bond_factor(i, bond.neighbor);
+            const Tensor<1, dim> xi     = positions[bond.neighbor] - positions[i];
             const double         strain =
               0.5 * (thermal_strain(positions[i]) + thermal_strain(positions[bond.neighbor]));
             const Tensor<1, dim> force = factor * strain * (bond.block * xi);
@@ -226,27 +223,22 @@ namespace PeriDeal
             trace.local_element(i) += 0.5 * dealii::trace(bond.block) *
                                       (positions[bond.neighbor] - positions[i]).norm_square();
       }
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned())
+    for_each_own_cell([&](const Cell &cell, CellData &data) {
+      change_cell(cell, data);
+      const Moduli moduli = scene.material.moduli(cell->center());
+      const double mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear,
+                   lambda = dim == 1 ? 0. : lambda_of(moduli, dim, scene.elasticity.plane);
+      const double share =
+        (dim * lambda + dim * (dim + 1) * mu) * cell->measure() / data.indices.size();
+      for (unsigned int a = 0; a < data.indices.size(); ++a)
         {
-          data.values.reinit(cell);
-          data.set_indices(cell);
-          assemble_cell(data);
-          change_cell(cell, data);
-          const Moduli moduli = scene.material.moduli(cell->center());
-          const double mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear,
-                       lambda = dim == 1 ? 0. : lambda_of(moduli, dim, scene.elasticity.plane);
-          const double share =
-            (dim * lambda + dim * (dim + 1) * mu) * cell->measure() / data.indices.size();
-          for (unsigned int a = 0; a < data.indices.size(); ++a)
-            {
-              expected(data.indices[a]) += share;
-              for (unsigned int b = 0; b < data.indices.size(); ++b)
-                for (unsigned int d = 0; d < dim; ++d)
-                  trace(data.indices[a]) -= 0.5 * data.stiffness(dim * a + d, dim * b + d) *
-                                            (cell->vertex(b) - cell->vertex(a)).norm_square();
-            }
+          expected(data.indices[a]) += share;
+          for (unsigned int b = 0; b < data.indices.size(); ++b)
+            for (unsigned int d = 0; d < dim; ++d)
+              trace(data.indices[a]) -= 0.5 * data.stiffness(dim * a + d, dim * b + d) *
+                                        (cell->vertex(b) - cell->vertex(a)).norm_square();
         }
+    });
     trace.compress(VectorOperation::add);
     expected.compress(VectorOperation::add);
     for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
@@ -279,21 +271,11 @@ namespace PeriDeal
                                              const bool                      with_bonds) const
   {
     matrix.reinit(stiffness);
-    CellData &data = *cell_data;
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          data.values.reinit(cell);
-          data.set_indices(cell);
-          assemble_cell(data);
-          if (with_bonds && coupling)
-            coupling->change_cell(cell, data.stiffness);
-          for (unsigned int i = 0; i < data.unknowns.size(); ++i)
-            matrix.add(data.unknowns[i],
-                       data.unknowns.size(),
-                       data.unknowns.data(),
-                       &data.stiffness(i, 0));
-        }
+    for_each_own_cell([&](const Cell &cell, CellData &data) {
+      if (with_bonds && coupling)
+        coupling->change_cell(cell, data.stiffness);
+      data.add_stiffness_to(matrix);
+    });
     if (with_bonds && coupling)
       add_bonds(matrix, true);
     matrix.compress(VectorOperation::add);
@@ -303,30 +285,15 @@ namespace PeriDeal
   template <int dim>
   double ElasticElements<dim>::lowest_remainder() const
   {
-    CellData       &data   = *cell_data;
-    double          lowest = std::numeric_limits<double>::max();
-    const auto      n      = data.unknowns.size();
-    Eigen::MatrixXd matrix(n, n);
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && coupling)
-        {
-          data.values.reinit(cell);
-          data.set_indices(cell);
-          assemble_cell(data);
-          if (!coupling->change_cell(cell, data.stiffness))
-            continue;
-          for (unsigned int a = 0; a < n; ++a)
-            for (unsigned int b = 0; b < n; ++b)
-              matrix(a, b) = data.stiffness(a, b);
-          const double scale =
-            scene.material.moduli(cell->center()).shear * std::pow(cell->measure(), 1. - 2. / dim);
-          lowest =
-            std::min(lowest,
-                     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
-                         .eigenvalues()
-                         .minCoeff() /
-                       scale);
-        }
+    double lowest = std::numeric_limits<double>::max();
+    if (coupling)
+      for_each_own_cell([&](const Cell &cell, CellData &data) {
+        if (coupling->change_cell(cell, data.stiffness))
+          lowest = std::min(lowest,
+                            lowest_eigenvalue(data.stiffness) /
+                              (scene.material.moduli(cell->center()).shear *
+                               std::pow(cell->measure(), 1. - 2. / dim)));
+      });
     return Utilities::MPI::min(lowest, dofs.get_communicator());
   }
 

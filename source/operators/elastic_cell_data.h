@@ -41,6 +41,12 @@ namespace PeriDeal
           unknowns[dim * i + d] = dim * indices[i] + d;
     }
 
+    void add_stiffness_to(dealii::TrilinosWrappers::SparseMatrix &matrix) const
+    {
+      for (unsigned int i = 0; i < unknowns.size(); ++i)
+        matrix.add(unknowns[i], unknowns.size(), unknowns.data(), &stiffness(i, 0));
+    }
+
     dealii::FEValues<dim>                        values;
     dealii::FEFaceValues<dim>                    face_values;
     dealii::FullMatrix<double>                   stiffness;
@@ -48,4 +54,20 @@ namespace PeriDeal
     double                                       thermal_energy = 0.;
     std::vector<dealii::types::global_dof_index> indices, unknowns;
   };
+
+
+  /** Call visit(cell, data) with the matrices of each own cell, as they are without bonds and cracks. */
+  template <int dim>
+  template <typename Visit>
+  void ElasticElements<dim>::for_each_own_cell(const Visit &visit) const
+  {
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cell_data->values.reinit(cell);
+          cell_data->set_indices(cell);
+          assemble_cell(*cell_data);
+          visit(cell, *cell_data);
+        }
+  }
 } // namespace PeriDeal

@@ -11,15 +11,7 @@ namespace PeriDeal
   template <int dim>
   double ElasticCoupling<dim>::zone_share() const
   {
-    const Nodes<dim> &nodes = families().nodes();
-    double            in = 0., all = 0.;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        all += nodes.volume(i);
-        in += in_zone(i) ? nodes.volume(i) : 0.;
-      }
-    return dealii::Utilities::MPI::sum(in, nodes.communicator()) /
-           dealii::Utilities::MPI::sum(all, nodes.communicator());
+    return families().nodes().volume_share([&](const unsigned int i) { return in_zone(i); });
   }
 
 

@@ -200,17 +200,6 @@ namespace PeriDeal
   }
 
   template <int dim>
-  double ElasticElements<dim>::scaled_bound() const
-  {
-    return sharp_bound(
-      *this,
-      std::numeric_limits<double>::max(),
-      [&](Vector &vector) { fill_noise(vector); },
-      0.,
-      &stiffness_diagonal);
-  }
-
-  template <int dim>
   void ElasticElements<dim>::fill_noise(Vector &vector) const
   {
     for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)

@@ -2,9 +2,11 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/operators/elastic_operator.h>
+#include <perideal/operators/spectrum.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -36,5 +38,16 @@ namespace PeriDeal
     for (const auto &[name, force] : sides)
       sum += length(force);
     return 0.5 * sum;
+  }
+
+
+  double ElasticOperator::scaled_bound() const
+  {
+    return sharp_bound(
+      *this,
+      std::numeric_limits<double>::max(),
+      [&](Vector &vector) { fill_noise(vector); },
+      0.,
+      &diagonal());
   }
 } // namespace PeriDeal

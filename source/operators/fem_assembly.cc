@@ -10,6 +10,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/laws/crack_conductance.h>
+#include <perideal/mesh/cut_cells.h>
 #include <perideal/operators/fem_operator.h>
 
 #include <algorithm>
@@ -30,20 +31,7 @@ namespace PeriDeal
       return;
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial())
-        cut[cell->active_cell_index()] = is_cut(cell);
-  }
-
-
-  template <int dim>
-  bool FEMOperator<dim>::is_cut(const Cell &cell) const
-  {
-    for (const CrackGeometry<dim> &crack : cracks)
-      if (crack.is_near(cell->center(), cell->diameter()))
-        for (const unsigned int a : cell->vertex_indices())
-          for (unsigned int b = 0; b < a; ++b)
-            if (crack.separates(cell->vertex(a), cell->vertex(b)))
-              return true;
-    return false;
+        cut[cell->active_cell_index()] = is_cut(cell, cracks);
   }
 
 
@@ -449,35 +437,33 @@ namespace PeriDeal
     u.set_ghost_state(false);
   }
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                \
-  template void FEMOperator<dim>::add_side_and_source_heat(const Vector &,                       \
-                                                           const double,                         \
-                                                           Balance &) const;                     \
-  template struct FEMOperator<dim>::CellData;                                                    \
-  template void FEMOperator<dim>::fill();                                                        \
-  template void FEMOperator<dim>::find_cut_cells();                                              \
-  template bool FEMOperator<dim>::is_cut(const typename DoFHandler<dim>::active_cell_iterator &) \
-    const;                                                                                       \
-  template double FEMOperator<dim>::kept_fraction(                                               \
-    const typename DoFHandler<dim>::active_cell_iterator &,                                      \
-    const unsigned int,                                                                          \
-    const unsigned int,                                                                          \
-    std::vector<std::pair<unsigned int, int>> *) const;                                          \
-  template bool FEMOperator<dim>::assemble_whole_cell(                                           \
-    const typename DoFHandler<dim>::active_cell_iterator &,                                      \
-    CellData &,                                                                                  \
-    const bool) const;                                                                           \
-  template void FEMOperator<dim>::assemble_cell(                                                 \
-    const typename DoFHandler<dim>::active_cell_iterator &,                                      \
-    CellData &,                                                                                  \
-    const bool) const;                                                                           \
-  template void FEMOperator<dim>::find_crack_factors();                                          \
-  template void FEMOperator<dim>::find_crack_factors(const std::vector<Cell> &,                  \
-                                                     const std::vector<unsigned int> &,          \
-                                                     FactorData &);                              \
-  template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                         \
-  template void FEMOperator<dim>::check_material() const;                                        \
-  template void FEMOperator<dim>::assemble();                                                    \
+#define PERIDEAL_INSTANTIATE(dim)                                                       \
+  template void FEMOperator<dim>::add_side_and_source_heat(const Vector &,              \
+                                                           const double,                \
+                                                           Balance &) const;            \
+  template struct FEMOperator<dim>::CellData;                                           \
+  template void   FEMOperator<dim>::fill();                                             \
+  template void   FEMOperator<dim>::find_cut_cells();                                   \
+  template double FEMOperator<dim>::kept_fraction(                                      \
+    const typename DoFHandler<dim>::active_cell_iterator &,                             \
+    const unsigned int,                                                                 \
+    const unsigned int,                                                                 \
+    std::vector<std::pair<unsigned int, int>> *) const;                                 \
+  template bool FEMOperator<dim>::assemble_whole_cell(                                  \
+    const typename DoFHandler<dim>::active_cell_iterator &,                             \
+    CellData &,                                                                         \
+    const bool) const;                                                                  \
+  template void FEMOperator<dim>::assemble_cell(                                        \
+    const typename DoFHandler<dim>::active_cell_iterator &,                             \
+    CellData &,                                                                         \
+    const bool) const;                                                                  \
+  template void FEMOperator<dim>::find_crack_factors();                                 \
+  template void FEMOperator<dim>::find_crack_factors(const std::vector<Cell> &,         \
+                                                     const std::vector<unsigned int> &, \
+                                                     FactorData &);                     \
+  template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                \
+  template void FEMOperator<dim>::check_material() const;                               \
+  template void FEMOperator<dim>::assemble();                                           \
   template void FEMOperator<dim>::assemble_loads(Vector &, const double) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

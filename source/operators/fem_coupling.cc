@@ -9,8 +9,8 @@
 
 #include <perideal/base/matrix_rows.h>
 #include <perideal/operators/fem_operator.h>
+#include <perideal/operators/spectrum.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -231,26 +231,13 @@ namespace PeriDeal
   template <int dim>
   double FEMOperator<dim>::lowest_remainder() const
   {
-    CellData       &data   = *cell_data;
-    double          lowest = std::numeric_limits<double>::max();
-    const auto      n      = data.indices.size();
-    Eigen::MatrixXd matrix(n, n);
+    CellData &data   = *cell_data;
+    double    lowest = std::numeric_limits<double>::max();
     for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          if (!assemble_whole_cell(cell, data))
-            continue;
-          for (unsigned int a = 0; a < n; ++a)
-            for (unsigned int b = 0; b < n; ++b)
-              matrix(a, b) = data.stiffness(a, b);
-          const double scale = center_conductivity(cell) * std::pow(cell->measure(), 1. - 2. / dim);
-          lowest =
-            std::min(lowest,
-                     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
-                         .eigenvalues()
-                         .minCoeff() /
-                       scale);
-        }
+      if (cell->is_locally_owned() && assemble_whole_cell(cell, data))
+        lowest = std::min(lowest,
+                          lowest_eigenvalue(data.stiffness) /
+                            (center_conductivity(cell) * std::pow(cell->measure(), 1. - 2. / dim)));
     return Utilities::MPI::min(lowest, dofs.get_communicator());
   }
 

@@ -7,6 +7,7 @@
 
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
+#include <perideal/mesh/cut_cells.h>
 #include <perideal/operators/fem_operator.h>
 #include <perideal/operators/spectrum.h>
 
@@ -132,7 +133,7 @@ namespace PeriDeal
     cracks       = make_crack_geometries(history.pieces(time));
     transmission = history.transmission(time);
     for (const Cell &cell : near)
-      cut[cell->active_cell_index()] = is_cut(cell);
+      cut[cell->active_cell_index()] = is_cut(cell, cracks);
     if (scaled)
       find_crack_factors(near, owned_unknowns_of(cells_near(cuts, joins, 0.)), event->factors);
     const auto &layout = *capacity.get_partitioner();

@@ -3,6 +3,7 @@
 
 #include <perideal/operators/spectrum.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -68,6 +69,18 @@ namespace PeriDeal
       return margin * largest;
     }
   } // namespace
+
+
+  double lowest_eigenvalue(const dealii::FullMatrix<double> &matrix)
+  {
+    Eigen::MatrixXd copy(matrix.m(), matrix.n());
+    for (unsigned int i = 0; i < matrix.m(); ++i)
+      for (unsigned int j = 0; j < matrix.n(); ++j)
+        copy(i, j) = matrix(i, j);
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(copy, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .minCoeff();
+  }
 
 
   double round_up(const double x)

@@ -190,18 +190,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  double StateOperator<dim>::scaled_bound() const
-  {
-    return sharp_bound(
-      *this,
-      std::numeric_limits<double>::max(),
-      [&](Vector &vector) { fill_noise(vector); },
-      0.,
-      &stiffness_diagonal);
-  }
-
-
-  template <int dim>
   void StateOperator<dim>::fill_noise(Vector &vector) const
   {
     const Nodes<dim> &nodes = bonds.nodes();
@@ -224,7 +212,6 @@ namespace PeriDeal
   template void           StateOperator<dim>::add_geometric_forces(Vector &, const Vector &) const;  \
   template void           StateOperator<dim>::damping_force(Vector &, const Vector &) const;         \
   template double         StateOperator<dim>::damping_bound() const;                                 \
-  template double         StateOperator<dim>::scaled_bound() const;                                  \
   template void           StateOperator<dim>::fill_noise(Vector &) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -16,6 +16,7 @@
 
 #include "elastic_phases.h"
 #include "elastic_summary.h"
+#include "point_readers.h"
 #include "result_record.h"
 #include "summary_parts.h"
 
@@ -164,16 +165,9 @@ namespace PeriDeal
                          const std::string                                 &entry,
                          std::vector<std::unique_ptr<PointEvaluator<dim>>> &readers,
                          PointTable                                        &table) {
-      if (points.empty())
-        return;
       if (readers.empty())
-        for (const auto &model : models)
-          readers.push_back(std::make_unique<PointEvaluator<dim>>(model->dofs(),
-                                                                  model->nodes(),
-                                                                  scene.cracks,
-                                                                  points,
-                                                                  entry));
-      for (unsigned int k = 0; k < models.size(); ++k)
+        readers = make_point_readers<dim>(models, scene.cracks, points, entry);
+      for (unsigned int k = 0; k < readers.size(); ++k)
         table.add(t, models[k]->name(), models[k]->at_points(*readers[k], points));
     };
     add(scene.output.probes, "Probes", probe_readers, probes);

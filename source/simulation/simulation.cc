@@ -17,6 +17,7 @@
 #include <sstream>
 
 #include "effective_conductivity.h"
+#include "point_readers.h"
 #include "result_record.h"
 #include "summary_parts.h"
 
@@ -196,23 +197,9 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::make_readers()
   {
-    probe_readers.clear();
-    line_readers.clear();
-    grid_readers.clear();
-    const auto make =
-      [&](const std::vector<std::vector<double>> &points, const std::string &entry, auto &readers) {
-        if (!points.empty())
-          for (const auto &model : models)
-            readers.push_back(std::make_unique<PointEvaluator<dim>>(model->dofs(),
-                                                                    model->nodes(),
-                                                                    scene.cracks,
-                                                                    points,
-                                                                    entry));
-      };
-    make(scene.output.probes, "Probes", probe_readers);
-    make(scene.output.line, "Line", line_readers);
-    make(scene.output.grid, "Grid", grid_readers);
-    readers_fit = true;
+    probe_readers = make_point_readers<dim>(models, scene.cracks, scene.output.probes, "Probes");
+    line_readers  = make_point_readers<dim>(models, scene.cracks, scene.output.line, "Line");
+    grid_readers  = make_point_readers<dim>(models, scene.cracks, scene.output.grid, "Grid");
   }
 
 

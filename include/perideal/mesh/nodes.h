@@ -11,6 +11,7 @@
 #include <perideal/scene/cracks.h>
 #include <perideal/scene/domain.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <unordered_map>
@@ -100,6 +101,9 @@ namespace PeriDeal
 
     /** Owned nodes and halo, for vectors. Valid after set_ghosts(). */
     const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &partitioner() const;
+
+    /** Share of the body's volume that owned nodes have for which the test, of their local number, holds. Collective. */
+    double volume_share(const std::function<bool(const unsigned int)> &holds) const;
 
     /** Bytes held, for the report. */
     std::size_t memory_consumption() const;

@@ -65,7 +65,6 @@ namespace PeriDeal
     void                multiply(Vector &y, const Vector &x) const override;
     void                unbalanced(Vector &r, const Vector &u, const double t) const override;
     void                mechanical_loads(Vector &loads, const double t) const override;
-    double              scaled_bound() const override;
 
     /** Place of a node of this process, by local number. */
     const dealii::Point<dim> &position(const unsigned int node) const;
@@ -91,6 +90,9 @@ namespace PeriDeal
     /** Lowest eigenvalue of what the coupling leaves of any cell, in units of its shear modulus times h^(dim-2). Collective. */
     double lowest_remainder() const;
 
+  protected:
+    void fill_noise(Vector &vector) const override;
+
   private:
     struct CellData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
@@ -106,10 +108,12 @@ namespace PeriDeal
     void   add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
     void   add_thermal_bonds();
     void   count_bonds();
+    double bond_factor(const unsigned int i, const unsigned int j) const;
     double thermal_strain(const dealii::Point<dim> &p) const;
     void   throw_if_isolated() const;
     void   assemble_loads(Vector &loads, const double t) const;
-    void   fill_noise(Vector &vector) const;
+    template <typename Visit>
+    void for_each_own_cell(const Visit &visit) const;
     template <typename Visit>
     void for_each_load(const double t, const Visit &visit) const;
 

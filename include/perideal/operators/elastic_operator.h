@@ -66,7 +66,7 @@ namespace PeriDeal
     }
 
     /** At least (as sharp_bound() is) the largest eigenvalue of diag(K)^{-1} K. Collective. */
-    virtual double scaled_bound() const = 0;
+    double scaled_bound() const;
 
     /** The forces are not linear in the displacement. Not collective. */
     virtual bool nonlinear() const
@@ -92,5 +92,9 @@ namespace PeriDeal
       y = x;
       y.scale(lumped_capacity());
     }
+
+  protected:
+    /** Numbers that look random but depend on the unknowns' places alone. Not collective. */
+    virtual void fill_noise(Vector &vector) const = 0;
   };
 } // namespace PeriDeal

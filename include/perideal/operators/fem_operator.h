@@ -171,7 +171,6 @@ namespace PeriDeal
     void     add_bond_heat(const Vector &u, Balance &balance) const;
     void     count_bonds() const;
     void     find_cut_cells();
-    bool     is_cut(const Cell &cell) const;
     double   kept_fraction(const Cell                                &cell,
                            const unsigned int                         a,
                            const unsigned int                         b,

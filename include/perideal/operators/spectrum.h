@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <deal.II/lac/full_matrix.h>
+
 #include <perideal/operators/operator.h>
 
 #include <functional>
@@ -22,6 +24,9 @@ namespace PeriDeal
                      const std::function<void(Vector &vector)> &fill,
                      const double                               enough = 0.,
                      const Vector                              *metric = nullptr);
+
+  /** Of a symmetric matrix. Not collective. */
+  double lowest_eigenvalue(const dealii::FullMatrix<double> &matrix);
 
   /** The number rounded up to three significant digits. */
   double round_up(const double x);

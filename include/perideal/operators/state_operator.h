@@ -68,7 +68,6 @@ namespace PeriDeal
     void                mechanical_loads(Vector &loads, const double t) const override;
     void                damping_force(Vector &y, const Vector &v) const override;
     double              damping_bound() const override;
-    double              scaled_bound() const override;
     bool                nonlinear() const override;
     void                linearize(const Vector &u) override;
 
@@ -83,6 +82,9 @@ namespace PeriDeal
      * strain Green's, (F^T F - I)/2. Collective.
      */
     NodalTensors<dim> tensors(const Vector &u) const;
+
+  protected:
+    void fill_noise(Vector &vector) const override;
 
   private:
     struct NodeLaw
@@ -104,7 +106,6 @@ namespace PeriDeal
     void find_deformed_dilatation_forces(const Vector &u) const;
     void sum_deformed_forces(Vector &y, const Vector &u) const;
     void find_forces(Vector &y, const Vector &u) const;
-    void fill_noise(Vector &vector) const;
 
     /** xi + u_j - u_i. */
     dealii::Tensor<1, dim> deformed_bond(const double      *u,
