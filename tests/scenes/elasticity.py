@@ -19,7 +19,7 @@ QUIET = {"Output/Fields": "none", "Solver/Tolerance": "1e-12"}
 
 
 def run_quietly(name, more=None):
-    return run_scene(f"prm/elasticity/{name}.prm", {**QUIET, **(more or {})})
+    return run_scene(f"prm/elasticity/{name}", {**QUIET, **(more or {})})
 
 
 def balanced(table, run):
@@ -39,8 +39,8 @@ def young_and_poisson(run, model, dim):
 def bars():
     """Tension in one, two and three dimensions."""
     table = Comparison("Bars in tension, E = 200, nu = 0.3, stress 1")
-    run = run_quietly("bar_1d")
-    ends = [r.probe(PD, [1], column="ux") / 5e-3 - 1 for r in (run, run_quietly("bar_1d", {"Domain/Cells": "200"}))]
+    run = run_quietly("bar_1d.prm")
+    ends = [r.probe(PD, [1], column="ux") / 5e-3 - 1 for r in (run, run_quietly("bar_1d.prm", {"Domain/Cells": "200"}))]
     table.add("1D, FEM: end displacement", run.probe(FEM, [1], column="ux"), 5e-3, relative=1e-11)
     table.add("1D, PD: strain in the middle", (run.probe(PD, [0.75], column="ux") - run.probe(PD, [0.25], column="ux")) / 0.5, 5e-3, relative=1e-10)
     table.add("1D, PD: stress in the middle", run.probe(PD, [0.75], column="sxx"), 1, relative=1e-10)
@@ -48,7 +48,7 @@ def bars():
     table.add("1D, PD: ratio of the excess on cells of half the size", ends[0] / ends[1], 2, relative=1e-6)
     balanced(table, run)
     # Moduli inside; measured: 1.1 % and 0.005, 0.8 % and 0.0033; on a full lattice 1.0102 E, 0.2929 and 1.0056 E, 0.2989.
-    for name, dim, of_young, of_poisson in (("bar_2d", 2, 0.016, 0.008), ("bar_3d", 3, 0.012, 0.005)):
+    for name, dim, of_young, of_poisson in (("bar_2d.prm", 2, 0.016, 0.008), ("bar_3d.prm", 3, 0.012, 0.005)):
         run = run_quietly(name)
         far = [2, 1, 1][:dim]
         for column, value in zip(("ux", "uy", "uz"), (0.01, -0.0015, -0.0015)[:dim]):
@@ -93,7 +93,7 @@ def cells():
     """Cells of ratio 3 : 1 either way: moduli of the bulk are those of the lattice sum, and alike in both directions."""
     table = Comparison("Plate in tension on cells of ratio 3 : 1")
     for number, spacing in (("40, 60", (0.05, 1 / 60)), ("120, 20", (1 / 60, 0.05))):
-        run = run_quietly("bar_2d", {"Models": PD, "Domain/Cells": number, "Peridynamics/Horizon": "0.15", "Peridynamics/Horizon ratio": "3", "Peridynamics/Kernel exponent": "2"})
+        run = run_quietly("bar_2d.prm", {"Models": PD, "Domain/Cells": number, "Peridynamics/Horizon": "0.15", "Peridynamics/Horizon ratio": "3", "Peridynamics/Kernel exponent": "2"})
         young, poisson = young_and_poisson(run, PD, 2)
         wanted = lattice_moduli(spacing, 0.15, 2)
         # Measured: 0.2 % and 0.004, what the sides still do between the probes.
@@ -106,20 +106,20 @@ def cells():
 def plates():
     """A hole against Kirsch, a cantilever against Timoshenko's beam."""
     table = Comparison("Plates against closed forms")
-    run = run_quietly("hole_in_tension")
+    run = run_quietly("hole_in_tension.prm")
     # Measured: finite elements 1.0, 4.3, 2.6, 1.5 %; peridynamics 0.3, 0.3 and 0.5 % away from the hole, 13.5 % at the second row above it.
     for model, bounds in ((FEM, (0.015, 0.064, 0.04, 0.023)), (PD, (0.2, 0.0045, 0.0045, 0.0075))):
         for row, bound in zip(run.rows(model), bounds):
             r2 = row["x"] ** 2 + row["y"] ** 2
             table.add(f"hole, {model}: sxx at y = {row['y']}", row["sxx"], 1 + 0.5 / r2 + 1.5 / r2 ** 2, relative=bound)
     balanced(table, run)
-    run = run_quietly("cantilever")
+    run = run_quietly("cantilever.prm")
     beam = 40 + 1.2 * 10 / (100 / 2.6)
     table.add("cantilever, quadratic elements: end", run.probe(FEM, (10, 0), column="uy"), beam, relative=2.8e-3)  # measured: 1.8e-3
     balanced(table, run)
-    linear = run_quietly("cantilever", {"Models": FEM, "Finite elements/Degree": 1}).probe(FEM, (10, 0), column="uy")
+    linear = run_quietly("cantilever.prm", {"Models": FEM, "Finite elements/Degree": 1}).probe(FEM, (10, 0), column="uy")
     table.add("cantilever, bilinear elements: end", linear, beam, relative=0.0105)  # measured: 7.0e-3
-    fine = run_quietly("cantilever", {"Models": PD, "Domain/Cells": "400, 40"}).probe(PD, (10, 0), column="uy")
+    fine = run_quietly("cantilever.prm", {"Models": PD, "Domain/Cells": "400, 40"}).probe(PD, (10, 0), column="uy")
     # Measured: 7.5 % and, on cells of a quarter, 4.6 % too stiff.
     table.add("cantilever, peridynamics: end", run.probe(PD, (10, 0), column="uy"), beam, relative=0.113)
     table.add("cantilever, peridynamics, 40 cells high: end", fine, beam, relative=0.07)
@@ -133,7 +133,7 @@ def crack():
     shape = -0.071 - 0.535 * a + 0.169 * a ** 2 + 0.02 * a ** 3 - 1.071 / a * math.log(1 - a)
     # Measured: finite elements -2.4 and -1.6 %, peridynamics 1.8 and 0.3 %.
     for number, bounds in (("40, 200", (0.036, 0.027)), ("80, 400", (0.024, 0.0045))):
-        run = run_quietly("crack_in_tension", {"Domain/Cells": number})
+        run = run_quietly("crack_in_tension.prm", {"Domain/Cells": number})
         for model, bound in zip((FEM, PD), bounds):
             stress = run.model(model)["boundary force"]["top"][1]
             above, below = (run.probe(model, (0, y), column="uy") for y in (1e-6, -1e-6))
@@ -149,8 +149,8 @@ def thermal():
     table = Comparison("Layers under a change of temperature")
     m, n = 1, 2  # thicknesses, Young's moduli
     curvature = -6 * 2e-3 * (1 + m) ** 2 / (3 * (1 + m) ** 2 + (1 + m * n) * (m * m + 1 / (m * n)))
-    run = run_quietly("bimetal")
-    fine = run_quietly("bimetal", {"Models": PD, "Domain/Cells": "320, 40"})
+    run = run_quietly("bimetal.prm")
+    fine = run_quietly("bimetal.prm", {"Models": PD, "Domain/Cells": "320, 40"})
     # Measured: 1.5e-6, 2.8 % and 1.9 %.
     for what, r, model, bound in (("finite elements", run, FEM, 2.3e-6), ("peridynamics", run, PD, 0.042), ("peridynamics, 40 cells high", fine, PD, 0.028)):
         u = {round(row["x"], 6): row["uy"] for row in r.rows(model, table="line.csv")}
@@ -160,7 +160,7 @@ def thermal():
     held = [1e5 * 300 * 5e-6, 5e4 * 300 * 2e-5]
     # Measured, share of the largest: finite elements 3.9e-5 and 1e-13; peridynamics 2.8 %, with cells of half the size 1.6 %; 0.8 % between rigid sides.
     for more, wanted, bounds in (({}, free, (6e-5, 0.042)), ({"Domain/Cells": "360, 60"}, free, (6e-5, 0.024)), ({"Boundary conditions/Displacement": "right: 0, free"}, held, (1e-10, 0.012))):
-        run = run_quietly("laminate", more)
+        run = run_quietly("laminate.prm", more)
         for model, bound in zip((FEM, PD), bounds):
             for row, value, layer in zip(run.rows(model), wanted, ("core", "face")):
                 table.add(f"laminate {more or ''}, {model}: sxx in the {layer}", row["sxx"], value, absolute=bound * max(map(abs, wanted)))
@@ -179,7 +179,7 @@ def torsion():
     shear = 0.8 * (1 - 8 / math.pi ** 2 * sum(1 / (n * n * math.cosh(n * math.pi / 2)) for n in odd))
     # Measured: torque 1.52e-3 and 3.8e-4, stress -1.01e-3 and -2.5e-4; peridynamics -7.1 and -3.5 % of the torque.
     for n, of_torque, of_stress, of_bonds in ((12, 2.3e-3, 1.5e-3, 0.107), (24, 5.8e-4, 3.8e-4, 0.053)):
-        run = run_quietly("torsion", {"Domain/Cells": f"{n}, {n}, {n}"})
+        run = run_quietly("torsion.prm", {"Domain/Cells": f"{n}, {n}, {n}"})
         torque = {model: 8 * run.model(model)["strain energy"] / 0.005 for model in (FEM, PD)}
         table.add(f"{n} cells, FEM: torque", torque[FEM], moment, relative=of_torque)
         table.add(f"{n} cells, FEM: largest shear stress", run.probe(FEM, (0.5, 0, 0.25), column="syz"), shear, relative=of_stress)
@@ -190,9 +190,9 @@ def torsion():
 def notes():
     """What a run says of bonds alone, and what it refuses."""
     bonds = {"Models": PD, "Elasticity/Model": "bond-based"}
-    run = run_quietly("bar_2d", bonds)
+    run = run_quietly("bar_2d.prm", bonds)
     check(any("bond-based" in note and "0.333" in note and "0.3:" in note for note in run.summary["notes"]), f"no note on Poisson's ratio: {run.summary['notes']}")
-    run = run_quietly("bar_2d", {**bonds, "Material/Poisson ratio": "1/3"})
+    run = run_quietly("bar_2d.prm", {**bonds, "Material/Poisson ratio": "1/3"})
     check(not any("bond-based" in note for note in run.summary["notes"]), f"a note on the right Poisson's ratio: {run.summary['notes']}")
     run = run_scene("prm/elasticity/bar_2d.prm", {**QUIET, "Peridynamics/Calibration": "analytic"}, expect_error=True)
     check_message(run, "Calibration", "Leave the entry out")
@@ -202,8 +202,8 @@ def notes():
 
 def ranks():
     """The same on two processes: doubled vertices, three dimensions, a mesh from a file with a plane of symmetry."""
-    for name in ("elasticity/crack_in_tension", "elasticity/torsion", "papers/le_2014/example_1_elements"):
-        alone, two = (run_scene(f"prm/{name}.prm", QUIET, ranks=n) for n in (1, 2))
+    for name in ("elasticity/crack_in_tension.prm", "elasticity/torsion.prm", "papers/le_2014/example_1_elements.prm"):
+        alone, two = (run_scene(f"prm/{name}", QUIET, ranks=n) for n in (1, 2))
         for columns in (("ux", "uy"), ("sxx", "syy", "sxy", "von_mises")):
             a, b = ([row[c] for row in run.probes for c in columns] for run in (alone, two))
             check_close(b, a, relative=1.7e-11, what=f"{name}: {', '.join(columns)} on two processes")  # measured: 1.1e-11; solvers stop at 1e-12
