@@ -47,9 +47,18 @@ namespace PeriDeal
     weighted.reinit(nodes.partitioner());
     find_laws();
     store_bonds();
+    find_critical_stretches();
     find_diagonal();
+    find_thermal_loads();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_thermal_loads()
+  {
     if (any_thermal && !full) // with full kinematics it is in the extensions
       {
+        scratch = 0.;
         sum_forces(thermal_loads, scratch, true);
         thermal_loads *= -1.;
       }

@@ -43,6 +43,11 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           stiffness_diagonal.local_element(dim * i + d) = diagonal[d] + factor[i] * sum[d] * sum[d];
       }
+    // Nodes without bonds, all of them broken: any positive number.
+    for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
+      if (!(stiffness_diagonal.local_element(i) > 0.))
+        stiffness_diagonal.local_element(i) =
+          laws[i / dim].law.extension * std::pow(nodes.volume(i / dim), 1. - 2. / dim);
     conditions->mask(stiffness_diagonal, 1.);
   }
 
@@ -175,7 +180,9 @@ namespace PeriDeal
             else
               stress += force * outer_product(xi, xi);
           }
-        const Tensor<2, dim> slopes = gradient * invert(shape);
+        // Few bonds may be left, or none.
+        const bool           held = determinant(shape) > 1e-12 * std::pow(trace(shape) / dim, dim);
+        const Tensor<2, dim> slopes = held ? gradient * invert(shape) : Tensor<2, dim>();
         result.strain[i]            = symmetrize(slopes);
         result.stress[i]            = symmetrize(stress) / nodes.volume(i);
         if (!full)
@@ -211,7 +218,7 @@ namespace PeriDeal
         for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
           {
             const Tensor<1, dim> xi = bonds.bond_vector(i, neighbors[k]);
-            if (!is_near(i, xi) && !is_near(neighbors[k], xi))
+            if (springs[k] == 0. || (!is_near(i, xi) && !is_near(neighbors[k], xi)))
               continue;
             near.push_back(k);
             sums.local_element(i) += nodes.volume(neighbors[k]) * xi.norm_square();
@@ -279,7 +286,7 @@ namespace PeriDeal
             add(j, -block);
           }
         for (unsigned int d = 0; d < dim; ++d) // a node that springs alone would not hold
-          own[d][d] += 1e-8 * stiffness_diagonal.local_element(dim * i + d);
+          own[d][d] += (own[d][d] > 0. ? 1e-8 : 1.) * stiffness_diagonal.local_element(dim * i + d);
         add(i, own);
       }
     matrix.compress(VectorOperation::insert);

@@ -119,6 +119,12 @@ namespace PeriDeal
     };
     row("kinetic energy", energy.kinetic);
     row("work of loads and supports", energy.work);
+    if (model.op().brittle())
+      {
+        row("energy released by broken bonds", energy.released);
+        row("broken bonds", static_cast<double>(model.op().n_broken_bonds()));
+        balance["released"] = energy.released;
+      }
     row("energy imbalance", energy.imbalance());
     return balance;
   }

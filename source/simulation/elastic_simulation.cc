@@ -70,8 +70,9 @@ namespace PeriDeal
         scene.boundary_conditions.traction_layer < 0.,
         "'Traction layer' in section 'Boundary conditions' cannot be used yet; leave it empty.");
       require(
-        !scene.material.fracture_energy && !scene.material.critical_stretch,
-        "'Fracture energy' and 'Critical stretch' in section 'Material' cannot be used yet; leave them empty.");
+        (!scene.material.fracture_energy && !scene.material.critical_stretch) ||
+          scene.elasticity.solver == ElasticSolver::dynamics,
+        "'Fracture energy' and 'Critical stretch' in section 'Material' are for 'Solver = dynamics' (section 'Elasticity') so far.");
       require(scene.reference.solution.empty(),
               "'Solution' in section 'Reference' cannot be used with 'Physics = elasticity' yet.");
     }

@@ -110,6 +110,11 @@ namespace PeriDeal
         list.add_stress(nodal_stress(tensors));
         list.add_strain(tensors.strain);
         list.add("dilatation", [&](const unsigned int i) { return theta[i]; });
+        if (states->brittle() || !scene.cracks.cracks.empty())
+          {
+            const std::vector<double> damage = states->damage();
+            list.add("damage", [&](const unsigned int i) { return damage[i]; });
+          }
         list.add("node_volume", [&](const unsigned int i) { return node_set->volume(i); });
         return list.take();
       }

@@ -62,9 +62,10 @@ namespace PeriDeal
   MotionEnergy MotionStepper::energy(const Vector &u, const Vector &v) const
   {
     MotionEnergy result;
-    result.kinetic = kinetic_energy(v, false);
-    result.strain  = op.energy(u);
-    result.start   = started ? start : result.kinetic + result.strain;
+    result.kinetic  = kinetic_energy(v, false);
+    result.strain   = op.energy(u);
+    result.released = op.released_energy();
+    result.start    = started ? start : result.kinetic + result.strain;
     // What supports give to the nodes that they hold themselves.
     result.work = started ? work + kinetic_energy(v, true) - support_start : 0.;
     return result;

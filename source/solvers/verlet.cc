@@ -29,6 +29,7 @@ namespace PeriDeal
         v.add(0.5 * dt, acceleration);
         u.add(dt, v);
         op.distribute(u, t + dt);
+        op.break_bonds(u);
         op.unbalanced(unbalanced, u, t + dt);
         accelerate(acceleration, unbalanced);
         v.add(0.5 * dt, acceleration);

@@ -77,6 +77,32 @@ namespace PeriDeal
     /** Make K the tangent at u. Collective. */
     virtual void linearize(const Vector &) {}
 
+    /** Bonds of the body may break. Not collective. */
+    virtual bool brittle() const
+    {
+      return false;
+    }
+
+    /**
+     * Break for good what is stretched too far at u, which must have been through distribute(). Returns how many bonds; K and its diagonal have changed if any, and
+     * its spectrum has not grown. Collective.
+     */
+    virtual unsigned long long break_bonds(const Vector &)
+    {
+      return 0;
+    }
+
+    /** Strain energy that broken bonds have released so far. Not collective. */
+    virtual double released_energy() const
+    {
+      return 0.;
+    }
+
+    virtual unsigned long long n_broken_bonds() const
+    {
+      return 0;
+    }
+
     bool symmetric() const override
     {
       return true;

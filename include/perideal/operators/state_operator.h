@@ -35,6 +35,10 @@ namespace PeriDeal
    * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a rotation makes none. q is that of the undeformed body. The tangent
    * of linearize() has W x Y/|Y| in the place of W xi, and across the bond the stiffness force/|Y|.
    *
+   * Bonds break for good at a stretch e/x of the material's critical value, of its smaller one at both ends. It is given, or follows from the fracture energy G_0: with each bond
+   * that crosses a plane the pair has stored (b/q) W e^2 at the stretch s, hence G_0 = s^2 b/q sum over half the family of omega f V xi_n x^2 (the sums are those of the full family on the lattice,
+   * the mean over the axes n; the share of the dilatations, none at the Poisson ratio of bonds alone, is left out). q stays that of the body before.
+   *
    * Viscosity is in the bonds and parallel to them (Le 2014 eq 2.43): D is K without the dilatations.
    */
   template <int dim>
@@ -70,8 +74,15 @@ namespace PeriDeal
     double              damping_bound() const override;
     bool                nonlinear() const override;
     void                linearize(const Vector &u) override;
+    bool                brittle() const override;
+    unsigned long long  break_bonds(const Vector &u) override;
+    double              released_energy() const override;
+    unsigned long long  n_broken_bonds() const override;
 
     const Families<dim> &families() const;
+
+    /** 1 - the sum of the volumes of neighbours over unbroken bonds over that of the whole family, at the owned nodes; bonds that cracks of the scene cut count as broken. */
+    std::vector<double> damage() const;
 
     /** theta at the owned nodes, thermal extension taken off. Collective. */
     void dilatations(const Vector &u, std::vector<double> &theta) const;
@@ -96,6 +107,7 @@ namespace PeriDeal
     void find_laws();
     void store_bonds();
     void find_thermal_loads();
+    void find_critical_stretches();
     void find_diagonal();
     void find_loads(Vector &loads, const double t) const;
     template <typename Visit>
@@ -127,12 +139,15 @@ namespace PeriDeal
     std::vector<double>                 springs; // (b_i/q_i + b_j/q_j)/(W x^2)
     std::vector<double>                 lengths,
       across; // full kinematics: W x, and the tangent's stiffness across the bond
-    bool           full       = false;
-    bool           volumetric = false, any_thermal = false, several_phases = false;
-    double         n_bonds = 0.;
-    Vector         mass, stiffness_diagonal, thermal_loads, constant_loads;
-    double         thermal_energy = 0.;
-    bool           loads_vary     = false;
-    mutable Vector scratch, source, tau; // tau_i = c_i theta_i/q_i
+    bool                     full       = false;
+    bool                     volumetric = false, any_thermal = false, several_phases = false;
+    double                   n_bonds = 0., released = 0.;
+    unsigned long long       n_broken = 0;
+    std::vector<double>      critical; // stretch, of owned nodes and ghosts; empty: nothing breaks
+    std::vector<std::size_t> breaking; // bonds, by place
+    Vector                   mass, stiffness_diagonal, thermal_loads, constant_loads;
+    double                   thermal_energy = 0.;
+    bool                     loads_vary     = false;
+    mutable Vector           scratch, source, tau; // tau_i = c_i theta_i/q_i
   };
 } // namespace PeriDeal

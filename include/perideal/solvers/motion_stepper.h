@@ -16,13 +16,14 @@ namespace PeriDeal
   struct MotionEnergy
   {
     double kinetic = 0., strain = 0.;
-    double start = 0.; // kinetic and strain energy at the start
-    double work  = 0.; // of loads and supports since then
+    double start    = 0.; // kinetic and strain energy at the start
+    double work     = 0.; // of loads and supports since then
+    double released = 0.; // by broken bonds since then
 
     /** What has come from nowhere: of order dt^2 with `verlet`, round-off of the linear solver with `newmark` and linear kinematics. */
     double imbalance() const
     {
-      return kinetic + strain - start - work;
+      return kinetic + strain + released - start - work;
     }
   };
 

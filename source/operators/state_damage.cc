@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Bonds that break.
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/operators/state_operator.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** q/(sum over half the family of omega f V xi_n x^2) of the full family of a lattice, mean over the axes n: one over a length. */
+    template <int dim>
+    double crossing_ratio(const Families<dim> &bonds)
+    {
+      const Tensor<1, dim> &spacing = bonds.nodes().lattice()->spacing;
+      double                q = 0., crossing = 0.;
+      for (const FamilyMember<dim> &member : bonds.lattice_members())
+        {
+          q += member.weight * member.r * member.r;
+          for (unsigned int d = 0; d < dim; ++d)
+            crossing += std::max(0., member.offset[d] * spacing[d]) / dim * member.weight *
+                        member.r * member.r;
+        }
+      return q / crossing;
+    }
+  } // namespace
+
+
+  template <int dim>
+  void StateOperator<dim>::find_critical_stretches()
+  {
+    const Material &material = scene.material;
+    if (!material.fracture_energy && !material.critical_stretch)
+      return;
+    const Nodes<dim> &nodes = bonds.nodes();
+    AssertThrow(
+      material.critical_stretch || nodes.lattice().has_value(),
+      UserError(
+        "'Fracture energy' in section 'Material': the stretch at which bonds break follows from it on a lattice only. Give 'Critical "
+        "stretch' for 'Shape = mesh file'."));
+    const double ratio = material.critical_stretch ? 0. : crossing_ratio(bonds);
+    std::string  message;
+    critical.resize(nodes.n_local());
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      {
+        const Point<dim> &p = nodes.position(i);
+        critical[i] =
+          material.critical_stretch ?
+            material.critical_stretch->value(p) :
+            std::sqrt(material.fracture_energy->value(p) * ratio / laws[i].law.extension);
+        if (message.empty() && !(critical[i] > 0.))
+          {
+            std::ostringstream where;
+            where << "'" << (material.critical_stretch ? "Critical stretch" : "Fracture energy")
+                  << "' in section 'Material' is not positive at (" << p << ").";
+            message = where.str();
+          }
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+  }
+
+
+  template <int dim>
+  bool StateOperator<dim>::brittle() const
+  {
+    return !critical.empty();
+  }
+
+
+  template <int dim>
+  unsigned long long StateOperator<dim>::break_bonds(const Vector &u)
+  {
+    if (critical.empty())
+      return 0;
+    const Nodes<dim> &nodes = bonds.nodes();
+    u.update_ghost_values();
+    breaking.clear();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const double own = laws[i].law.extension / weighted.local_element(i);
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            // W x e times (b_i/q_i + b_j/q_j)/(W x^2); the same digits at both ends of a bond.
+            const unsigned int j     = neighbors[k];
+            const double       other = laws[j].law.extension / weighted.local_element(j);
+            if (springs[k] * extension_moment(u.begin(), i, k) >
+                (own + other) * std::min(critical[i], critical[j]))
+              breaking.push_back(k);
+          }
+      }
+    u.set_ghost_state(false);
+    const unsigned long long n_ends =
+      Utilities::MPI::sum(static_cast<unsigned long long>(breaking.size()), nodes.communicator());
+    if (n_ends == 0)
+      return 0;
+    const double before = energy(u);
+    for (const std::size_t k : breaking)
+      {
+        springs[k] = 0.;
+        moments[k] = Tensor<1, dim>();
+        if (full)
+          lengths[k] = across[k] = 0.;
+      }
+    released += before - energy(u);
+    n_bonds -= 0.5 * breaking.size();
+    n_broken += n_ends / 2;
+    find_diagonal();
+    if (any_thermal)
+      find_thermal_loads();
+    return n_ends / 2;
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::released_energy() const
+  {
+    return released;
+  }
+
+
+  template <int dim>
+  unsigned long long StateOperator<dim>::n_broken_bonds() const
+  {
+    return n_broken;
+  }
+
+
+  template <int dim>
+  std::vector<double> StateOperator<dim>::damage() const
+  {
+    const Nodes<dim>                         &nodes = bonds.nodes();
+    std::vector<typename Families<dim>::Bond> family;
+    std::vector<double>                       result(nodes.n_owned());
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        // Bonds are stored in the order of the family, those that cracks cut left out.
+        bonds.bonds_of(i, family, false);
+        double      all = 0., left = 0.;
+        std::size_t k = starts[i];
+        for (const auto &bond : family)
+          {
+            const double volume = nodes.volume(bond.neighbor);
+            all += volume;
+            if (bond.cut || bond.intact == 0.)
+              continue;
+            left += springs[k] > 0. ? volume : 0.;
+            ++k;
+          }
+        result[i] = all > 0. ? 1. - left / all : 0.;
+      }
+    return result;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                               \
+  template void                StateOperator<dim>::find_critical_stretches();   \
+  template bool                StateOperator<dim>::brittle() const;             \
+  template unsigned long long  StateOperator<dim>::break_bonds(const Vector &); \
+  template double              StateOperator<dim>::released_energy() const;     \
+  template unsigned long long  StateOperator<dim>::n_broken_bonds() const;      \
+  template std::vector<double> StateOperator<dim>::damage() const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
