@@ -18,20 +18,38 @@ namespace PeriDeal
 
   namespace
   {
-    /** q/(sum over half the family of omega f V xi_n x^2) of the full family of a lattice, mean over the axes n: one over a length. */
+    /** What a plane through the full family of a lattice cuts, mean over its normals along the axes n; lengths. */
+    struct CrossingSums
+    {
+      double bonds = 0.; // sum over half the family of omega f V xi_n x^2, over q
+      double dilatations =
+        0.; // h_n times the sum over the layers of nodes on one side of (sum over what crosses of omega f V x^2, over q)^2
+    };
+
     template <int dim>
-    double crossing_ratio(const Families<dim> &bonds)
+    CrossingSums crossing_sums(const Families<dim> &bonds)
     {
       const Tensor<1, dim> &spacing = bonds.nodes().lattice()->spacing;
-      double                q = 0., crossing = 0.;
+      double                q       = 0.;
       for (const FamilyMember<dim> &member : bonds.lattice_members())
+        q += member.weight * member.r * member.r;
+      CrossingSums sums;
+      for (unsigned int d = 0; d < dim; ++d)
         {
-          q += member.weight * member.r * member.r;
-          for (unsigned int d = 0; d < dim; ++d)
-            crossing += std::max(0., member.offset[d] * spacing[d]) / dim * member.weight *
-                        member.r * member.r;
+          std::vector<double> shares; // of the layers
+          for (const FamilyMember<dim> &member : bonds.lattice_members())
+            {
+              const double share = member.weight * member.r * member.r / q;
+              const int    n     = std::max(0, member.offset[d]);
+              sums.bonds += n * spacing[d] * share / dim;
+              shares.resize(std::max<std::size_t>(shares.size(), n), 0.);
+              for (int layer = 0; layer < n; ++layer)
+                shares[layer] += share;
+            }
+          for (const double share : shares)
+            sums.dilatations += spacing[d] * share * share / dim;
         }
-      return q / crossing;
+      return sums;
     }
   } // namespace
 
@@ -43,21 +61,20 @@ namespace PeriDeal
     if (!material.fracture_energy && !material.critical_stretch)
       return;
     const Nodes<dim> &nodes = bonds.nodes();
-    AssertThrow(
-      material.critical_stretch || nodes.lattice().has_value(),
-      UserError(
-        "'Fracture energy' in section 'Material': the stretch at which bonds break follows from it on a lattice only. Give 'Critical "
-        "stretch' for 'Shape = mesh file'."));
-    const double ratio = material.critical_stretch ? 0. : crossing_ratio(bonds);
-    std::string  message;
+    Assert(material.critical_stretch || nodes.lattice(),
+           ExcInternalError()); // the scene was checked
+    const CrossingSums sums = material.critical_stretch ? CrossingSums() : crossing_sums(bonds);
+    std::string        message;
     critical.resize(nodes.n_local());
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
-        const Point<dim> &p = nodes.position(i);
-        critical[i] =
-          material.critical_stretch ?
-            material.critical_stretch->value(p) :
-            std::sqrt(material.fracture_energy->value(p) * ratio / laws[i].law.extension);
+        const Point<dim> &p    = nodes.position(i);
+        const StateLaw   &law  = laws[i].law;
+        const double      unit = law.extension * sums.bonds +
+                            (volumetric ? law.volumetric * law.dilatation * sums.dilatations : 0.);
+        critical[i] = material.critical_stretch ?
+                        material.critical_stretch->value(p) :
+                        std::sqrt(material.fracture_energy->value(p) / unit);
         if (message.empty() && !(critical[i] > 0.))
           {
             std::ostringstream where;
@@ -78,10 +95,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned long long StateOperator<dim>::break_bonds(const Vector &u)
+  void StateOperator<dim>::find_overstretched(const Vector &u)
   {
-    if (critical.empty())
-      return 0;
     const Nodes<dim> &nodes = bonds.nodes();
     u.update_ghost_values();
     breaking.clear();
@@ -99,8 +114,18 @@ namespace PeriDeal
           }
       }
     u.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  unsigned long long StateOperator<dim>::break_bonds(const Vector &u)
+  {
+    if (critical.empty())
+      return 0;
+    find_overstretched(u);
     const unsigned long long n_ends =
-      Utilities::MPI::sum(static_cast<unsigned long long>(breaking.size()), nodes.communicator());
+      Utilities::MPI::sum(static_cast<unsigned long long>(breaking.size()),
+                          bonds.nodes().communicator());
     if (n_ends == 0)
       return 0;
     const double before = energy(u);
@@ -162,12 +187,13 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                               \
-  template void                StateOperator<dim>::find_critical_stretches();   \
-  template bool                StateOperator<dim>::brittle() const;             \
-  template unsigned long long  StateOperator<dim>::break_bonds(const Vector &); \
-  template double              StateOperator<dim>::released_energy() const;     \
-  template unsigned long long  StateOperator<dim>::n_broken_bonds() const;      \
+#define PERIDEAL_INSTANTIATE(dim)                                                      \
+  template void                StateOperator<dim>::find_critical_stretches();          \
+  template void                StateOperator<dim>::find_overstretched(const Vector &); \
+  template bool                StateOperator<dim>::brittle() const;                    \
+  template unsigned long long  StateOperator<dim>::break_bonds(const Vector &);        \
+  template double              StateOperator<dim>::released_energy() const;            \
+  template unsigned long long  StateOperator<dim>::n_broken_bonds() const;             \
   template std::vector<double> StateOperator<dim>::damage() const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

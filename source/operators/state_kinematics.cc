@@ -30,9 +30,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  double StateOperator<dim>::extension_moment(const double      *u,
-                                              const unsigned int i,
-                                              const std::size_t  k) const
+  double StateOperator<dim>::strained_extension_moment(const double      *u,
+                                                       const unsigned int i,
+                                                       const std::size_t  k) const
   {
     const unsigned int   j       = neighbors[k];
     const Tensor<1, dim> xi      = bonds.bond_vector(i, j);
@@ -204,9 +204,9 @@ namespace PeriDeal
   template Tensor<1, dim> StateOperator<dim>::deformed_bond(const double *,                          \
                                                             const unsigned int,                      \
                                                             const std::size_t) const;                \
-  template double         StateOperator<dim>::extension_moment(const double *,                       \
-                                                       const unsigned int,                   \
-                                                       const std::size_t) const;             \
+  template double         StateOperator<dim>::strained_extension_moment(const double *,              \
+                                                                const unsigned int,          \
+                                                                const std::size_t) const;    \
   template void           StateOperator<dim>::find_deformed_dilatation_forces(const Vector &) const; \
   template void           StateOperator<dim>::find_forces(Vector &, const Vector &) const;           \
   template bool           StateOperator<dim>::nonlinear() const;                                     \

@@ -27,7 +27,7 @@ namespace PeriDeal
       "false",
       "",
       "Solve for the steady state; all other entries of this section are ignored then. So they are in elastic equilibrium, by any "
-      "`Solver` in section `Elasticity` but `dynamics`.");
+      "`Solver` in section `Elasticity` but `dynamics`, unless a load depends on t: then it is found at one time after the other.");
     declare(
       "Stepper",
       EntryType::choice,
@@ -53,7 +53,8 @@ namespace PeriDeal
       "auto",
       "time",
       "`auto` or a number; euler takes that very step. A step above the stability limit is "
-      "refused. Motion: `auto` is 0.8 of the limit of verlet, and 5 times that limit with newmark.");
+      "refused. Motion: `auto` is 0.8 of the limit of verlet, and 5 times that limit with newmark. Elastic equilibria under loads that depend on t: "
+      "the step between two of them, `auto` is a hundredth of End time.");
     declare("Tolerance",
             EntryType::number,
             "1e-4",

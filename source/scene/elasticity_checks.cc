@@ -109,13 +109,12 @@ namespace PeriDeal
     }
 
 
-    /** An equilibrium has no time. */
+    /** An equilibrium has a time only where its loads have. */
     template <int dim>
     void check_time(const Scene<dim> &scene)
     {
-      const BoundaryConditions<dim> &bc      = scene.boundary_conditions;
-      const InitialAndSource        &loads   = scene.initial_and_source;
-      const std::string             &stepper = scene.time.stepper;
+      const InitialAndSource &loads   = scene.initial_and_source;
+      const std::string      &stepper = scene.time.stepper;
       if (stepper != "auto" && !is_for_motion(stepper))
         entry_error(
           scene.time.where("Stepper"),
@@ -134,19 +133,6 @@ namespace PeriDeal
               "is true, but 'Solver' in section 'Elasticity' is 'dynamics'. Use another solver for the equilibrium.");
           return;
         }
-      const auto refuse = [&](const bool depends, const std::string &where) {
-        if (depends)
-          entry_error(where,
-                      "depends on t, but 'Solver' in section 'Elasticity' is '" +
-                        scene.elasticity.solver_name() +
-                        "', which finds an equilibrium. Use 'dynamics', or leave t out.");
-      };
-      for (const VectorCondition &condition : bc.displacement)
-        refuse(condition.depends_on_time(),
-               bc.where("Displacement") + ", side '" + condition.name + "'");
-      for (const VectorCondition &condition : bc.traction)
-        refuse(condition.depends_on_time(),
-               bc.where("Traction") + ", side '" + condition.name + "'");
       const auto has_start = [&](const std::vector<Expression> &list, const std::string &entry) {
         if (!list.empty())
           entry_error(loads.where(entry),
@@ -156,8 +142,32 @@ namespace PeriDeal
       };
       has_start(loads.initial_displacement, "Initial displacement");
       has_start(loads.initial_velocity, "Initial velocity");
-      for (const Expression &force : loads.body_force)
-        refuse(force.depends_on_time(), loads.where("Body force"));
+      if (scene.is_loaded_slowly() && scene.time.steady)
+        entry_error(scene.time.where("Steady"), "is true, but there are loads that depend on t.");
+    }
+
+
+    /** Bonds break where there are bonds. */
+    template <int dim>
+    void check_fracture(const Scene<dim> &scene)
+    {
+      const Material &material = scene.material;
+      if (!material.fracture_energy && !material.critical_stretch)
+        return;
+      const std::string where =
+        material.where(material.fracture_energy ? "Fracture energy" : "Critical stretch");
+      if (runs(scene, Model::coupled))
+        entry_error(
+          where,
+          "is not for 'Models = coupled', whose bonds do not break; use 'peridynamics', or leave the entry out.");
+      if (!runs(scene, Model::peridynamics))
+        entry_error(
+          where,
+          "has no effect: finite elements do not break. Add 'peridynamics' to 'Models', or leave the entry out.");
+      if (material.fracture_energy && scene.domain.shape == Shape::mesh_file)
+        entry_error(
+          where,
+          "is turned into a stretch by sums over a lattice, which 'Shape = mesh file' has not. Give 'Critical stretch'.");
     }
 
 
@@ -212,6 +222,7 @@ namespace PeriDeal
                         ", wider than the body, " + number_text(longest) + ".");
       }
     check_time(*this);
+    check_fracture(*this);
     check_peridynamics(*this);
     check_other_sections(*this);
     check_coupling_of_elasticity(*this);
@@ -219,6 +230,23 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  bool Scene<dim>::is_loaded_slowly() const
+  {
+    const auto changes = [](const auto &list) {
+      return std::any_of(list.begin(), list.end(), [](const auto &load) {
+        return load.depends_on_time();
+      });
+    };
+    return general.physics == Physics::elasticity && elasticity.is_static() &&
+           (changes(boundary_conditions.displacement) || changes(boundary_conditions.traction) ||
+            changes(initial_and_source.body_force));
+  }
+
+
+  template bool Scene<1>::is_loaded_slowly() const;
+  template bool Scene<2>::is_loaded_slowly() const;
+  template bool Scene<3>::is_loaded_slowly() const;
   template void Scene<1>::check_elasticity() const;
   template void Scene<2>::check_elasticity() const;
   template void Scene<3>::check_elasticity() const;

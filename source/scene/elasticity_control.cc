@@ -42,7 +42,7 @@ namespace PeriDeal
       "linear",
       "",
       "Equilibrium by the linear system, by nonlinear conjugate gradients, or by dynamic relaxation with given or adaptive damping; or "
-      "`dynamics`, the motion until `End time`. The displacement of an equilibrium does not depend on section `Time`.",
+      "`dynamics`, the motion until `End time`. Where loads depend on t there is an equilibrium at each `Time step` (section `Time`), else one.",
       {"linear",
        "conjugate gradients",
        "dynamic relaxation",

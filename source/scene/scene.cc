@@ -311,9 +311,10 @@ namespace PeriDeal
     finite_elements.parse();
     time.parse();
     check_elasticity();
-    // a conductor without capacitance is always in its steady state, and an equilibrium has no time
-    time.steady = time.steady || !material.stores ||
-                  (general.physics == Physics::elasticity && elasticity.is_static());
+    // a conductor without capacitance is always in its steady state, and an equilibrium has a time only where its loads have
+    time.steady =
+      time.steady || !material.stores ||
+      (general.physics == Physics::elasticity && elasticity.is_static() && !is_loaded_slowly());
     solver.parse();
     output.parse(time.end_time, time.steady);
     output.make_grid(domain.shape == Shape::box, domain.lower, domain.upper);

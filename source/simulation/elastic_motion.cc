@@ -107,25 +107,35 @@ namespace PeriDeal
   nlohmann::ordered_json ElasticSimulation<dim>::add_energies(const ElasticRun<dim> &model,
                                                               const double           t)
   {
-    const MotionEnergy     energy  = model.stepper->energy(model.displacement, model.velocity);
-    nlohmann::ordered_json balance = {{"kinetic", energy.kinetic},
-                                      {"strain", energy.strain},
-                                      {"start", energy.start},
-                                      {"work", energy.work},
-                                      {"imbalance", energy.imbalance()}};
-    const auto             row     = [&](const std::string &quantity, const double value) {
+    nlohmann::ordered_json balance;
+    const auto add = [&](const std::string &key, const std::string &quantity, const double value) {
+      balance[key] = value;
       record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
                         full_precision(value) + "\n";
     };
-    row("kinetic energy", energy.kinetic);
-    row("work of loads and supports", energy.work);
-    if (model.op().brittle())
+    const auto add_all = [&](const auto &energy, const double lost) {
+      balance["strain"] = energy.strain;
+      balance["start"]  = energy.start;
+      add("work", "work of loads and supports", energy.work);
+      if (model.op().brittle())
+        {
+          add("released", "energy released by broken bonds", model.op().released_energy());
+          add("dissipated", "energy dissipated", lost);
+          add("broken bonds", "broken bonds", static_cast<double>(model.op().n_broken_bonds()));
+        }
+      add("imbalance", "energy imbalance", energy.imbalance());
+    };
+    if (model.stepper)
       {
-        row("energy released by broken bonds", energy.released);
-        row("broken bonds", static_cast<double>(model.op().n_broken_bonds()));
-        balance["released"] = energy.released;
+        const MotionEnergy energy = model.stepper->energy(model.displacement, model.velocity);
+        add("kinetic", "kinetic energy", energy.kinetic);
+        add_all(energy, energy.released);
       }
-    row("energy imbalance", energy.imbalance());
+    else
+      {
+        const LoadingEnergy energy = model.loading->energy(model.displacement);
+        add_all(energy, energy.dissipated);
+      }
     return balance;
   }
 

@@ -15,7 +15,7 @@ namespace PeriDeal
                                          std::string           &totals,
                                          const MPI_Comm         communicator)
   {
-    const double time   = scene.elasticity.is_static() ? 0. : scene.time.end_time;
+    const double time   = scene.time.steady ? 0. : scene.time.end_time;
     auto         phases = nlohmann::ordered_json::object();
     const auto   row    = [&](const std::string &quantity, const double value) {
       totals += full_precision(time) + "," + model.name() + "," + quantity + "," +

@@ -69,10 +69,6 @@ namespace PeriDeal
       require(
         scene.boundary_conditions.traction_layer < 0.,
         "'Traction layer' in section 'Boundary conditions' cannot be used yet; leave it empty.");
-      require(
-        (!scene.material.fracture_energy && !scene.material.critical_stretch) ||
-          scene.elasticity.solver == ElasticSolver::dynamics,
-        "'Fracture energy' and 'Critical stretch' in section 'Material' are for 'Solver = dynamics' (section 'Elasticity') so far.");
       require(scene.reference.solution.empty(),
               "'Solution' in section 'Reference' cannot be used with 'Physics = elasticity' yet.");
     }
@@ -138,24 +134,6 @@ namespace PeriDeal
         const double memory = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
         progress.line(line + ", " + readable_bytes(memory));
       }
-  }
-
-
-  template <int dim>
-  void ElasticSimulation<dim>::solve(ElasticRun<dim> &model)
-  {
-    Timings::Scope   scope(model.timings, "solving");
-    ElasticOperator &op = model.op();
-    StaticOptions    options;
-    options.tolerance      = scene.solver.tolerance;
-    options.max_iterations = scene.solver.most_iterations(scene.elasticity.solver);
-    options.direct_up_to   = scene.solver.direct_up_to;
-    options.multigrid      = scene.elasticity.multigrid;
-    const double size      = start_statics(op, model.displacement, 0., options);
-    const auto   solver    = make_static_solver(scene.elasticity.solver_name(), op, options);
-    model.n_iterations     = solver->solve(model.displacement, 0., size);
-    op.linearize(model.displacement);
-    progress.line(model.name() + ": " + std::to_string(model.n_iterations) + " iterations");
   }
 
 
@@ -240,9 +218,9 @@ namespace PeriDeal
     record->balances[model.name()] = {{"boundary force", balance.sides},
                                       {"strain energy", energy},
                                       {"mean stress", stress}};
-    if (model.stepper)
+    if (model.stepper || model.op().brittle() || scene.is_loaded_slowly())
       record->balances[model.name()]["energy balance"] = add_energies(model, t);
-    else
+    if (!model.stepper)
       record->balances[model.name()]["force balance"] = {{"throughput", balance.throughput()},
                                                          {"imbalance", balance.imbalance()}};
     if (!ends.empty())
@@ -258,11 +236,7 @@ namespace PeriDeal
     write_image_as_read(scene, communicator);
     build();
     if (scene.elasticity.is_static())
-      {
-        for (const auto &model : models)
-          solve(*model);
-        write_output(0.);
-      }
+      load();
     else
       {
         make_steppers();
@@ -279,10 +253,17 @@ namespace PeriDeal
   void ElasticSimulation<dim>::write_output(const double t)
   {
     Timings::Scope scope(timings, "output");
-    write_points(t);
-    write_fields(t);
     for (const auto &model : models)
       add_totals(*model, t);
+    write_state(t);
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::write_state(const double t)
+  {
+    write_points(t);
+    write_fields(t);
     compare_displacements(models, t, record->comparison);
   }
 
@@ -306,9 +287,9 @@ namespace PeriDeal
     using json           = nlohmann::ordered_json;
     json summary         = describe_scene(scene, text, *mesh, communicator);
     summary["cracks"]    = corners_of(scene.cracks.pieces(scene.cracks.end_time));
-    summary["steady"]    = scene.elasticity.is_static();
+    summary["steady"]    = scene.time.steady;
     summary["solver"]    = scene.elasticity.solver_name();
-    summary["end time"]  = scene.elasticity.is_static() ? 0. : scene.time.end_time;
+    summary["end time"]  = scene.time.steady ? 0. : scene.time.end_time;
     summary["sides"]     = describe_elastic_sides(scene);
     summary["notes"]     = record->notes;
     summary["fields"]    = record->fields;
@@ -358,11 +339,8 @@ namespace PeriDeal
         lower[d] = summary["domain"]["lower"][d];
         upper[d] = summary["domain"]["upper"][d];
       }
-    summary["values on sides"] = values_on_sides(
-      scene,
-      lower,
-      upper,
-      scene.elasticity.solver == ElasticSolver::dynamics ? scene.time.end_time : 0.);
+    summary["values on sides"] =
+      values_on_sides(scene, lower, upper, scene.time.steady ? 0. : scene.time.end_time);
     std::vector<std::pair<std::string, std::string>> files;
     if (!scene.output.probes.empty())
       files.emplace_back("probes.csv", probes.text());

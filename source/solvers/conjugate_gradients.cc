@@ -25,15 +25,19 @@ namespace PeriDeal
       {
         for (Vector *v : {&residual, &last, &direction, &image, &trial, &correction})
           op.initialize_vector(*v);
-        if (!options.multigrid)
-          return;
-        preconditioner = std::make_unique<MultigridPreconditioner>(op, options.direct_up_to);
-        preconditioner->initialize(0., 1.);
+        if (options.multigrid)
+          prepare();
       }
 
       std::string name() const override
       {
         return "conjugate gradients";
+      }
+
+      void operator_changed() override
+      {
+        if (preconditioner)
+          prepare();
       }
 
       unsigned int solve(Vector &u, const double t, const double size) override
@@ -61,6 +65,12 @@ namespace PeriDeal
       }
 
     private:
+      void prepare()
+      {
+        preconditioner = std::make_unique<MultigridPreconditioner>(op, options.direct_up_to);
+        preconditioner->initialize(0., 1.);
+      }
+
       void precondition()
       {
         if (preconditioner)

@@ -93,13 +93,17 @@ namespace PeriDeal
   }
 
 
-  unsigned int LinearSolver::solve(const double a, const double b, Vector &x, const Vector &rhs)
+  unsigned int LinearSolver::solve(const double  a,
+                                   const double  b,
+                                   Vector       &x,
+                                   const Vector &rhs,
+                                   const double  wanted)
   {
     AssertThrow( // also where nothing converges to: the 2-norm of what is not a number is 0
       std::isfinite(rhs.l1_norm()),
       UserError(
         "The loads are not finite. Check the material, the sources or loads, and the boundary values."));
-    const double size = rhs.l2_norm();
+    const double size = wanted > 0. ? wanted : rhs.l2_norm();
     if (size == 0.)
       {
         x = 0.;
@@ -122,7 +126,7 @@ namespace PeriDeal
           {
             n_last_iterations  = std::numeric_limits<unsigned int>::max(); // worn
             n_first_iterations = 1;
-            return control.last_step() + solve(a, b, x, rhs);
+            return control.last_step() + solve(a, b, x, rhs, wanted);
           }
         std::ostringstream message;
         message

@@ -32,12 +32,17 @@ namespace PeriDeal
         return "linear";
       }
 
-      unsigned int solve(Vector &u, const double t, const double) override
+      void operator_changed() override
+      {
+        solver.operator_changed();
+      }
+
+      unsigned int solve(Vector &u, const double t, const double size) override
       {
         op.distribute(u, t);
         op.residual(residual, u, t);
         change                          = 0.;
-        const unsigned int n_iterations = solver.solve(0., 1., change, residual);
+        const unsigned int n_iterations = solver.solve(0., 1., change, residual, size);
         u += change;
         AssertThrow(
           std::isfinite(u.l1_norm()),

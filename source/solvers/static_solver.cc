@@ -57,19 +57,29 @@ namespace PeriDeal
   }
 
 
+  double undeformed_residual(ElasticOperator &op,
+                             Vector          &u,
+                             Vector          &residual,
+                             Vector          &image,
+                             const double     t)
+  {
+    u = 0.;
+    op.unbalanced(residual, u, t); // the loads
+    op.distribute(u, t);
+    op.multiply(image, u);
+    residual -= image;
+    op.clear_constrained(residual);
+    return residual.l2_norm();
+  }
+
+
   double start_statics(ElasticOperator &op, Vector &u, const double t, const StaticOptions &options)
   {
     constexpr double rough = 1e-3;
     Vector           rhs, image;
-    op.initialize_vector(u);
-    op.initialize_vector(rhs);
-    op.initialize_vector(image);
-    op.unbalanced(rhs, u, t); // the loads
-    op.distribute(u, t);
-    op.multiply(image, u);
-    rhs -= image;
-    op.clear_constrained(rhs);
-    const double size = rhs.l2_norm();
+    for (Vector *v : {&u, &rhs, &image})
+      op.initialize_vector(*v);
+    const double size = undeformed_residual(op, u, rhs, image, t);
     if (op.nonlinear() && size > 0.)
       {
         image = 0.;

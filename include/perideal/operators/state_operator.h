@@ -35,9 +35,12 @@ namespace PeriDeal
    * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a rotation makes none. q is that of the undeformed body. The tangent
    * of linearize() has W x Y/|Y| in the place of W xi, and across the bond the stiffness force/|Y|.
    *
-   * Bonds break for good at a stretch e/x of the material's critical value, of its smaller one at both ends. It is given, or follows from the fracture energy G_0: with each bond
-   * that crosses a plane the pair has stored (b/q) W e^2 at the stretch s, hence G_0 = s^2 b/q sum over half the family of omega f V xi_n x^2 (the sums are those of the full family on the lattice,
-   * the mean over the axes n; the share of the dilatations, none at the Poisson ratio of bonds alone, is left out). q stays that of the body before.
+   * Bonds break for good at a stretch e/x of the material's critical value s, of its smaller one at both ends. It is given, or follows from the fracture energy: what
+   * crosses a plane has stored, at this stretch while all else is at rest, G_0 = s^2 (b B + c d D) with
+   *
+   *   B = 1/q sum over half the family of omega f V xi_n x^2,  D = h_n sum over the layers on one side of (1/q sum over what crosses of omega f V x^2)^2
+   *
+   * on the lattice, the mean over its axes n. q stays that of the body before.
    *
    * Viscosity is in the bonds and parallel to them (Le 2014 eq 2.43): D is K without the dilatations.
    */
@@ -108,6 +111,7 @@ namespace PeriDeal
     void store_bonds();
     void find_thermal_loads();
     void find_critical_stretches();
+    void find_overstretched(const Vector &u);
     void find_diagonal();
     void find_loads(Vector &loads, const double t) const;
     template <typename Visit>
@@ -125,7 +129,20 @@ namespace PeriDeal
                                          const std::size_t  k) const;
 
     /** W x e of a bond of an owned node, thermal extension taken off. */
-    double extension_moment(const double *u, const unsigned int i, const std::size_t k) const;
+    double extension_moment(const double *u, const unsigned int i, const std::size_t k) const
+    {
+      if (full || any_thermal)
+        return strained_extension_moment(u, i, k);
+      double product = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        product += moments[k][d] * (u[dim * neighbors[k] + d] - u[dim * i + d]);
+      return product;
+    }
+
+    /** The same in general. */
+    double strained_extension_moment(const double      *u,
+                                     const unsigned int i,
+                                     const std::size_t  k) const;
 
     const Scene<dim>                                          &scene;
     Families<dim>                                              bonds;
@@ -144,7 +161,7 @@ namespace PeriDeal
     double                   n_bonds = 0., released = 0.;
     unsigned long long       n_broken = 0;
     std::vector<double>      critical; // stretch, of owned nodes and ghosts; empty: nothing breaks
-    std::vector<std::size_t> breaking; // bonds, by place
+    std::vector<std::size_t> breaking; // overstretched bonds, by place
     Vector                   mass, stiffness_diagonal, thermal_loads, constant_loads;
     double                   thermal_energy = 0.;
     bool                     loads_vary     = false;

@@ -90,6 +90,9 @@ namespace PeriDeal
      */
     CrackHistory<dim> crack_history() const;
 
+    /** An elastic body in equilibrium at each time, under loads that depend on time. */
+    bool is_loaded_slowly() const;
+
     /** All sections in the order of a scene file. */
     std::vector<SceneSection *> sections();
 

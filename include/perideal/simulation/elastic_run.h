@@ -15,6 +15,7 @@
 #include <perideal/output/field_writer.h>
 #include <perideal/scene/scene.h>
 #include <perideal/solvers/motion_stepper.h>
+#include <perideal/solvers/slow_loading.h>
 
 #include <memory>
 #include <string>
@@ -69,6 +70,7 @@ namespace PeriDeal
     Vector                         displacement;
     Vector                         velocity; // of a motion
     std::unique_ptr<MotionStepper> stepper;  // null in equilibrium
+    std::unique_ptr<SlowLoading>   loading;  // null in motion
     unsigned int                   n_iterations = 0;
     Timings                        timings;
   };

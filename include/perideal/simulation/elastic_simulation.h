@@ -43,11 +43,14 @@ namespace PeriDeal
 
   private:
     void                   build();
-    void                   solve(ElasticRun<dim> &model);
+    void                   load();
+    void                   begin_loading(ElasticRun<dim> &model);
+    void                   load_until(const double now, const double t);
     void                   make_steppers();
     void                   set_start(ElasticRun<dim> &model) const;
     void                   move();
     void                   write_output(const double t);
+    void                   write_state(const double t);
     void                   write_points(const double t);
     void                   write_fields(const double t);
     void                   add_totals(const ElasticRun<dim> &model, const double t);

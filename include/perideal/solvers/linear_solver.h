@@ -27,11 +27,16 @@ namespace PeriDeal
                  const unsigned int max_iterations,
                  const unsigned int direct_up_to = 2000);
 
-    /** Returns the number of iterations. x is the start on entry; its entries that are not free must be zero. Collective. */
+    /**
+     * Returns the number of iterations. x is the start on entry; its entries that are not free must be zero. Collective.
+     *
+     * @param size stops at the tolerance times this l2 norm of the residual; 0: times that of rhs
+     */
     unsigned int solve(const double  capacity_factor,
                        const double  stiffness_factor,
                        Vector       &x,
-                       const Vector &rhs);
+                       const Vector &rhs,
+                       const double  size = 0.);
 
     /** K is no longer what the preconditioner was made for. Not collective. */
     void operator_changed();

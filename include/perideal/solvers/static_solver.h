@@ -37,6 +37,9 @@ namespace PeriDeal
      * @param size stops at the tolerance times this l2 norm of the residual; 0: times that of the start
      */
     virtual unsigned int solve(Vector &u, const double t, const double size = 0.) = 0;
+
+    /** K is no longer that of the last solution. Not collective. */
+    virtual void operator_changed() {}
   };
 
 
@@ -49,7 +52,17 @@ namespace PeriDeal
                                                    const StaticOptions &options);
 
   /**
-   * The l2 norm of the residual that prescribed displacements and loads leave in the undeformed body, by which residuals are measured, and the start of the iterations:
+   * The l2 norm of the residual that prescribed displacements and loads at time t leave in the undeformed body. @p u becomes that body, @p residual the residual of the free
+   * unknowns, @p image is overwritten. Collective.
+   */
+  double undeformed_residual(ElasticOperator &op,
+                             Vector          &u,
+                             Vector          &residual,
+                             Vector          &image,
+                             const double     t);
+
+  /**
+   * undeformed_residual(), by which residuals are measured, and the start of the iterations:
    * the prescribed displacements, and where forces are not linear the solution of small displacements to three digits, since bonds that a jump at the side has turned
    * over do not find back. @p u is overwritten. Collective.
    */

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/solvers/static_solver.h>
+
+#include <memory>
+
+namespace PeriDeal
+{
+  /** Energies of a body that goes from one equilibrium to the next (J; in 2D per unit thickness). */
+  struct LoadingEnergy
+  {
+    double strain = 0.;
+    double start  = 0.; // strain energy of the first equilibrium, before any bond broke
+    double work   = 0.; // of loads and supports since then
+    double dissipated =
+      0.; // by broken bonds, and by the motion that a real body would make before it is at rest again
+
+    /** What has come from nowhere: the rounding of the solver where forces are linear and loads change in proportion, else of second order in the load step. */
+    double imbalance() const
+    {
+      return strain + dissipated - start - work;
+    }
+  };
+
+
+  /**
+   * A body under loads that change so slowly that it is always at rest: equilibria at one load after the other, at each of which bonds break until none is
+   * stretched too far: those that are, then those that the next equilibrium stretches too far, and so on. Vectors are allocated once.
+   */
+  class SlowLoading
+  {
+  public:
+    /** @param solver of equilibria, made with @p options */
+    SlowLoading(ElasticOperator              &op,
+                std::unique_ptr<StaticSolver> solver,
+                const StaticOptions          &options);
+
+    /** The first equilibrium, at time t; u is overwritten. Collective. Throws UserError as step() does. */
+    void begin(Vector &u, const double t);
+
+    /**
+     * From the equilibrium u to that at time t. Collective. Throws UserError if there is none to be found, among others since the body has come apart under loads that
+     * nothing bears any more.
+     */
+    void step(Vector &u, const double t);
+
+    /** Energies at u, the last equilibrium. Collective. */
+    LoadingEnergy energy(const Vector &u) const;
+
+    /** Of the solver so far. */
+    unsigned int n_iterations() const
+    {
+      return iterations;
+    }
+
+  private:
+    void   solve(Vector &u, const double t, const double size);
+    void   break_bonds(Vector &u, const double t, const double size);
+    void   find_work_forces(Vector &forces, const Vector &u, const double t);
+    double power(const Vector &change, const Vector &a, const Vector &b) const;
+
+    ElasticOperator              &op;
+    std::unique_ptr<StaticSolver> solver;
+    const StaticOptions           options;
+    std::vector<bool>             held;        // prescribed unknowns
+    Vector                        last, older; // the two equilibria before
+    Vector                        forces, last_forces, loads, scratch;
+    double                        now = 0., last_time = 0.;
+    bool                          has_older  = false;
+    unsigned int                  iterations = 0;
+    LoadingEnergy                 so_far;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Bodies at rest: one equilibrium, or one after the other where loads depend on time.
+
+#include <perideal/simulation/elastic_simulation.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "result_record.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  void ElasticSimulation<dim>::begin_loading(ElasticRun<dim> &model)
+  {
+    Timings::Scope scope(model.timings, "solving");
+    StaticOptions  options;
+    options.tolerance      = scene.solver.tolerance;
+    options.max_iterations = scene.solver.most_iterations(scene.elasticity.solver);
+    options.direct_up_to   = scene.solver.direct_up_to;
+    options.multigrid      = scene.elasticity.multigrid;
+    model.loading          = std::make_unique<SlowLoading>(
+      model.op(),
+      make_static_solver(scene.elasticity.solver_name(), model.op(), options),
+      options);
+    model.loading->begin(model.displacement, 0.);
+    model.n_iterations = model.loading->n_iterations();
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::load()
+  {
+    for (const auto &model : models)
+      {
+        begin_loading(*model);
+        if (scene.time.steady)
+          progress.line(model->name() + ": " + std::to_string(model->n_iterations) + " iterations");
+      }
+    if (scene.time.steady)
+      {
+        write_output(0.);
+        return;
+      }
+    std::vector<double> times = scene.output.write_times;
+    if (times.empty() || times.back() < scene.time.end_time)
+      times.push_back(scene.time.end_time);
+    progress.begin("time");
+    for (const auto &model : models)
+      add_totals(*model, 0.);
+    double now = 0.;
+    for (const double t : times)
+      {
+        if (t > now)
+          load_until(now, t);
+        now = t;
+        Timings::Scope scope(timings, "output");
+        write_state(t);
+      }
+    progress.end();
+    for (const auto &model : models)
+      progress.line(model->name() + ": " + std::to_string(model->n_iterations) + " iterations");
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::load_until(const double now, const double t)
+  {
+    constexpr double   share = 0.01; // of the end time: the step if none is given
+    const double       step  = scene.time.time_step > 0. ? scene.time.time_step :
+                                                           share * scene.time.end_time;
+    const unsigned int n =
+      std::max(1u, static_cast<unsigned int>(std::ceil((t - now) / step * (1. - 1e-10))));
+    for (unsigned int k = 1; k <= n; ++k)
+      {
+        const double to = k == n ? t : now + k * (t - now) / n;
+        for (const auto &model : models)
+          {
+            {
+              Timings::Scope scope(model->timings, "solving");
+              model->loading->step(model->displacement, to);
+              model->n_iterations = model->loading->n_iterations();
+            }
+            add_totals(*model, to);
+          }
+        progress.update(to / scene.time.end_time);
+      }
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim) template void ElasticSimulation<dim>::load();
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
