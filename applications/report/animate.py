@@ -43,8 +43,7 @@ class Film:
         self.shapes = self.deformed_shapes(n_pixels)
         if self.shapes is not None:
             self.view = self.shapes.view
-            self.scale = style.value_scale([self.values(i) for i in self.indices],
-                                           outliers=self.field.outliers)
+            self.scale = self.scale_of([self.values(i) for i in self.indices])
             return
         self.view = Maps(run, n_pixels).view()
         self.pictures, self.isolines = {}, {}
@@ -53,7 +52,13 @@ class Film:
             values = self.values(i)
             self.pictures[i] = maps.picture(i, model, values, self.segments[i])
             self.isolines[i] = maps.isoline_picture(i, model, values, self.segments[i])
-        self.scale = style.value_scale(list(self.pictures.values()))
+        self.scale = self.scale_of(list(self.pictures.values()), 0.0)
+
+    def scale_of(self, values, outliers=None):
+        """The scale of all frames: that of the field, where it has one, else what the values need."""
+        field = self.field
+        return style.fixed_scale(*field.span) if field.span else style.value_scale(
+            values, outliers=field.outliers if outliers is None else outliers)
 
     def values(self, index):
         """The field of a frame at the vertices."""

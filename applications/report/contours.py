@@ -224,6 +224,8 @@ def value_range(run, index, field):
 
 def common_scale(run, indices, field, least=0.3):
     """One scale for all times, or None where at some time the values would fill little of it."""
+    if field.span:
+        return style.fixed_scale(*field.span)
     ranges = [r for r in (value_range(run, i, field) for i in indices) if r is not None]
     if len(ranges) < 2:
         return None

@@ -91,6 +91,9 @@ def value_panel(axes, table, times, words, field, steady, cracks):
             axes.set_xlabel(label)
     draw_cracks(axes, points, x, cracks)
     axes.set_ylabel(field.label())
+    if field.span:
+        low, high = field.span
+        axes.set_ylim(low - 0.03 * (high - low), high + 0.03 * (high - low))
     style.tidy(axes)
     first = model_legend(axes, models, colors is None, loc="upper left",
                          bbox_to_anchor=(1.01, 1.0))
@@ -170,7 +173,9 @@ def field_table(run, indices, field):
                 continue
             mesh = run.mesh(index, model)
             order = mesh.cells[np.argsort(mesh.nodes[mesh.cells].mean(axis=1)[:, 0])].ravel()
-            values = run.field(index, model, field.name)
+            values = run.field(index, model, field.name, not run.words.elastic)
+            if values is None:
+                continue
             table.data.setdefault(model, {})[time] = (mesh.nodes[order], values[order])
     return table
 

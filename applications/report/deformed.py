@@ -13,6 +13,8 @@ from raster import PixelMap, View, crosses, is_constant_per_cell
 from read_run import Mesh
 
 SHARE = 0.05  # of the body's extent: how large the largest displacement is drawn
+DAMAGED = 0.2  # share of broken bonds from which the body may be torn
+TORN = 0.25  # share of a cell that its vertex moves off at a tear
 
 
 def magnification(run, indices):
@@ -56,17 +58,19 @@ class Shape:
     """The deformed cells of a 2D model at one time.
 
     A cell that a crack divides is there twice, each copy moving with the vertices on its own side
-    and drawn on that side only: so a crack opens wherever it lies in the cell.
+    and drawn on that side only: so a crack opens wherever it lies in the cell. Where bonds have
+    broken, cells around nodes at their centres part as soon as they would be drawn out of shape.
     """
 
-    def __init__(self, mesh, displacement, factor, segments=(), on_faces=False):
+    def __init__(self, mesh, displacement, factor, segments=(), on_faces=False, damage=None):
         self.mesh, self.factor = mesh, factor
         self.segments = segments
         corners = mesh.nodes[mesh.cells]
         shift = 1e-6 * np.ptp(corners, axis=1).max(axis=1)[:, None, None]
         self.centers = corners.mean(axis=1)
         if displacement.ndim == 2 and any(is_constant_per_cell(mesh, u) for u in displacement.T):
-            displacement = np.stack([self.smooth(u) for u in displacement.T], axis=1)
+            smooth = np.stack([self.smooth(u) for u in displacement.T], axis=1)
+            displacement = self.torn(displacement, smooth, damage)
             hidden = np.zeros(mesh.cells.shape, bool)  # its parts move as their centres do
         else:
             hidden = self.hidden_from_first(corners, shift, on_faces)
@@ -94,6 +98,15 @@ class Shape:
             for v in range(1, 4):
                 hidden[:, v] |= crosses(moved[:, v], moved[:, 0], segment)
         return hidden
+
+    def torn(self, own, smooth, damage):
+        """Displacements of the vertices: smooth, but those of a damaged cell its own at a tear."""
+        if damage is None:
+            return smooth
+        size = np.empty(len(own))
+        size[self.mesh.cells] = np.ptp(self.mesh.nodes[self.mesh.cells], axis=1).min(axis=1)[:, None]
+        apart = self.factor * np.linalg.norm(smooth - own, axis=1) > TORN * size
+        return np.where((apart & (damage > DAMAGED))[:, None], own, smooth)
 
     def mean_of_visible(self, values):
         """Mean over the visible vertices of each cell, (M x dim)."""
@@ -167,8 +180,9 @@ class Shapes:
             for model in models:
                 u = self.run.displacement(index, model)
                 if u is not None and np.isfinite(u).all():
+                    damage = self.run.field(index, model, "damage", required=False)
                     self.shapes[index, model] = Shape(self.run.mesh(index, model), u, factor,
-                                                      segments, maps.on_faces)
+                                                      segments, maps.on_faces, damage)
         ends = [self.run.domain] + [s.bounds() for s in self.shapes.values()]
         lower = np.min([e[0] for e in ends], axis=0)
         upper = np.max([e[1] for e in ends], axis=0)
@@ -255,7 +269,7 @@ def deformed_figure(maps, index, words, field, factor, largest=None, scale=None)
     layout.bar(0, len(models) - 1, scale, field.label())
     if gap is not None:
         segments = contours.segments_of(run.cracks(index))
-        picture = maps.picture(index, contours.PD, gap, segments, "wide", shapes.view)
+        picture = maps.picture(index, contours.PD, gap, segments, ("wide", index), shapes.view)
         contours.draw_difference(layout, len(models), shapes.view, picture, segments, words, field,
                                  largest)
     return layout.figure

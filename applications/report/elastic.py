@@ -13,6 +13,7 @@ import difference
 import elastic_curves
 import elastic_findings
 import elastic_tables
+import loading
 import series
 import solids
 from style import is_nothing
@@ -20,6 +21,7 @@ from style import is_nothing
 STRESSES = {1: ("stress_xx",), 2: ("stress_xx", "stress_yy", "stress_xy"),
             3: ("stress_xx", "stress_yy", "stress_zz", "stress_xy")}
 ROUND_OFF = 1e-9
+NO_STRESS = 1e-6  # of the largest: what the tolerance of a solver leaves in a body in pieces
 
 
 class ElasticSections:
@@ -27,7 +29,8 @@ class ElasticSections:
 
     def kind(self):
         """What kind of a run it is."""
-        return "static" if self.steady else "dynamic"
+        return "static" if self.steady else "slowly loaded" if loading.is_slow(self.run) \
+            else "dynamic"
 
     def units(self):
         """Units that the page uses: a body at rest has no time."""
@@ -55,7 +58,7 @@ class ElasticSections:
         index = self.shown[-1] if self.shown else None
         gap = None if index is None else difference.largest_of(
             self.run, index, difference.displacement_gap(self.run, index), self.words.solution.name)
-        return elastic_findings.sentences(self.run, self.words, gap, index)
+        return elastic_findings.sentences(self.run, self.words, gap, index, self.stressed())
 
     def fields(self):
         """Displacement, stress, and what else was written."""
@@ -75,24 +78,60 @@ class ElasticSections:
         self.page.add('<div class="wide">'
                       + elastic_tables.extremes_table(self.run, last, listed) + "</div>")
         self.page.section("Stress", "stress")
-        draw([scalars["von_mises"]], self.shown)
+        draw([scalars["von_mises"]], self.under_stress())
+        last = self.stressed()
         stresses = [scalars[s] for s in STRESSES[self.run.dimension]]
         if self.run.dimension > 1:
             stresses.append(scalars["pressure"])
         draw(self.worth_drawing(stresses, [last], scalars["von_mises"]), [last])
         self.page.add('<div class="wide">' + elastic_tables.extremes_table(
             self.run, last, [scalars["von_mises"]] + stresses) + "</div>")
-        for extra in ("damage", "temperature"):
-            if any(self.run.has_field(i, extra) for i in self.shown):
-                self.page.section(scalars[extra].title, extra)
-                if scalars[extra].about:
-                    self.page.add(f"<p>{escape(scalars[extra].about)}</p>")
-                draw(self.worth_drawing([scalars[extra]], self.shown), self.shown)
+        self.damage(draw)
+        if any(self.run.has_field(i, "temperature") for i in self.shown):
+            self.page.section(scalars["temperature"].title, "temperature")
+            draw(self.worth_drawing([scalars["temperature"]], self.shown), self.shown)
 
-    def values(self, field, index):
-        """The values of a field of all models at a time, in one array."""
+    def damage(self, draw):
+        """The damage in the deformed shape; nothing where all bonds are whole."""
+        field = self.words.fields["damage"]
+        if not any((self.values(field, i) > ROUND_OFF).any() for i in self.shown):
+            return
+        self.page.section(field.title, field.name)
+        self.page.add(f"<p>{escape(field.about)}</p>")
+        draw([field], self.shown, self.factor)
+
+    def under_stress(self):
+        """The shown times with more stress than what a solver leaves of none; all of a motion."""
+        if not loading.is_slow(self.run):
+            return self.shown
+        sizes = self.largest_stresses()
+        bare = [i for i in self.shown if not sizes[i] > NO_STRESS * max(sizes.values())]
+        if not bare or len(bare) == len(self.shown):
+            return self.shown
+        listed = ", ".join(self.words.at_time(self.run.written_times()[i]) for i in bare)
+        self.page.add(f"<p>No stress is left at {escape(listed)}: not drawn.</p>")
+        return [i for i in self.shown if i not in bare]
+
+    def stressed(self):
+        """The shown time that tells most of the stress, or None without fields: the last one, of a
+        slowly loaded body that may have broken by then the one with much stress in all models."""
+        if not self.shown or not loading.is_slow(self.run):
+            return self.shown[-1] if self.shown else None
+        of_models = [self.largest_stresses([m]) for m in self.run.models]
+        of_models = [sizes for sizes in of_models if max(sizes.values()) > 0]
+        return max(reversed(self.shown), key=lambda i: min(
+            (sizes[i] / max(sizes.values()) for sizes in of_models), default=0.0))
+
+    def largest_stresses(self, models=None):
+        """{shown time: the largest von Mises stress of some models, or of all}."""
+        values = {i: self.values(self.words.fields["von_mises"], i, models) for i in self.shown}
+        return {i: float(v[np.isfinite(v)].max(initial=0)) for i, v in values.items()}
+
+    def values(self, field, index, models=None):
+        """The values of a field of some models, or of all, at a time, in one array."""
         found = [self.run.field(index, m, field.name, required=False)
-                 for m in contours.models_with(self.run, index, field.name)]
+                 for m in contours.models_with(self.run, index, field.name)
+                 if models is None or m in models]
         return np.concatenate([v.ravel() for v in found]) if found else np.zeros(0)
 
     def worth_drawing(self, fields, indices, among=None):
@@ -163,6 +202,24 @@ class ElasticSections:
         mark = f"{field.name}_{index:04d}" if of_several or not self.steady else field.name
         self.page.figure(figure, mark, self.picture_caption(largest, field), False, heading)
 
+    def loading(self):
+        """Forces and energies of a slowly loaded body; those of a motion are among its energies."""
+        if loading.is_slow(self.run) and loading.n_times(self.run) >= 3:
+            self.page.section("Loading", "loading")
+            self.page.add("<p>The loads change so slowly that the body is at rest at each time.</p>")
+            self.loading_figures()
+
+    def loading_figures(self):
+        """Forces and broken bonds, then the energies, over time."""
+        shown, opposite = loading.forces(self.run)
+        figure = loading.force_figure(self.run, self.words, shown)
+        if figure is not None:
+            self.page.figure(figure, "forces", escape(
+                loading.force_caption(self.run, shown, opposite)), True)
+        figure = loading.energy_figure(self.run, self.words)
+        if figure is not None:
+            self.page.figure(figure, "energies", escape(loading.energy_caption(self.run)), True)
+
     def line(self):
         """Plots along the line, a panel for each column."""
         run = self.run
@@ -206,7 +263,9 @@ class ElasticSections:
         if html:
             self.page.section("Forces on the sides", "sides")
             per = {1: "", 2: ", per unit thickness", 3: ""}[self.run.dimension]
-            self.page.add(f"<p>What acts on the body from outside{per}.</p>")
+            when = f" at {self.words.at_time(self.run.get('end time'))}" \
+                if loading.is_slow(self.run) and self.run.get("end time") is not None else ""
+            self.page.add(f"<p>What acts on the body from outside{escape(when)}{per}.</p>")
             self.page.add(f'<div class="wide">{html}</div>')
 
     def totals(self):
@@ -214,8 +273,14 @@ class ElasticSections:
         html = elastic_tables.energy_table(self.run)
         if html:
             self.page.section("Energy and mean stress", "totals")
-            energies = {q: v for q, v in self.run.totals.items() if "energy" in q}
-            others = {q: v for q, v in self.run.totals.items() if q not in energies}
+            totals = self.run.totals
+            if loading.is_slow(self.run) or loading.can_break(self.run):
+                if not loading.is_slow(self.run):
+                    self.loading_figures()
+                drawn = loading.drawn_quantities(self.run)
+                totals = {q: v for q, v in totals.items() if q not in drawn}
+            energies = {q: v for q, v in totals.items() if "energy" in q}
+            others = {q: v for q, v in totals.items() if q not in energies}
             figure, zero = series.totals_figure({**energies, **others}, self.words)
             if figure is not None:
                 self.page.figure(figure, "totals", self.series_text(zero), True)

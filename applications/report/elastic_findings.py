@@ -3,6 +3,7 @@
 """Sentences that say what a run of an elastic body found."""
 
 import findings
+import loading
 from elastic_tables import extreme, last_totals, place
 from style import name, plain
 
@@ -18,12 +19,13 @@ def what_ran(run, words):
     n = len(run.cracks())
     cracks = "" if not n else " with a crack" if n == 1 else f" with {n} cracks"
     end = run.get("end time")
+    slow = ", slowly loaded" if loading.is_slow(run) else ""
     when = " at rest" if run.get("steady", default=False) else \
-        "" if end is None else f" up to {words.at_time(end)}"
+        "" if end is None else f"{slow} up to {words.at_time(end)}" + ("," if slow else "")
     return f"The displacement of {kind}{cracks}{state}{when} was computed by {joined}."
 
 
-def largest_values(run, index, field):
+def largest_values(run, index, field, when=""):
     """The largest value of a field by each model, or None."""
     found = {m: extreme(run, index, m, field, "largest") for m in run.models}
     found = {m: f for m, f in found.items() if f is not None}
@@ -31,22 +33,67 @@ def largest_values(run, index, field):
         return None
     listed = " and ".join(f"{field.amount(value)} at {place(point)} ({m})"
                           for m, (value, point) in found.items())
-    return f"The largest {field.text} is {listed}."
+    return f"The largest {field.text}{when} is {listed}."
 
 
 def what_is_stored(run):
     """The strain energies."""
     energies = last_totals(run, "strain energy")
     listed = " and ".join(f"{plain(v, 4)} ({m})" for m, v in energies.items() if m in run.models)
-    return f"The strain energy is {listed}." if listed else None
+    when = "At the end the" if loading.is_slow(run) else "The"
+    return f"{when} strain energy is {listed}." if listed else None
+
+
+def end_of(model):
+    """The model in parentheses, where there are several."""
+    return f" ({model})" if model else ""
+
+
+def what_bonds_did(run, words):
+    """When the first bonds broke, how many did, and what that cost."""
+    if not loading.can_break(run):
+        return []
+    first, several, found = loading.first_break(run), len(run.totals[loading.BROKEN]) > 1, []
+    for model, series in run.totals[loading.BROKEN].items():
+        of = end_of(model if several else "")
+        if model not in first:
+            found.append(f"No bond broke{of}.")
+            continue
+        broken, whole = max(series)[1], run.summary["models"].get(model, {}).get("bonds")
+        share = "" if not whole else \
+            f" of {plain(int(whole + broken))} ({findings.percent(broken / (whole + broken))})"
+        when = "at" if loading.is_slow(run) else "by"  # a motion is only seen at times of output
+        lost = last_totals(run, loading.DISSIPATED).get(model)
+        cost = "" if lost is None else f", and an energy of {plain(lost, 4)} was dissipated"
+        found.append(f"The first bonds broke {when} {words.at_time(first[model])}{of}; in the end "
+                     f"{plain(int(broken))} bonds{share} were broken{cost}.")
+    return found
+
+
+def largest_forces(run, words):
+    """The largest force on each side that moves or is loaded; none that never changes."""
+    if not loading.is_slow(run) and not loading.can_break(run):
+        return []
+    found = []
+    for force in loading.forces(run)[0]:
+        models = [m for m in force.of_models if not force.is_constant(m)]
+        listed = " and ".join(
+            f"{plain(value, 4)} at {words.at_time(time)}{end_of(m if len(run.models) > 1 else '')}"
+            for m, (time, value) in ((m, force.peak(m)) for m in models))
+        if listed:
+            found.append(f"The largest force on {force.side}, in {force.axis}, was {listed}.")
+    return found
 
 
 def are_balanced(run):
-    """The balance of forces."""
+    """The balance of forces; against the largest load of a slowly loaded body, which may end in pieces."""
     shares = {}
+    largest = {m: max(v for _, v in s) for m, s in run.totals.get("throughput", {}).items()} \
+        if loading.is_slow(run) else {}
     for model in run.models:
         found = run.summary["models"][model].get("force balance") or {}
-        imbalance, throughput = found.get("imbalance"), found.get("throughput")
+        imbalance = found.get("imbalance")
+        throughput = largest.get(model, found.get("throughput"))
         if imbalance is not None and throughput:
             shares[model] = abs(imbalance / throughput)
     if not shares:
@@ -60,12 +107,16 @@ def are_balanced(run):
             f"{findings.is_or_are(worst)} not in equilibrium, or the body accelerates.")
 
 
-def sentences(run, words, difference, index):
-    """What the run says; difference: the largest of the displacement, index: of the last fields."""
+def sentences(run, words, difference, index, stressed):
+    """What the run says; difference: the largest of the displacement, index: of the last fields,
+    stressed: of those that the stress is told of."""
     found = [what_ran(run, words), findings.what_broke(run, words)]
     if index is not None:
         found += [largest_values(run, index, words.solution),
-                  largest_values(run, index, words.fields["von_mises"])]
+                  largest_values(run, stressed, words.fields["von_mises"],
+                                 f", at {words.at_time(run.written_times()[stressed])},"
+                                 if loading.is_slow(run) else "")]
+    found += what_bonds_did(run, words) + largest_forces(run, words)
     found += [findings.how_far_apart(run, words, difference), findings.how_far_coupled(run),
               findings.how_wrong(run), what_is_stored(run), findings.what_it_cost(run),
               are_balanced(run)]

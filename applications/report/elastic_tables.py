@@ -6,6 +6,7 @@ from html import escape
 
 import numpy as np
 
+import loading
 from curves import probe_name, probe_points
 from style import minus, name
 from tables import cell, entry, table
@@ -212,7 +213,9 @@ ELSEWHERE = ("force on ", "body force in ", "throughput", "imbalance")
 def energy_table(run):
     """Energies, mean stress and all other totals at the end that no other table has."""
     rows = []
-    for quantity in run.totals:
+    order = sorted(run.totals, key=lambda q: q.startswith("mean stress")) \
+        if loading.is_slow(run) or loading.can_break(run) else run.totals
+    for quantity in order:
         if not quantity.startswith(ELSEWHERE):
             values = last_totals(run, quantity)
             rows.append([escape(name(quantity))] + [cell(values.get(m), 6) for m in run.models])

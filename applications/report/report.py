@@ -57,6 +57,7 @@ class Report:
         place = len(self.page.parts)
         self.fields()
         self.page.parts.insert(place, self.findings())
+        self.loading()
         self.line()
         self.probes()
         self.flux()
@@ -182,8 +183,9 @@ class Report:
     def scale_text(self, scale, field):
         """What the colours have in common."""
         several = len(self.shown) > 1
-        if len(self.run.models) < 2:
-            return f"Lines are {field.isolines}. " + (
+        if len(self.run.models) < 2 or not field.isolines:
+            lines = f"Lines are {field.isolines}. " if field.isolines else ""
+            return lines + (
                 "" if not several else "All times share one colour scale. " if scale else
                 "Each time has its own colour scale. ")
         when = "" if not several else " at all times" if scale else " at each time"
@@ -212,6 +214,9 @@ class Report:
             return "Peridynamics and finite elements agree to round-off."
         circle = ", marked by a circle" if self.run.dimension == 2 else ""
         return f"Largest difference: {field.amount(largest.value)} {largest.place()}{circle}."
+
+    def loading(self):
+        """Only elastic bodies are loaded."""
 
     def line(self):
         """Plots along the line."""

@@ -31,6 +31,9 @@ FLUX = LinearSegmentedColormap.from_list(
 DIFFERENCE = LinearSegmentedColormap.from_list(
     "difference", ["#123e7c", "#3f7fc0", "#9cc4e4", "#f7f7f7", "#f3b79b", "#d0603f", "#7f1d1d"])
 
+DAMAGE = LinearSegmentedColormap.from_list(
+    "damage", ["#f6f4ee", "#fadcae", "#f4a261", "#dd5b3c", "#a3202f", "#4a0d1f"])
+
 matplotlib.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 9, "text.color": INK, "axes.labelcolor": INK,
     "axes.edgecolor": "#9aa5b1", "axes.linewidth": 0.8, "xtick.color": "#52606d",
@@ -168,6 +171,11 @@ def value_scale(pictures, colormap=THERMAL, n=20, parts=2, clip=None, outliers=0
     if extend == "neither" and high > levels[-1] + 1e-6 * (levels[-1] - levels[0]):
         extend = "max"
     return Scale(refined(levels, parts), colormap, levels[1:-1], extend)
+
+
+def fixed_scale(low, high, n=20):
+    """The scale of a share: its ends are given, and it has no isolines."""
+    return Scale(np.linspace(low, high, n + 1), DAMAGE, [])
 
 
 def difference_scale(pictures, n=8, clip=0.998):

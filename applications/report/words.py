@@ -21,6 +21,7 @@ class Field:
     about: str = ""  # a remark on what it is
     called: str = ""  # the name in running text, where it is not that in the files
     outliers: float = 0.0  # share of the values that colours may leave out at either end
+    span: tuple = ()  # the ends of its scale, where these do not follow from its values
 
     @property
     def text(self):
@@ -124,8 +125,10 @@ class Words:
                 self.fields[part] = Field(part, called=f"stress {axis}{other}", outliers=0.002)
         for part, title in (("von_mises", "von Mises stress"), ("pressure", "pressure")):
             self.fields[part] = Field(part, called=title, outliers=0.002)
-        self.fields["damage"] = Field("damage", about="The share of a node's bonds, by volume, "
-                                      "that are broken.")
+        self.fields["damage"] = Field("damage", isolines="", span=(0.0, 1.0),
+                                      about="The share of a node's bonds, by volume, that are "
+                                      "broken: 0 where all are whole, 1 where none is left. Bonds "
+                                      "that a crack of the scene cuts are broken from the start.")
         self.fields["temperature"] = Field("temperature")
 
     def column(self, name):

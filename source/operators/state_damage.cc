@@ -88,6 +88,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  const std::vector<double> &StateOperator<dim>::critical_stretches() const
+  {
+    return critical;
+  }
+
+
+  template <int dim>
   bool StateOperator<dim>::brittle() const
   {
     return !critical.empty();
@@ -187,14 +194,15 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                      \
-  template void                StateOperator<dim>::find_critical_stretches();          \
-  template void                StateOperator<dim>::find_overstretched(const Vector &); \
-  template bool                StateOperator<dim>::brittle() const;                    \
-  template unsigned long long  StateOperator<dim>::break_bonds(const Vector &);        \
-  template double              StateOperator<dim>::released_energy() const;            \
-  template unsigned long long  StateOperator<dim>::n_broken_bonds() const;             \
-  template std::vector<double> StateOperator<dim>::damage() const;
+#define PERIDEAL_INSTANTIATE(dim)                                                             \
+  template const std::vector<double> &StateOperator<dim>::critical_stretches() const;         \
+  template void                       StateOperator<dim>::find_critical_stretches();          \
+  template void                       StateOperator<dim>::find_overstretched(const Vector &); \
+  template bool                       StateOperator<dim>::brittle() const;                    \
+  template unsigned long long         StateOperator<dim>::break_bonds(const Vector &);        \
+  template double                     StateOperator<dim>::released_energy() const;            \
+  template unsigned long long         StateOperator<dim>::n_broken_bonds() const;             \
+  template std::vector<double>        StateOperator<dim>::damage() const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -37,10 +37,10 @@ namespace PeriDeal
             "exp(-(2 r/delta)^2).",
             {"constant", "conical", "gaussian"});
     declare("Kernel exponent",
-            EntryType::whole_number,
-            "2",
+            EntryType::text,
+            "auto",
             "1",
-            "n of the pair law k(r)/r^n: 0, 1 or 2.");
+            "n of the pair law k(r)/r^n: 0, 1 or 2. `auto` is 2, and 0 with `Physics = elasticity`, where bonds of equal weight keep the moduli best.");
     declare(
       "Volume fraction",
       EntryType::choice,
@@ -136,7 +136,7 @@ namespace PeriDeal
   }
 
 
-  void Peridynamics::parse()
+  void Peridynamics::parse(const Physics physics)
   {
     horizon_ratio = number("Horizon ratio");
     if (horizon_ratio < 1.)
@@ -152,9 +152,14 @@ namespace PeriDeal
                 "found " + text("Horizon") + ", needs a length greater than 0 (or nothing).");
       }
     kernel          = choice<KernelShape>("Kernel");
-    kernel_exponent = whole_number("Kernel exponent");
-    if (kernel_exponent > 2)
-      error("Kernel exponent", "found " + text("Kernel exponent") + ", needs 0, 1 or 2.");
+    kernel_exponent = physics == Physics::elasticity ? 0 : 2;
+    if (const std::string &given = text("Kernel exponent"); given != "auto")
+      {
+        if (given != "0" && given != "1" && given != "2")
+          error("Kernel exponent",
+                "found " + given + ", needs 'auto' or a whole number: 0, 1 or 2.");
+        kernel_exponent = given[0] - '0';
+      }
     volume_fraction = choice<VolumeFraction>("Volume fraction");
     calibration     = choice<Calibration>("Calibration");
     self_term       = choice<SelfTerm>("Self term");

@@ -306,7 +306,7 @@ namespace PeriDeal
                                 (domain.image && domain.image->has_voids()),
                               general.physics);
     cracks.parse(general.physics);
-    peridynamics.parse();
+    peridynamics.parse(general.physics);
     coupling.parse();
     finite_elements.parse();
     time.parse();

@@ -69,15 +69,15 @@ namespace PeriDeal
             if (is_small(size, u, round, t))
               break;
           }
-        if (op.break_bonds(u) > 0)
-          {
-            op.unbalanced(unbalanced, u, t + dt);
-            solver.operator_changed();
-          }
         // Also to the solver's tolerance the acceleration of the forces, so that the next step starts from them.
         accelerate(acceleration, unbalanced);
         v.add(0.5 * dt, acceleration);
         follow_supports(v, u, dt);
+        if (op.break_bonds(u) > 0) // between two steps
+          {
+            op.unbalanced(unbalanced, u, t + dt);
+            solver.operator_changed();
+          }
       }
 
     private:

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """What elastic runs say of themselves, and the report that is made of it.
 
-    elastic_report.py bar | plate | body      a run, its summary, and the numbers in the tables of its report
+    elastic_report.py bar | plate | body | fracture      a run, its summary, and the numbers in the tables of its report
 """
 
 import math
@@ -168,7 +168,7 @@ def plate():
         check_close(two, one, relative=1e-11, what=f"{kind} on two processes")
     run = runs[1]
     rows, text, n_images = report_of(run)
-    check(n_images == 10, f"sketch, 3 displacements, 5 stresses and the line are drawn: {n_images}")
+    check(n_images == 11, f"sketch, 3 displacements, 5 stresses, the damage and the line are drawn: {n_images}")
     check_tables(run, rows)
     check_comparison(run, 2)
     sides = run.summary["sides"]
@@ -198,8 +198,79 @@ def body():
     check(len(run.summary["values on sides"]["left"]["displacement"]["at"]) == 9, "nine points of a side")
 
 
+COARSE = {"Domain/Cells": "20, 40", "Peridynamics/Horizon ratio": "3", "Output/Fields": "hdf5"}
+
+
+def over_time(run, model, quantity):
+    """[(time, value)] of a quantity of totals.csv."""
+    return [(r["time"], r["value"]) for r in run.totals if r["model"] == model and r["quantity"] == quantity]
+
+
+def bonds_sentence(run, when):
+    """What the report has to say of the bonds of a run in which some broke."""
+    broken, lost = over_time(run, PD, "broken bonds"), over_time(run, PD, "energy dissipated")
+    first, last = next(t for t, v in broken if v > 0), int(broken[-1][1])
+    total = last + run.model(PD)["bonds"]
+    return f"The first bonds broke {when} t = {written(first, 4)} s; in the end {written(last)} bonds of {written(total)} " \
+        f"({written(100 * last / total, 3)} %) were broken, and an energy of {written(lost[-1][1], 4)} was dissipated."
+
+
+def loaded_until_it_breaks():
+    """A plate slowly pulled apart: what breaks, when, at which force."""
+    run = run_scene("prm/fracture/centre_crack.prm",
+                    {**COARSE, "Models": "finite elements, peridynamics", "Time/Time step": "0.1", "Output/Write at": "0.6",
+                     "Boundary conditions/Displacement": "top: 0, 0.012*t; bottom: 0, -0.012*t"})
+    rows, text, n_images = report_of(run)
+    check(n_images == 16, f"sketch, 4 displacements, 6 stresses, 2 damages, forces, energies and totals are drawn: {n_images}")
+    check("2D, slowly loaded" in text and "slowly loaded up to t = 1 s, was computed" in text, "a slowly loaded body")
+    check(bonds_sentence(run, "at") in text, f"the report says: {bonds_sentence(run, 'at')}")
+    peaks = {m: max(over_time(run, m, "force on top in y"), key=lambda pair: abs(pair[1])) for m in (FEM, PD)}
+    listed = " and ".join(f"{written(v, 4)} at t = {written(t, 4)} s ({m})" for m, (t, v) in peaks.items())
+    check(f"The largest force on top, in y, was {listed}." in text, f"the largest force on top is {listed}")
+    check(0.5 < peaks[PD][0] < 1 and peaks[FEM][0] == 1, "peridynamics breaks before the end, finite elements never")
+    check("Above, the force on top in y; that on bottom is equal and opposite; below, the bonds that have broken." in text,
+          "forces and broken bonds over time")
+    balance = run.model(PD)["energy balance"]
+    for quantity, key in (("Energy released by broken bonds", "released"), ("Energy dissipated", "dissipated"),
+                          ("Broken bonds", "broken bonds")):
+        value = over_time(run, PD, quantity[0].lower() + quantity[1:])[-1][1]
+        check([quantity, "–", written(value)] in rows, f"{quantity} is that of totals.csv, {value}")
+        check_close(balance[key], value, relative=1e-14, what=f"{key} of the summary")
+    with h5py.File(os.path.join(run.folder, run.summary["fields"][-1]["files"][PD])) as file:
+        damage = file["damage"][:].max()
+    check(0.3 < damage <= 1 and "0 where all are whole, 1 where none is left" in text, f"the damage is drawn, up to {damage}")
+
+
+def loaded_and_whole():
+    """The plate without a crack, under a small load: no damage to draw."""
+    run = run_scene("prm/fracture/centre_crack.prm",
+                    {**COARSE, "Time/Time step": "0.1", "Time/End time": "0.3", "Output/Write at": "", "Cracks/Segments": ""})
+    _, text, _ = report_of(run)
+    check("No bond broke." in text and "none is left" not in text, "no bond broke, and no damage is drawn")
+    force = over_time(run, PD, "force on top in y")[-1][1]
+    check(f"The largest force on top, in y, was {written(force, 4)} at t = 0.3 s." in text, f"the largest force is {force}")
+
+
+def branching():
+    """A motion: broken bonds are drawn beside its energies, a load that is always the same is not."""
+    run = run_scene("prm/fracture/branching_crack.prm", {**COARSE, "Domain/Cells": "50, 20", "Output/Write every": "1e-5"})
+    rows, text, _ = report_of(run)
+    check("2D, dynamic" in text and "The loads change so slowly" not in text, "a motion")
+    check(bonds_sentence(run, "by") in text, f"the report says: {bonds_sentence(run, 'by')}")
+    check("The bonds that have broken; the forces on the sides do not change." in text, "broken bonds over time")
+    for quantity in ("Kinetic energy", "Energy dissipated", "Broken bonds"):
+        value = over_time(run, PD, quantity[0].lower() + quantity[1:])[-1][1]
+        check([quantity, written(value)] in rows, f"{quantity} is that of totals.csv, {value}")
+
+
+def fracture():
+    loaded_until_it_breaks()
+    loaded_and_whole()
+    branching()
+
+
 def main():
-    parts = {function.__name__: function for function in (bar, plate, body)}
+    parts = {function.__name__: function for function in (bar, plate, body, fracture)}
     for name in sys.argv[1:] or parts:
         parts[name]()
     finish()

@@ -316,7 +316,9 @@ namespace PeriDeal
       {
         const Body<2> body(
           box<2>() + full +
-            Settings{{"Domain/Cells", "8, 6"}, {"Boundary conditions/Displacement", ""}},
+            Settings{{"Domain/Cells", "8, 6"},
+                     {"Boundary conditions/Displacement", ""},
+                     {"Peridynamics/Kernel exponent", "2"}},
           Model::peridynamics);
         Vector u, v = body.values([](const Point<2> &p) {
           return Tensor<1, 2>({-0.5 * (p[1] - 0.375), 0.5 * (p[0] - 0.5)});

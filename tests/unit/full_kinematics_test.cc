@@ -187,6 +187,7 @@ namespace PeriDeal
                         {"Domain/Upper corner", dim == 1 ? "40" : "40, 20"},
                         {"Domain/Cells", dim == 1 ? "40" : "40, 20"},
                         {"Peridynamics/Horizon ratio", std::to_string(m)},
+                        {"Peridynamics/Kernel exponent", "2"},
                         {"Material/Young modulus", "3"},
                         {"Material/Poisson ratio", "0.2"},
                         {"Material/Density", "0.7"}};

@@ -84,6 +84,9 @@ namespace PeriDeal
 
     const Families<dim> &families() const;
 
+    /** Of the owned nodes and their ghosts; empty where bonds do not break. */
+    const std::vector<double> &critical_stretches() const;
+
     /** 1 - the sum of the volumes of neighbours over unbroken bonds over that of the whole family, at the owned nodes; bonds that cracks of the scene cut count as broken. */
     std::vector<double> damage() const;
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/scene/choices.h>
+#include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 
 #include <string>
@@ -33,7 +34,7 @@ namespace PeriDeal
     OperatorForm form = OperatorForm::automatic; // entry `Operator form` = auto | lattice | stored
 
     /** Throws UserError for values out of range and contradicting entries. */
-    void parse();
+    void parse(const Physics physics = Physics::heat);
 
   private:
     void declare_quadrature();

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Bonds that break: strength against Griffith, energies, motion, numbers of processes.
+
+    fracture.py plate | cantilever | block | motion | ranks
+
+Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
+"""
+
+import math
+import sys
+
+from scene_test import Comparison, check, check_close, check_message, finish, run_scene
+
+PD = "peridynamics"
+QUIET = {"Output/Fields": "none", "Output/Write at": ""}
+YOUNG, ENERGY = 200, 0.01
+BROKEN, DISSIPATED = "broken bonds", "energy dissipated"
+
+
+def history(run, *quantities):
+    """Rows (time, value of each quantity) of all load steps."""
+    times = {}
+    for row in run.totals:
+        if row["model"] == PD:
+            times.setdefault(row["time"], {})[row["quantity"]] = row["value"]
+    return [(t, *(times[t][q] for q in quantities)) for t in sorted(times)]
+
+
+def griffith(half, width, young=YOUNG):
+    """Strength of a strip with a crack in its middle, finite width by Feddersen."""
+    return math.sqrt(young * ENERGY / (math.pi * half / math.cos(math.pi * half / width)))
+
+
+def strength(run, area):
+    return max(row[1] for row in history(run, "force on top in y")) / area
+
+
+def energy_kept(table, what, run, bound):
+    rows = history(run, "energy imbalance", "work of loads and supports")
+    table.add_limit(f"{what}: energy imbalance over work", max(abs(row[1]) for row in rows) / rows[-1][2], bound)
+
+
+def plate():
+    """A plate with a crack in its middle: Griffith's strength within 10 % at m = 4, for any Poisson ratio, and the crack runs through."""
+    table = Comparison("Plate with a crack, m = 4, delta = 0.05, half length 0.2")
+    # Measured: 1.070, 1.004, 1.058, 1.069 and in plane strain 1.065.
+    for settings in ({}, {"Material/Poisson ratio": "0"}, {"Material/Poisson ratio": "0.45"},
+                     {"Material/Poisson ratio": "0.3", "Elasticity/Plane": "strain"}):
+        more = {"Time/Time step": "0.01", "Solver/Tolerance": "1e-8", **settings} if settings else {}
+        run = run_scene("prm/fracture/centre_crack.prm", {**QUIET, **more})
+        young = YOUNG / (1 - 0.3 ** 2) if "Elasticity/Plane" in settings else YOUNG
+        table.add(f"{settings or 'nu = 1/3'}: strength over Griffith's", strength(run, 1) / griffith(0.2, 1, young), 1, absolute=0.1)
+        energy_kept(table, f"{settings or 'nu = 1/3'}", run, 1e-8 if settings else 1e-10)
+        left = run.model(PD)["boundary force"]["top"][1]
+        table.add_limit(f"{settings or 'nu = 1/3'}: force left at the end over strength", abs(left) / strength(run, 1), 1e-3)  # measured: at most 6.2e-4
+    table.show()
+
+
+def cantilever():
+    """The crack of a double cantilever grows bit by bit, at an energy near the fracture energy."""
+    table = Comparison("Double cantilever, m = 4")
+    run = run_scene("prm/fracture/double_cantilever.prm", QUIET)
+    growth = []
+    for t, strain, lost, broken in history(run, "strain energy", DISSIPATED, BROKEN):
+        if broken == 0:
+            continue
+        opening = 0.16 * t
+        force = 2 * strain / opening
+        length = (YOUNG * 0.2 ** 3 * opening / (8 * force)) ** (1 / 3)
+        growth.append((t, length, 3 * YOUNG * 0.2 ** 3 * opening ** 2 / (16 * length ** 4), lost))
+    late = [row for row in growth if row[0] > 0.599]
+    check(late[-1][1] - late[0][1] > 0.15, f"the crack grows from {late[0][1]} to {late[-1][1]}")
+    check(max(b[1] - a[1] for a, b in zip(late, late[1:])) < 0.03, "the crack grows bit by bit")
+    # Measured: 1.20 and 1.14 to 1.23 of the fracture energy, whose roots are 1.095 and 1.07 to 1.11 of Griffith's load.
+    rate = (late[-1][3] - late[0][3]) / (late[-1][1] - late[0][1])
+    table.add("energy dissipated per length over the fracture energy", rate / ENERGY, 1, absolute=0.32)
+    table.add("load in the mean over Griffith's", sum(math.sqrt(row[2] / ENERGY) for row in late) / len(late), 1, absolute=0.1)
+    # Beams do not see how the crack jumps from row to row.
+    table.add("energy dissipated per length, against that of beams", rate, sum(row[2] for row in late) / len(late), relative=0.04)
+    energy_kept(table, "growth", run, 1e-9)
+    table.show()
+
+
+def block():
+    """Three dimensions."""
+    table = Comparison("Block with a crack, m = 3, delta = 0.075")
+    run = run_scene("prm/fracture/cracked_block.prm", QUIET)
+    table.add("strength over Griffith's", strength(run, 0.125) / griffith(0.2, 1), 1, absolute=0.1)  # measured: 1.066
+    energy_kept(table, "block", run, 1e-8)
+    table.show()
+
+
+def motion():
+    """A crack that branches: energy of second order in the time step, a speed below that of Rayleigh's waves, both halves alike."""
+    table = Comparison("Branching crack")
+    lost = {}
+    for step in ("1.4e-7", "0.7e-7"):
+        run = run_scene("prm/fracture/branching_crack.prm", {"Time/Time step": step, "Output/Write every": "2e-6", "Output/Fields": "none"})
+        lost[step] = max(abs(row[1]) for row in history(run, "energy imbalance"))
+        last = run.model(PD)["energy balance"]
+        table.add_limit(f"step {step}: energy imbalance over energy released", lost[step] / last["released"], 0.05 if step == "1.4e-7" else 0.016)
+    # Cracks branch a little differently with another step: no exact power.
+    table.add("ratio of the imbalances", lost["1.4e-7"] / lost["0.7e-7"], 4, absolute=1.6)
+    newmark = run_scene("prm/fracture/branching_crack.prm", {"Domain/Cells": "50, 20", "Time/Stepper": "newmark", "Time/Time step": "4e-7",
+                                                             "Output/Write every": "", "Output/Fields": "none", "Peridynamics/Horizon ratio": "3",
+                                                             "Material/Fracture energy": "60"})
+    check(newmark.model(PD)["energy balance"]["broken bonds"] > 100, "bonds break with newmark")
+    energy_kept(table, "newmark", newmark, 1e-7)
+    table.show()
+
+
+def ranks():
+    """The same on two processes; loads that nothing bears any more end the run with a message."""
+    more = {**QUIET, "Domain/Cells": "24, 48", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-12", "Time/Time step": "0.05", "Material/Poisson ratio": "0.2", "Material/Fracture energy": "0.005"}
+    alone, two = (run_scene("prm/fracture/centre_crack.prm", more, ranks=n) for n in (1, 2))
+    a, b = (history(run, BROKEN, DISSIPATED, "strain energy") for run in (alone, two))
+    check([row[1] for row in a] == [row[1] for row in b] and a[-1][1] > 50, f"as many bonds break on two processes: {[row[1] for row in b]}")
+    check_close([v for row in b for v in row[2:]], [v for row in a for v in row[2:]], relative=1e-9, what="energies on two processes")
+    pulled = {**more, "Boundary conditions/Displacement": "bottom: 0, 0", "Boundary conditions/Traction": "top: 0, 4*t"}
+    run = run_scene("prm/fracture/centre_crack.prm", pulled, expect_error=True)
+    check_message(run, "No equilibrium was found at t =", "bonds had broken", "'Displacement'", "'Solver = dynamics'")
+
+
+def main():
+    parts = {function.__name__: function for function in (plate, cantilever, block, motion, ranks)}
+    for name in sys.argv[1:] or parts:
+        parts[name]()
+    finish()
+
+
+if __name__ == "__main__":
+    main()

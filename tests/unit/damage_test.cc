@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Bonds that break: critical stretch, irreversibility, energies, slow loading.
+
+#include <perideal/base/user_error.h>
+#include <perideal/solvers/slow_loading.h>
+
+#include "elastic_test_tools.h"
+#include "scene_test_tools.h"
+
+namespace PeriDeal
+{
+  using namespace OperatorTests;
+  using namespace SceneTests;
+  using dealii::Point;
+  using dealii::Tensor;
+
+  namespace
+  {
+    const Settings moving{{"Elasticity/Solver", "dynamics"}};
+
+    Settings breaking_at(const double stretch)
+    {
+      return moving + Settings{{"Material/Critical stretch", std::to_string(stretch)}};
+    }
+
+
+    template <int dim>
+    Tensor<1, dim> pulled(const Point<dim> &p)
+    {
+      Tensor<1, dim> u;
+      u[0] = 0.1 * p[0];
+      return u;
+    }
+
+
+    /** The critical stretch for a fracture energy of 1, alike at all nodes, over the one of the continuum with a constant micromodulus. */
+    template <int dim>
+    double ratio_to_continuum(const Settings &more)
+    {
+      const Body<dim>            body(box<dim>() + moving +
+                             Settings{{"Material/Fracture energy", "1"},
+                                      {"Elasticity/Model", "bond-based"},
+                                      {"Peridynamics/Kernel", "constant"},
+                                      {"Peridynamics/Kernel exponent", "1"}} +
+                             more,
+                           Model::peridynamics);
+      const std::vector<double> &found    = body.states->critical_stretches();
+      const Scene<dim>          &scene    = body.scene;
+      const double               expected = critical_stretch_constant(1.,
+                                                        scene.material.moduli(Point<dim>()),
+                                                        scene.horizon(),
+                                                        dim,
+                                                        scene.elasticity.plane);
+      for (const double s : found)
+        EXPECT_DOUBLE_EQ(s, found[0]);
+      return found[0] / expected;
+    }
+
+
+    /** Pulled in one direction, the bonds near to it break, the same on all numbers of processes, for good, and no energy is lost. */
+    template <int dim>
+    void check_breaking(const Settings &more, const bool full)
+    {
+      const double   critical = 0.075; // of 0.1: bonds at less than 30 degrees from the x axis
+      const Settings settings = box<dim>() + breaking_at(critical) +
+                                Settings{{"Elasticity/Kinematics", full ? "full" : "linear"}} +
+                                more;
+      const Body<dim> body(settings, Model::peridynamics),
+        alone(settings, Model::peridynamics, MPI_COMM_SELF);
+      unsigned long long expected = 0;
+      for (unsigned int i = 0; i < alone.nodes->n_owned(); ++i)
+        {
+          std::vector<typename Families<dim>::Bond> family;
+          alone.states->families().bonds_of(i, family, false);
+          for (const auto &bond : family)
+            {
+              const Tensor<1, dim> xi  = alone.position(bond.neighbor) - alone.position(i);
+              const Tensor<1, dim> eta = pulled(Point<dim>(xi));
+              const double         x   = xi.norm();
+              expected += (full ? (xi + eta).norm() - x : eta * xi / x) > critical * x;
+            }
+        }
+      const auto squeezed = [](const Point<dim> &p) { return -1. * pulled(p); };
+      for (const Body<dim> *b : {&body, &alone})
+        {
+          ElasticOperator &op     = b->op();
+          const Vector     u      = b->values(pulled<dim>);
+          const double     before = op.energy(u);
+          EXPECT_TRUE(op.brittle());
+          EXPECT_EQ(op.break_bonds(b->values(squeezed)), 0u);
+          EXPECT_EQ(op.break_bonds(u), expected / 2);
+          EXPECT_EQ(op.n_broken_bonds(), expected / 2);
+          EXPECT_GT(op.released_energy(), 0.1 * before);
+          EXPECT_NEAR(op.energy(u) + op.released_energy(), before, 1e-12 * before);
+          EXPECT_EQ(op.break_bonds(u), 0u);
+          Vector zero, y;
+          op.initialize_vector(zero);
+          op.initialize_vector(y);
+          EXPECT_EQ(op.break_bonds(zero), 0u);
+          EXPECT_EQ(op.n_broken_bonds(), expected / 2); // they do not heal
+          op.multiply(y, u);
+          if (full)
+            continue; // not quadratic
+          EXPECT_NEAR(0.5 * (u * y), op.energy(u), 1e-12 * before);
+        }
+      EXPECT_NEAR(body.op().released_energy(),
+                  alone.op().released_energy(),
+                  1e-12 * alone.op().released_energy());
+      const std::vector<double> damage = body.states->damage();
+      double                    most   = 0.;
+      for (const double d : damage)
+        most = std::max(most, d);
+      most = dealii::Utilities::MPI::max(most, MPI_COMM_WORLD);
+      EXPECT_GT(most, 0.1);
+      EXPECT_LE(most, dim == 1 ? 1. : 0.9);
+    }
+  } // namespace
+
+
+  TEST(Damage, FractureEnergyOfAConstantMicromodulus)
+  {
+    // The lattice sums converge to the integrals.
+    for (const char *m : {"4", "8"})
+      {
+        const double bound = std::string(m) == "4" ? 0.03 : 0.008;
+        EXPECT_NEAR(ratio_to_continuum<1>({{"Peridynamics/Horizon ratio", m}}), 1., bound);
+        for (const char *plane : {"stress", "strain"})
+          EXPECT_NEAR(
+            ratio_to_continuum<2>({{"Peridynamics/Horizon ratio", m}, {"Elasticity/Plane", plane}}),
+            1.,
+            bound);
+      }
+    EXPECT_NEAR(ratio_to_continuum<3>({{"Peridynamics/Horizon ratio", "4"}}), 1., 0.03);
+  }
+
+
+  TEST(Damage, OverstretchedBondsBreakForGood)
+  {
+    for (const char *model : {"state-based", "bond-based"})
+      for (const bool full : {false, true})
+        {
+          check_breaking<1>({{"Elasticity/Model", model}}, full);
+          check_breaking<2>({{"Elasticity/Model", model}}, full);
+          check_breaking<3>({{"Elasticity/Model", model}}, full);
+        }
+  }
+
+
+  TEST(Damage, CooledBondsAreStretched)
+  {
+    const Settings cold{{"Elasticity/Temperature change", "-10"},
+                        {"Material/Thermal expansion", "0.01"}};
+    for (const bool breaks : {false, true})
+      {
+        const Body<2>    body(box<2>() + breaking_at(breaks ? 0.099 : 0.101) + cold,
+                           Model::peridynamics);
+        ElasticOperator &op = body.op();
+        Vector           u, r;
+        op.initialize_vector(u);
+        op.initialize_vector(r);
+        const double before = op.energy(u);
+        EXPECT_EQ(op.break_bonds(u) > 0, breaks);
+        op.unbalanced(r, u, 0.);
+        // Without bonds there is neither energy nor force left.
+        EXPECT_EQ(r.linfty_norm() == 0., breaks);
+        EXPECT_NEAR(op.energy(u), breaks ? 0. : before, 1e-14 * before);
+      }
+  }
+
+
+  TEST(Damage, SlowLoadingKeepsTheEnergy)
+  {
+    // A plate with an edge crack is pulled, breaks, and is let go.
+    const Settings settings =
+      Settings{{"Domain/Lower corner", "0, 0"},
+               {"Domain/Upper corner", "1, 1"},
+               {"Domain/Cells", "16, 16"},
+               {"Domain/Nodes", "cell centers"},
+               {"Peridynamics/Horizon ratio", "3"},
+               {"Material/Young modulus", "3"},
+               {"Material/Poisson ratio", "0.2"},
+               {"Material/Critical stretch", "0.02"},
+               {"Cracks/Segments", "0,0.5 ; 0.25,0.5"},
+               {"Boundary conditions/Displacement", "bottom: 0, 0; top: 0, 0.1*sin(t)"}};
+    StaticOptions options;
+    options.tolerance = 1e-11;
+    for (const char *name : {"linear", "conjugate gradients"})
+      {
+        const Body<2> body(settings, Model::peridynamics);
+        SlowLoading   loading(body.op(), make_static_solver(name, body.op(), options), options);
+        Vector        u;
+        loading.begin(u, 0.);
+        double most = 0., last = 0.;
+        for (unsigned int k = 1; k <= 32; ++k)
+          {
+            loading.step(u, k * 3.14159265358979 / 32.);
+            const LoadingEnergy energy = loading.energy(u);
+            EXPECT_NEAR(energy.imbalance(), 0., 1e-10 * (energy.work + 1e-6));
+            EXPECT_GE(energy.dissipated, last * (1. - 1e-12));
+            EXPECT_GE(energy.dissipated, body.op().released_energy() * (1. - 1e-9));
+            last = energy.dissipated;
+            most = std::max(most, energy.strain);
+            Vector r;
+            body.op().initialize_vector(r);
+            body.op().residual(r, u, k * 3.14159265358979 / 32.);
+            EXPECT_LT(r.linfty_norm(), 1e-10);
+          }
+        EXPECT_GT(body.op().n_broken_bonds(), 50u);
+        EXPECT_NEAR(loading.energy(u).strain, 0., 1e-10 * most);
+      }
+  }
+
+
+  TEST(Damage, EntriesThatHaveNoEffectAreRefused)
+  {
+    const auto fault_of = [](const Model model, const Settings &more) {
+      return message_of([&] {
+        Body<2>(box<2>() + Settings{{"Material/Fracture energy", "1"}} + more, model);
+      });
+    };
+    expect_parts(fault_of(Model::finite_elements, {}), {"Fracture energy", "no effect"});
+    expect_parts(fault_of(Model::coupled, {}), {"Fracture energy", "coupled"});
+    expect_parts(fault_of(Model::peridynamics, {{"Material/Critical stretch", "1"}}),
+                 {"Critical stretch", "Fracture energy"});
+    expect_parts(fault_of(Model::peridynamics, {{"Material/Fracture energy", "x - 0.5"}}),
+                 {"Fracture energy", "not positive"});
+  }
+} // namespace PeriDeal
