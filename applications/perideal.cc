@@ -281,7 +281,7 @@ namespace
   int execute(int argc, char **argv, const bool first_rank)
   {
     CLI::App app(
-      "PeriDeal solves heat conduction with peridynamics and with finite elements on one mesh, from one "
+      "PeriDeal solves diffusion, elasticity and fracture with peridynamics and with finite elements on one mesh, from one "
       "scene file (.prm), and compares the two.");
     Request request;
     describe_commands(app, request);

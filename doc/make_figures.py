@@ -80,9 +80,9 @@ def save(image, name, width=None, height=None):
     print(f"doc/figures/{name}.png: {(FIGURES / f'{name}.png').stat().st_size / 1000:.0f} kB")
 
 
-def picture(figures, paper):
-    """The last figure of the temperature; of an elastic body the deformed shape, of those of papers the stress; of a bar its line."""
-    elastic = "von_mises" if paper else "displacement_magnitude"
+def picture(figures, folder):
+    """The last figure of the temperature; of an elastic body the deformed shape, of those of papers the stress, of broken ones the damage; of a bar its line."""
+    elastic = {"le_2014": "von_mises", "fracture": "damage"}.get(folder, "displacement_magnitude")
     found = sorted(figures.glob("temperature*.png")) or sorted(figures.glob(f"{elastic}*.png")) or [figures / "line.png"]
     image = cropped(Image.open(found[-1]))
     if image.height > image.width:  # a body in 3D: its outer faces and the first slice
@@ -164,7 +164,7 @@ def main():
             continue
         with tempfile.TemporaryDirectory() as folder:
             try:
-                image = picture(run(scene, options.program, Path(folder)), scene.parent.parent.name == "papers")
+                image = picture(run(scene, options.program, Path(folder)), scene.parent.name)
             except (subprocess.CalledProcessError, OSError) as fault:
                 print(f"{scene.name}: {fault}", file=sys.stderr)
                 failed = True

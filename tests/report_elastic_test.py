@@ -150,7 +150,7 @@ class Pages(ReportCase):
         for figure in ("probes", "totals"):
             self.assertIn(figure, figures)
         text = "".join(page.text)
-        for part in ("2D, dynamic", "units: mm, s", "up to t = 1.5 s", "t = 0.5 s",
+        for part in ("2D, slowly loaded", "units: mm, s", "up to t = 1.5 s", "t = 0.5 s",
                      "displacements magnified 50 times"):
             self.assertIn(part, text)
         self.assertIn(["Strain energy", style.plain(0.04567 * 1.5, 6),
