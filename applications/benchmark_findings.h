@@ -43,4 +43,7 @@ namespace PeriDeal
 
   /** Building coupled operators, and moving their zones (coupling_benchmarks.cc). */
   void measure_coupling();
+
+  /** Elastic bonds, and one static solution (elastic_benchmarks.cc). */
+  void measure_elasticity();
 } // namespace PeriDeal

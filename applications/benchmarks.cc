@@ -3,7 +3,7 @@
 
 // Speed and memory of the operators and steppers on one core, next to what the machine can do, measured in the same run. Timings are
 // never tests: the exit status is 0 whatever comes out. Options are those of Google Benchmark; --quick leaves out the
-// run with four million nodes, --coupling leaves out all but coupled operators.
+// run with four million nodes, --coupling leaves out all but coupled operators, --elasticity all but elastic ones.
 
 #include <deal.II/base/mpi.h>
 
@@ -344,17 +344,18 @@ namespace PeriDeal
             }
         return false;
       };
-      const bool quick = take("--quick"), coupling_alone = take("--coupling");
+      const bool quick = take("--quick"), coupling_alone = take("--coupling"),
+                 elasticity_alone = take("--elasticity");
       benchmark::Initialize(&argc, argv);
 #if defined(__GLIBC__)
       mallopt(M_MMAP_THRESHOLD,
               1 << 20); // what is freed goes back at once, so that growth means something
 #endif
       MachineLimits machine;
-      if (coupling_alone)
+      if (coupling_alone || elasticity_alone)
         {
           measure_machine(machine);
-          measure_coupling();
+          coupling_alone ? measure_coupling() : measure_elasticity();
           print_findings(machine);
           return;
         }
@@ -380,6 +381,7 @@ namespace PeriDeal
       compare_forms(machine, "1D 1000000, m = 6.5", results[4], results[5], 0., 0., 0.);
       compare_steppers();
       measure_coupling();
+      measure_elasticity();
       print_findings(machine);
     }
   } // namespace

@@ -80,12 +80,13 @@ def save(image, name, width=None, height=None):
     print(f"doc/figures/{name}.png: {(FIGURES / f'{name}.png').stat().st_size / 1000:.0f} kB")
 
 
-def picture(figures, folder):
+def picture(figures, scene):
     """The last figure of the temperature; of an elastic body the deformed shape, of those of papers the stress, of broken ones the damage; of a bar its line."""
-    elastic = {"le_2014": "von_mises", "fracture": "damage"}.get(folder, "displacement_magnitude")
+    elastic = {"le_2014": "von_mises", "fracture": "damage"}.get(scene.parent.name, "displacement_magnitude")
     found = sorted(figures.glob("temperature*.png")) or sorted(figures.glob(f"{elastic}*.png")) or [figures / "line.png"]
     image = cropped(Image.open(found[-1]))
-    if image.height > image.width:  # a body in 3D: its outer faces and the first slice
+    solid = re.search(r"^\s*set\s+Dimension\s*=\s*3", scene.read_text(encoding="utf-8"), re.MULTILINE)
+    if solid and image.height > image.width:  # its outer faces and the first slice
         image = image.crop((0, 0, image.width, round(0.47 * image.height)))
     return image
 
@@ -164,7 +165,7 @@ def main():
             continue
         with tempfile.TemporaryDirectory() as folder:
             try:
-                image = picture(run(scene, options.program, Path(folder)), scene.parent.name)
+                image = picture(run(scene, options.program, Path(folder)), scene)
             except (subprocess.CalledProcessError, OSError) as fault:
                 print(f"{scene.name}: {fault}", file=sys.stderr)
                 failed = True

@@ -61,6 +61,9 @@ end
 subsection Initial and source
   set Initial displacement = 1e-3*cos(0.6*(x - 200))
 end
+subsection Peridynamics
+  set Kernel exponent = 2
+end
 subsection Elasticity
   set Solver = dynamics
 end

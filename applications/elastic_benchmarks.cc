@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// The state-based operator, and one static solution of the size of published ones.
+
+#include <deal.II/fe/fe_dgq.h>
+
+#include <perideal/operators/state_operator.h>
+#include <perideal/solvers/static_solver.h>
+
+#include "benchmark_findings.h"
+#include "benchmark_problem.h"
+
+namespace PeriDeal
+{
+  namespace
+  {
+    /** A unit square or cube that is held at the bottom and pulled at the top. */
+    template <int dim>
+    struct ElasticBody
+    {
+      ElasticBody(const unsigned int n_cells, const std::string &m, const std::string &model)
+      {
+        const auto list = [](const std::string &entry) {
+          return entry + (dim > 1 ? ", " + entry : "") + (dim > 2 ? ", " + entry : "");
+        };
+        const std::string none = dim == 2 ? "0, 0" : "0, 0, 0", up = dim == 2 ? "0, 1" : "0, 1, 0";
+        parse_scene(
+          SceneText{
+            "benchmark",
+            "set Dimension = " + std::to_string(dim) +
+              "\nset Physics = elasticity\nset Models = peridynamics\nsubsection Domain\nset Lower corner = " +
+              list("0") + "\nset Upper corner = " + list("1") +
+              "\nset Cells = " + list(std::to_string(n_cells)) +
+              "\nset Nodes = cell centers\nend\nsubsection Material\nset Young modulus = 200\nset Poisson ratio = 0.3\nend\n"
+              "subsection Boundary conditions\nset Displacement = bottom: " +
+              none + "\nset Traction = top: " + up +
+              "\nend\nsubsection Peridynamics\nset Horizon ratio = " + m +
+              "\nend\nsubsection Elasticity\nset Model = " + model + "\nend\n"},
+          scene);
+        std::vector<std::string> notes;
+        mesh    = build_mesh(scene, MPI_COMM_WORLD, notes);
+        handler = std::make_unique<dealii::DoFHandler<dim>>(*mesh);
+        handler->distribute_dofs(dealii::FE_DGQ<dim>(0));
+        number_along_lattice(*handler, scene.domain);
+        nodes = std::make_unique<Nodes<dim>>(*handler,
+                                             scene.domain,
+                                             scene.cracks,
+                                             scene.peridynamics.nodal_volume);
+        op    = std::make_unique<StateOperator<dim>>(*nodes, scene);
+      }
+
+      Scene<dim>                                  scene;
+      std::unique_ptr<dealii::Triangulation<dim>> mesh;
+      std::unique_ptr<dealii::DoFHandler<dim>>    handler;
+      std::unique_ptr<Nodes<dim>>                 nodes;
+      std::unique_ptr<StateOperator<dim>>         op;
+    };
+
+
+    template <int dim>
+    void measure_application(const std::string &name,
+                             const unsigned int n_cells,
+                             const std::string &m,
+                             const std::string &model)
+    {
+      constexpr unsigned int n_runs = 15;
+      const ElasticBody<dim> body(n_cells, m, model);
+      Vector                 x, y;
+      body.op->initialize_vector(x);
+      body.op->initialize_vector(y);
+      for (unsigned int i = 0; i < x.locally_owned_size(); ++i)
+        x.local_element(i) = 1e-3 * (i % 17);
+      double best = 1e300;
+      for (unsigned int k = 0; k < n_runs; ++k)
+        {
+          const auto start = std::chrono::steady_clock::now();
+          body.op->multiply(y, x);
+          best = std::min(best, seconds_since(start));
+        }
+      const OperatorSize size = body.op->size();
+      const double       rate = 2. * static_cast<double>(size.bonds) / best;
+      found(name + ", " + model, text("%.0f M bonds/s", 1e-6 * rate), ">= 100 M", rate >= 1e8);
+      found(name + ", " + model + ": memory",
+            text("%.0f bytes per bond",
+                 static_cast<double>(size.memory) / (2. * static_cast<double>(size.bonds))));
+    }
+
+
+    void measure_solution()
+    {
+      const auto           start = std::chrono::steady_clock::now();
+      const ElasticBody<2> body(592, "5", "state-based");
+      StaticOptions        options;
+      options.tolerance = 1e-6;
+      Vector             u;
+      const double       size = start_statics(*body.op, u, 0., options);
+      const unsigned int n    = make_static_solver("linear", *body.op, options)->solve(u, 0., size);
+      const double       seconds = seconds_since(start);
+      found("350,464 nodes, m = 5, plane stress: mesh to solution",
+            text("%.1f s, %u iterations", seconds, n),
+            "<= 90 s on 2 cores",
+            seconds <= 90.);
+      found("350,464 nodes: resident memory",
+            text("%.2f GB", 1e-9 * resident_memory()),
+            "<= 4 GiB",
+            resident_memory() <= 4. * 1073741824.);
+    }
+  } // namespace
+
+
+  void measure_elasticity()
+  {
+    for (const char *model : {"state-based", "bond-based"})
+      {
+        measure_application<2>("elastic bonds, 2D 400 x 400, m = 5", 400, "5", model);
+        measure_application<3>("elastic bonds, 3D 50^3, m = 3", 50, "3", model);
+      }
+    measure_solution();
+  }
+} // namespace PeriDeal
