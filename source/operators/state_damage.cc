@@ -65,16 +65,19 @@ namespace PeriDeal
            ExcInternalError()); // the scene was checked
     const CrossingSums sums = material.critical_stretch ? CrossingSums() : crossing_sums(bonds);
     std::string        message;
+    breaks = true;
     critical.resize(nodes.n_local());
+    stiffness.resize(nodes.n_local());
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
         const Point<dim> &p    = nodes.position(i);
         const StateLaw   &law  = laws[i].law;
         const double      unit = law.extension * sums.bonds +
                             (volumetric ? law.volumetric * law.dilatation * sums.dilatations : 0.);
-        critical[i] = material.critical_stretch ?
-                        material.critical_stretch->value(p) :
-                        std::sqrt(material.fracture_energy->value(p) / unit);
+        stiffness[i] = law.extension / weighted.local_element(i);
+        critical[i]  = material.critical_stretch ?
+                         material.critical_stretch->value(p) :
+                         std::sqrt(material.fracture_energy->value(p) / unit);
         if (message.empty() && !(critical[i] > 0.))
           {
             std::ostringstream where;
@@ -97,46 +100,53 @@ namespace PeriDeal
   template <int dim>
   bool StateOperator<dim>::brittle() const
   {
-    return !critical.empty();
+    return breaks;
   }
 
 
   template <int dim>
-  void StateOperator<dim>::find_overstretched(const Vector &u)
+  void StateOperator<dim>::find_overstretched(const Vector &u, const double share)
   {
     const Nodes<dim> &nodes = bonds.nodes();
+    double            most  = 0.;
     u.update_ghost_values();
     breaking.clear();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        const double own = laws[i].law.extension / weighted.local_element(i);
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          {
-            // W x e times (b_i/q_i + b_j/q_j)/(W x^2); the same digits at both ends of a bond.
-            const unsigned int j     = neighbors[k];
-            const double       other = laws[j].law.extension / weighted.local_element(j);
-            if (springs[k] * extension_moment(u.begin(), i, k) >
-                (own + other) * std::min(critical[i], critical[j]))
-              breaking.push_back(k);
-          }
-      }
+      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+        {
+          // W x e times (b_i/q_i + b_j/q_j)/(W x^2); the same digits at both ends of a bond.
+          const unsigned int j = neighbors[k];
+          const double limit   = (stiffness[i] + stiffness[j]) * std::min(critical[i], critical[j]);
+          const double found   = springs[k] * extension_moment(u.begin(), i, k);
+          if (found <= limit)
+            continue;
+          breaking.push_back({k, found / limit});
+          most = std::max(most, found / limit);
+        }
     u.set_ghost_state(false);
+    if (share <= 0.)
+      return;
+    const double at_least = share * Utilities::MPI::max(most, nodes.communicator());
+    breaking.erase(std::remove_if(breaking.begin(),
+                                  breaking.end(),
+                                  [&](const auto &bond) { return bond.second < at_least; }),
+                   breaking.end());
   }
 
 
   template <int dim>
-  unsigned long long StateOperator<dim>::break_bonds(const Vector &u)
+  unsigned long long StateOperator<dim>::break_bonds(const Vector &u, const double share)
   {
-    if (critical.empty())
+    if (!breaks)
       return 0;
-    find_overstretched(u);
+    find_overstretched(u, share);
     const unsigned long long n_ends =
       Utilities::MPI::sum(static_cast<unsigned long long>(breaking.size()),
                           bonds.nodes().communicator());
     if (n_ends == 0)
       return 0;
     const double before = energy(u);
-    for (const std::size_t k : breaking)
+    for (const auto &[k, ratio] : breaking)
       {
         springs[k] = 0.;
         moments[k] = Tensor<1, dim>();
@@ -172,6 +182,7 @@ namespace PeriDeal
   {
     const Nodes<dim>                         &nodes = bonds.nodes();
     std::vector<typename Families<dim>::Bond> family;
+    std::vector<std::pair<unsigned int, int>> crossed;
     std::vector<double>                       result(nodes.n_owned());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
@@ -182,9 +193,14 @@ namespace PeriDeal
         for (const auto &bond : family)
           {
             const double volume = nodes.volume(bond.neighbor);
-            all += volume;
             if (bond.cut || bond.intact == 0.)
-              continue;
+              {
+                bonds.crossed_cracks(i, bond.neighbor, crossed);
+                if (!crossed.empty() || bonds.is_parted(i, bond.neighbor))
+                  all += volume;
+                continue;
+              }
+            all += volume;
             left += springs[k] > 0. ? volume : 0.;
             ++k;
           }
@@ -194,15 +210,15 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                             \
-  template const std::vector<double> &StateOperator<dim>::critical_stretches() const;         \
-  template void                       StateOperator<dim>::find_critical_stretches();          \
-  template void                       StateOperator<dim>::find_overstretched(const Vector &); \
-  template bool                       StateOperator<dim>::brittle() const;                    \
-  template unsigned long long         StateOperator<dim>::break_bonds(const Vector &);        \
-  template double                     StateOperator<dim>::released_energy() const;            \
-  template unsigned long long         StateOperator<dim>::n_broken_bonds() const;             \
-  template std::vector<double>        StateOperator<dim>::damage() const;
+#define PERIDEAL_INSTANTIATE(dim)                                                                    \
+  template const std::vector<double> &StateOperator<dim>::critical_stretches() const;                \
+  template void                       StateOperator<dim>::find_critical_stretches();                 \
+  template void                StateOperator<dim>::find_overstretched(const Vector &, const double); \
+  template bool                StateOperator<dim>::brittle() const;                                  \
+  template unsigned long long  StateOperator<dim>::break_bonds(const Vector &, const double);        \
+  template double              StateOperator<dim>::released_energy() const;                          \
+  template unsigned long long  StateOperator<dim>::n_broken_bonds() const;                           \
+  template std::vector<double> StateOperator<dim>::damage() const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

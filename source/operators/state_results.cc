@@ -202,7 +202,8 @@ namespace PeriDeal
     const Nodes<dim>        &nodes = bonds.nodes();
     const IndexSet           owned = unknowns->locally_owned_range();
     std::vector<std::size_t> first{0};
-    std::vector<std::size_t> near; // of the stored bonds
+    std::vector<std::size_t> near; // of the stored bonds, unbroken
+    std::vector<bool>        damaged(nodes.n_owned(), false);
     Vector                   sums(nodes.partitioner());
     const auto               is_near = [&](const unsigned int i, const Tensor<1, dim> &xi) {
       const double size = std::pow(nodes.volume(i), 1. / dim);
@@ -218,10 +219,14 @@ namespace PeriDeal
         for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
           {
             const Tensor<1, dim> xi = bonds.bond_vector(i, neighbors[k]);
-            if (springs[k] == 0. || (!is_near(i, xi) && !is_near(neighbors[k], xi)))
+            if (!is_near(i, xi) && !is_near(neighbors[k], xi))
               continue;
-            near.push_back(k);
+            // As q, that of the body before bonds broke.
             sums.local_element(i) += nodes.volume(neighbors[k]) * xi.norm_square();
+            if (springs[k] == 0.)
+              damaged[i] = true;
+            else
+              near.push_back(k);
           }
         first.push_back(near.size());
       }
@@ -285,8 +290,10 @@ namespace PeriDeal
             own += block;
             add(j, -block);
           }
-        for (unsigned int d = 0; d < dim; ++d) // a node that springs alone would not hold
-          own[d][d] += (own[d][d] > 0. ? 1e-8 : 1.) * stiffness_diagonal.local_element(dim * i + d);
+        // Springs alone would not hold every node, and hardly those that few are left of.
+        const double share = own == Tensor<2, dim>() ? 1. : damaged[i] ? 1e-2 : 1e-8;
+        for (unsigned int d = 0; d < dim; ++d)
+          own[d][d] += share * stiffness_diagonal.local_element(dim * i + d);
         add(i, own);
       }
     matrix.compress(VectorOperation::insert);

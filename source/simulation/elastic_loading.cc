@@ -3,12 +3,13 @@
 
 // Bodies at rest: one equilibrium, or one after the other where loads depend on time.
 
+#include <perideal/base/user_error.h>
+#include <perideal/output/result_files.h>
 #include <perideal/simulation/elastic_simulation.h>
-
-#include <algorithm>
-#include <cmath>
+#include <perideal/solvers/step_tools.h>
 
 #include "result_record.h"
+#include "summary_parts.h"
 
 namespace PeriDeal
 {
@@ -46,20 +47,29 @@ namespace PeriDeal
         write_output(0.);
         return;
       }
-    std::vector<double> times = scene.output.write_times;
-    if (times.empty() || times.back() < scene.time.end_time)
-      times.push_back(scene.time.end_time);
     progress.begin("time");
     for (const auto &model : models)
       add_totals(*model, 0.);
-    double now = 0.;
-    for (const double t : times)
+    try
       {
-        if (t > now)
-          load_until(now, t);
-        now = t;
-        Timings::Scope scope(timings, "output");
-        write_state(t);
+        double now = 0.;
+        for (const double t : times_of_output())
+          {
+            if (t > now)
+              load_until(now, t);
+            now = t;
+            Timings::Scope scope(timings, "output");
+            write_state(t);
+          }
+      }
+    catch (const UserError &failure)
+      {
+        // What the body bore until then is what such a run is for.
+        progress.end();
+        write_files({{"totals.csv", record->totals}}, scene.general.output_directory, communicator);
+        throw UserError(
+          failure.message() +
+          " Forces and energies until then are in totals.csv of the output directory; there are no other results.");
       }
     progress.end();
     for (const auto &model : models)
@@ -68,31 +78,48 @@ namespace PeriDeal
 
 
   template <int dim>
+  double ElasticSimulation<dim>::load_step() const
+  {
+    constexpr double share = 0.01; // of the end time, if no step is given
+    return scene.time.time_step > 0. ? scene.time.time_step : share * scene.time.end_time;
+  }
+
+
+  template <int dim>
+  std::vector<double> ElasticSimulation<dim>::times_of_output() const
+  {
+    std::vector<double> times = scene.output.write_times;
+    if (times.empty() || times.back() < scene.time.end_time)
+      times.push_back(scene.time.end_time);
+    return times;
+  }
+
+
+  template <int dim>
   void ElasticSimulation<dim>::load_until(const double now, const double t)
   {
-    constexpr double   share = 0.01; // of the end time: the step if none is given
-    const double       step  = scene.time.time_step > 0. ? scene.time.time_step :
-                                                           share * scene.time.end_time;
-    const unsigned int n =
-      std::max(1u, static_cast<unsigned int>(std::ceil((t - now) / step * (1. - 1e-10))));
-    for (unsigned int k = 1; k <= n; ++k)
+    const unsigned long long n = n_equal_steps(t - now, load_step());
+    for (unsigned long long k = 1; k <= n; ++k)
       {
         const double to = k == n ? t : now + k * (t - now) / n;
         for (const auto &model : models)
           {
-            {
-              Timings::Scope scope(model->timings, "solving");
-              model->loading->step(model->displacement, to);
-              model->n_iterations = model->loading->n_iterations();
-            }
-            add_totals(*model, to);
+            Timings::Scope scope(model->timings, "solving");
+            model->loading->step(model->displacement, to);
+            model->n_iterations = model->loading->n_iterations();
           }
+        Timings::Scope scope(timings, "output");
+        for (const auto &model : models)
+          add_totals(*model, to);
         progress.update(to / scene.time.end_time);
       }
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim) template void ElasticSimulation<dim>::load();
+#define PERIDEAL_INSTANTIATE(dim)                                         \
+  template void                ElasticSimulation<dim>::load();            \
+  template double              ElasticSimulation<dim>::load_step() const; \
+  template std::vector<double> ElasticSimulation<dim>::times_of_output() const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

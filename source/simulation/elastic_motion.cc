@@ -51,7 +51,8 @@ namespace PeriDeal
         Timings::Scope scope(model->timings, "stepper");
         set_start(*model);
         model->op().linearize(model->displacement);
-        model->stepper = make_motion_stepper(scene.time.stepper, model->op(), options);
+        model->stepper     = make_motion_stepper(scene.time.stepper, model->op(), options);
+        model->stable_step = stable_motion_step(model->op());
         std::ostringstream line;
         line << model->name() << ": stepper " << model->stepper->name() << ", step "
              << model->stepper->current_step() << ", "
@@ -67,12 +68,9 @@ namespace PeriDeal
   void ElasticSimulation<dim>::move()
   {
     constexpr unsigned int n_reports = 50; // of the progress between two times of output
-    std::vector<double>    times     = scene.output.write_times;
-    if (times.empty() || times.back() < scene.time.end_time)
-      times.push_back(scene.time.end_time);
     progress.begin("time");
     double now = 0.;
-    for (const double t : times)
+    for (const double t : times_of_output())
       {
         if (t > now)
           for (unsigned int k = 0; k < models.size(); ++k)

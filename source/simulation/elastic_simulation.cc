@@ -311,8 +311,12 @@ namespace PeriDeal
             entry["steps"]       = model->stepper->cost().steps;
             entry["iterations"]  = model->stepper->cost().iterations;
             entry["time step"]   = model->stepper->current_step();
-            entry["stable step"] = {{"sharp", stable_motion_step(model->op())},
-                                    {"method", "verlet"}};
+            entry["stable step"] = {{"sharp", model->stable_step}, {"method", "verlet"}};
+          }
+        if (model->loading && !scene.time.steady)
+          {
+            entry["steps"]     = model->loading->n_steps();
+            entry["time step"] = load_step();
           }
         entry["operator applications"] = model->op().n_applications();
         entry["operator form"]         = size.form;

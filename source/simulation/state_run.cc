@@ -6,6 +6,9 @@
 #include <deal.II/fe/fe_q.h>
 
 #include <perideal/operators/state_operator.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
 
 #include "elastic_fields.h"
 #include "model_runs.h"
@@ -146,7 +149,21 @@ namespace PeriDeal
 
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
-        return bond_settings(scene, states->families());
+        auto list = bond_settings(scene, states->families());
+        if (!states->brittle())
+          return list;
+        double lowest = 1e300, highest = 0.;
+        for (const double s : states->critical_stretches())
+          {
+            lowest  = std::min(lowest, s);
+            highest = std::max(highest, s);
+          }
+        lowest  = Utilities::MPI::min(lowest, handler.get_communicator());
+        highest = Utilities::MPI::max(highest, handler.get_communicator());
+        list.emplace_back("critical stretch",
+                          number_text(lowest) +
+                            (highest > lowest ? " to " + number_text(highest) : ""));
+        return list;
       }
 
     private:

@@ -36,7 +36,10 @@ namespace PeriDeal
 
       void operator_changed() override
       {
-        if (preconditioner)
+        // It moves nodes that few bonds are left of far: line searches of large displacements do not get on with that.
+        if (op.nonlinear())
+          preconditioner.reset();
+        else if (preconditioner)
           prepare();
       }
 

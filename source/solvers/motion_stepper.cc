@@ -141,6 +141,13 @@ namespace PeriDeal
         work += gain;
         effort += std::abs(gain);
         last_forces.swap(forces);
+        // Bonds break between two steps: within one, half a step of their force would be lost and with it energy of order dt.
+        if (op.break_bonds(u) > 0)
+          {
+            operator_changed();
+            op.unbalanced(unbalanced, u, next);
+            find_work_forces(last_forces, next);
+          }
         if (k % between_checks == between_checks - 1 || k + 1 == n)
           check(v, next);
       }

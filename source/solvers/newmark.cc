@@ -73,11 +73,11 @@ namespace PeriDeal
         accelerate(acceleration, unbalanced);
         v.add(0.5 * dt, acceleration);
         follow_supports(v, u, dt);
-        if (op.break_bonds(u) > 0) // between two steps
-          {
-            op.unbalanced(unbalanced, u, t + dt);
-            solver.operator_changed();
-          }
+      }
+
+      void operator_changed() override
+      {
+        solver.operator_changed();
       }
 
     private:

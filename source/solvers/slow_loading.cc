@@ -6,6 +6,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/slow_loading.h>
 
+#include <algorithm>
 #include <sstream>
 #include <utility>
 
@@ -20,7 +21,7 @@ namespace PeriDeal
     , solver(std::move(solver))
     , options(options)
   {
-    for (Vector *v : {&last, &older, &forces, &last_forces, &loads, &scratch})
+    for (Vector *v : {&last, &before, &forces, &last_forces, &loads, &scratch})
       op.initialize_vector(*v);
     scratch = 1.;
     op.clear_constrained(scratch);
@@ -30,12 +31,12 @@ namespace PeriDeal
   }
 
 
-  void SlowLoading::solve(Vector &u, const double t, const double size)
+  void SlowLoading::solve(Vector &u, const double t)
   {
     const unsigned long long n_broken = op.n_broken_bonds();
     try
       {
-        iterations += solver->solve(u, t, size);
+        iterations += solver->solve(u, t);
       }
     catch (const UserError &failure)
       {
@@ -44,9 +45,12 @@ namespace PeriDeal
         std::ostringstream message;
         message
           << "No equilibrium was found at t = " << t << ", after " << n_broken
-          << " bonds had broken; nothing may bear the loads any more. Pull by 'Displacement' in section 'Boundary conditions' in place of 'Traction', or use "
-             "'Solver = dynamics' in section 'Elasticity'. What the solver said: "
-          << failure.message();
+          << " bonds had broken. "
+          << (loaded ?
+                "Nothing may bear the loads any more: pull by 'Displacement' in section 'Boundary conditions' in place of 'Traction', or use 'Solver = dynamics' in section 'Elasticity'. " :
+                "Try a smaller 'Time step' in section 'Time', or another 'Solver' or 'Preconditioner' in section 'Elasticity'. ")
+          << "What the solver said: " << failure.message();
+        u = last;
         throw UserError(message.str());
       }
     op.linearize(u);
@@ -62,40 +66,35 @@ namespace PeriDeal
   }
 
 
-  double SlowLoading::power(const Vector &change, const Vector &a, const Vector &b) const
+  void SlowLoading::break_bonds(Vector &u, const double t)
   {
-    return 0.5 * (change * a + change * b);
-  }
-
-
-  void SlowLoading::break_bonds(Vector &u, const double t, const double size)
-  {
-    constexpr double share =
-      0.9; // of the largest stretch: what breaks before the others are asked again
+    constexpr double share = 0.9; // of the largest stretch: what breaks at once
     if (!op.brittle())
       return;
-    for (double before = op.energy(u); op.break_bonds(u) > 0;)
+    for (double energy = op.energy(u); op.break_bonds(u, share) > 0;)
       {
         solver->operator_changed();
         scratch = u;
-        solve(u, t, size);
+        solve(u, t);
         scratch.sadd(-1., 1., u);
         // Supports are at rest.
-        const double gain = scratch * loads, after = op.energy(u);
+        const double gain = scratch * loads, left = op.energy(u);
         so_far.work += gain;
-        so_far.dissipated += before + gain - after;
-        before = after;
+        so_far.dissipated += energy + gain - left;
+        energy = left;
       }
   }
 
 
   void SlowLoading::begin(Vector &u, const double t)
   {
-    const double size = start_statics(op, u, t, options);
-    solve(u, t, size);
-    so_far.start = op.energy(u);
+    size = start_statics(op, u, t, options);
     op.mechanical_loads(loads, t);
-    break_bonds(u, t, size);
+    loaded = loads.linfty_norm() > 0.;
+    last   = u;
+    solve(u, t);
+    so_far.start = op.energy(u);
+    break_bonds(u, t);
     find_work_forces(last_forces, u, t);
     now = t;
   }
@@ -103,31 +102,32 @@ namespace PeriDeal
 
   void SlowLoading::step(Vector &u, const double t)
   {
-    const double dt = t - now;
-    last            = u;
-    double size     = 0.;
-    if (has_older)
+    last = u;
+    if (has_before)
       {
-        size = undeformed_residual(op, u, scratch, loads, t);
+        size = std::max(size, undeformed_residual(op, u, scratch, loads, t));
         // Where forces are linear and loads change in proportion this is the solution.
-        const double ratio = dt / (now - last_time);
+        const double ratio = (t - now) / (now - last_time);
         u                  = last;
-        u.sadd(1. + ratio, -ratio, older);
+        u.sadd(1. + ratio, -ratio, before);
         op.distribute(u, t);
       }
     else
-      size = start_statics(op, u, t, options);
-    solve(u, t, size);
+      size = std::max(size, start_statics(op, u, t, options));
+    op.mechanical_loads(loads, t);
+    loaded = loads.linfty_norm() > 0.;
+    solve(u, t);
     find_work_forces(forces, u, t);
-    scratch = u;
-    scratch -= last;
-    so_far.work += power(scratch, forces, last_forces);
-    break_bonds(u, t, size);
+    before = u;
+    before -= last;
+    so_far.work += 0.5 * (before * forces + before * last_forces);
+    break_bonds(u, t);
     find_work_forces(last_forces, u, t);
-    older.swap(last);
-    has_older = true;
-    last_time = now;
-    now       = t;
+    before.sadd(-1., 1., u);
+    has_before = true;
+    last_time  = now;
+    now        = t;
+    ++steps;
   }
 
 

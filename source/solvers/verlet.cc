@@ -33,9 +33,6 @@ namespace PeriDeal
         accelerate(acceleration, unbalanced);
         v.add(0.5 * dt, acceleration);
         follow_supports(v, u, dt);
-        // Bonds break between two steps, else half a step of their force would be lost and with it energy of order dt.
-        if (op.break_bonds(u) > 0)
-          op.unbalanced(unbalanced, u, t + dt);
       }
 
     private:

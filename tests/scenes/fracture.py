@@ -2,15 +2,16 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Bonds that break: strength against Griffith, energies, motion, numbers of processes.
 
-    fracture.py plate | cantilever | block | motion | ranks
+    fracture.py plate | cantilever | block | motion | steps | ranks
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
 """
 
 import math
+import os
 import sys
 
-from scene_test import Comparison, check, check_close, check_message, finish, run_scene
+from scene_test import Comparison, check, check_close, check_less, check_message, finish, run_scene
 
 PD = "peridynamics"
 QUIET = {"Output/Fields": "none", "Output/Write at": ""}
@@ -110,20 +111,40 @@ def motion():
     table.show()
 
 
+COARSE = {**QUIET, "Domain/Cells": "24, 48", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-12", "Time/Time step": "0.05",
+          "Material/Poisson ratio": "0.2", "Material/Fracture energy": "0.005"}
+
+
+def steps():
+    """A crack, not a heap of rubble, whatever the step of the load; grips that move a body whose bonds break; what is kept of a run that finds no equilibrium."""
+    broken = []
+    for step in ("1", "0.1", "0.02"):
+        run = run_scene("prm/fracture/centre_crack.prm", {**COARSE, "Time/Time step": step})
+        broken.append(run.model(PD)["energy balance"][BROKEN])
+        check(run.model(PD)["steps"] == round(1 / float(step)), f"steps of {step}: {run.model(PD)['steps']}")
+    check(max(broken) - min(broken) <= 0.05 * max(broken), f"bonds broken with load steps of 1, 0.1 and 0.02: {broken}")
+    moving = {**COARSE, "Elasticity/Solver": "dynamics", "Time/Stepper": "newmark", "Time/Time step": "0.004", "Material/Density": "0.1"}
+    run = run_scene("prm/fracture/centre_crack.prm", moving)
+    energy = run.model(PD)["energy balance"]
+    check(energy[BROKEN] > 50 and energy["released"] > 0, f"bonds break in motion: {energy}")
+    check_less(abs(energy["imbalance"]) / energy["released"], 1e-8, "newmark, moving grips: energy imbalance over energy released")
+    pulled = {**COARSE, "Boundary conditions/Displacement": "bottom: 0, 0", "Boundary conditions/Traction": "top: 0, 4*t"}
+    run = run_scene("prm/fracture/centre_crack.prm", pulled, expect_error=True)
+    check_message(run, "No equilibrium was found at t =", "bonds had broken", "'Displacement'", "'Solver = dynamics'", "totals.csv")
+    check(os.path.exists(os.path.join(run.folder, "totals.csv")) and not os.path.exists(os.path.join(run.folder, "summary.json")), "forces are kept, and no summary")
+    check(history(run, "force on top in y")[-1][1] > 0.5, "the load that the plate bore")
+
+
 def ranks():
-    """The same on two processes; loads that nothing bears any more end the run with a message."""
-    more = {**QUIET, "Domain/Cells": "24, 48", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-12", "Time/Time step": "0.05", "Material/Poisson ratio": "0.2", "Material/Fracture energy": "0.005"}
-    alone, two = (run_scene("prm/fracture/centre_crack.prm", more, ranks=n) for n in (1, 2))
+    """The same on two processes."""
+    alone, two = (run_scene("prm/fracture/centre_crack.prm", COARSE, ranks=n) for n in (1, 2))
     a, b = (history(run, BROKEN, DISSIPATED, "strain energy") for run in (alone, two))
     check([row[1] for row in a] == [row[1] for row in b] and a[-1][1] > 50, f"as many bonds break on two processes: {[row[1] for row in b]}")
     check_close([v for row in b for v in row[2:]], [v for row in a for v in row[2:]], relative=1e-9, what="energies on two processes")
-    pulled = {**more, "Boundary conditions/Displacement": "bottom: 0, 0", "Boundary conditions/Traction": "top: 0, 4*t"}
-    run = run_scene("prm/fracture/centre_crack.prm", pulled, expect_error=True)
-    check_message(run, "No equilibrium was found at t =", "bonds had broken", "'Displacement'", "'Solver = dynamics'")
 
 
 def main():
-    parts = {function.__name__: function for function in (plate, cantilever, block, motion, ranks)}
+    parts = {function.__name__: function for function in (plate, cantilever, block, motion, steps, ranks)}
     for name in sys.argv[1:] or parts:
         parts[name]()
     finish()

@@ -85,9 +85,11 @@ namespace PeriDeal
 
     /**
      * Break for good what is stretched too far at u, which must have been through distribute(). Returns how many bonds; K and its diagonal have changed if any, and
-     * its spectrum has not grown. Collective.
+     * its spectrum has hardly grown (none of the springs; dilatations of more than a pressure may a little). Collective.
+     *
+     * @param share of the largest stretch over critical stretch: only bonds above it
      */
-    virtual unsigned long long break_bonds(const Vector &)
+    virtual unsigned long long break_bonds(const Vector & /*u*/, const double /*share*/ = 0.)
     {
       return 0;
     }

@@ -9,6 +9,7 @@
 #include <perideal/operators/elastic_operator.h>
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -78,7 +79,7 @@ namespace PeriDeal
     bool                nonlinear() const override;
     void                linearize(const Vector &u) override;
     bool                brittle() const override;
-    unsigned long long  break_bonds(const Vector &u) override;
+    unsigned long long  break_bonds(const Vector &u, const double share = 0.) override;
     double              released_energy() const override;
     unsigned long long  n_broken_bonds() const override;
 
@@ -87,7 +88,7 @@ namespace PeriDeal
     /** Of the owned nodes and their ghosts; empty where bonds do not break. */
     const std::vector<double> &critical_stretches() const;
 
-    /** 1 - the sum of the volumes of neighbours over unbroken bonds over that of the whole family, at the owned nodes; bonds that cracks of the scene cut count as broken. */
+    /** 1 - the sum of the volumes of neighbours over unbroken bonds over that of the whole family, at the owned nodes; bonds that cracks of the scene cut count as broken, those that voids cut as none. */
     std::vector<double> damage() const;
 
     /** theta at the owned nodes, thermal extension taken off. Collective. */
@@ -114,7 +115,7 @@ namespace PeriDeal
     void store_bonds();
     void find_thermal_loads();
     void find_critical_stretches();
-    void find_overstretched(const Vector &u);
+    void find_overstretched(const Vector &u, const double share);
     void find_diagonal();
     void find_loads(Vector &loads, const double t) const;
     template <typename Visit>
@@ -159,15 +160,18 @@ namespace PeriDeal
     std::vector<double>                 springs; // (b_i/q_i + b_j/q_j)/(W x^2)
     std::vector<double>                 lengths,
       across; // full kinematics: W x, and the tangent's stiffness across the bond
-    bool                     full       = false;
-    bool                     volumetric = false, any_thermal = false, several_phases = false;
-    double                   n_bonds = 0., released = 0.;
-    unsigned long long       n_broken = 0;
-    std::vector<double>      critical; // stretch, of owned nodes and ghosts; empty: nothing breaks
-    std::vector<std::size_t> breaking; // overstretched bonds, by place
-    Vector                   mass, stiffness_diagonal, thermal_loads, constant_loads;
-    double                   thermal_energy = 0.;
-    bool                     loads_vary     = false;
-    mutable Vector           scratch, source, tau; // tau_i = c_i theta_i/q_i
+    bool                full       = false;
+    bool                volumetric = false, any_thermal = false, several_phases = false;
+    double              n_bonds = 0., released = 0.;
+    unsigned long long  n_broken = 0;
+    std::vector<double> critical;  // stretch, of owned nodes and ghosts; empty: nothing breaks
+    std::vector<double> stiffness; // b/q of owned nodes and ghosts, where bonds break
+    std::vector<std::pair<std::size_t, double>>
+                   breaking;       // overstretched bonds: place, stretch over critical stretch
+    bool           breaks = false; // some bond may, on any process
+    Vector         mass, stiffness_diagonal, thermal_loads, constant_loads;
+    double         thermal_energy = 0.;
+    bool           loads_vary     = false;
+    mutable Vector scratch, source, tau; // tau_i = c_i theta_i/q_i
   };
 } // namespace PeriDeal

@@ -68,9 +68,10 @@ namespace PeriDeal
     virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
 
     Vector                         displacement;
-    Vector                         velocity; // of a motion
-    std::unique_ptr<MotionStepper> stepper;  // null in equilibrium
-    std::unique_ptr<SlowLoading>   loading;  // null in motion
+    Vector                         velocity;          // of a motion
+    std::unique_ptr<MotionStepper> stepper;           // null in equilibrium
+    std::unique_ptr<SlowLoading>   loading;           // null in motion
+    double                         stable_step  = 0.; // of a motion by verlet, at its start
     unsigned int                   n_iterations = 0;
     Timings                        timings;
   };

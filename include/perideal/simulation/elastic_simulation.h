@@ -46,6 +46,8 @@ namespace PeriDeal
     void                   load();
     void                   begin_loading(ElasticRun<dim> &model);
     void                   load_until(const double now, const double t);
+    double                 load_step() const;
+    std::vector<double>    times_of_output() const;
     void                   make_steppers();
     void                   set_start(ElasticRun<dim> &model) const;
     void                   move();

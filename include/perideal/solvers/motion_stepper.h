@@ -67,6 +67,9 @@ namespace PeriDeal
      */
     virtual void step(Vector &u, Vector &v, const double t, const double dt) = 0;
 
+    /** Bonds have broken: K is another one. */
+    virtual void operator_changed() {}
+
     /** y = M^{-1} r on free unknowns, zero elsewhere. */
     void accelerate(Vector &y, const Vector &r) const;
 

@@ -18,7 +18,10 @@ namespace PeriDeal
     double dissipated =
       0.; // by broken bonds, and by the motion that a real body would make before it is at rest again
 
-    /** What has come from nowhere: the rounding of the solver where forces are linear and loads change in proportion, else of second order in the load step. */
+    /**
+     * What has come from nowhere: the rounding of the solver where forces are linear and loads change in proportion, else of second order in the load step. What is
+     * dissipated follows from the balance of energy while bonds break, so that this tells of the steps between.
+     */
     double imbalance() const
     {
       return strain + dissipated - start - work;
@@ -28,7 +31,8 @@ namespace PeriDeal
 
   /**
    * A body under loads that change so slowly that it is always at rest: equilibria at one load after the other, at each of which bonds break until none is
-   * stretched too far: those that are, then those that the next equilibrium stretches too far, and so on. Vectors are allocated once.
+   * stretched too far. Of those that are, the most stretched break first, and the others are asked again in the new equilibrium, so that a large step of the load
+   * does not shatter what a crack would relieve. Vectors are allocated once.
    */
   class SlowLoading
   {
@@ -43,12 +47,17 @@ namespace PeriDeal
 
     /**
      * From the equilibrium u to that at time t. Collective. Throws UserError if there is none to be found, among others since the body has come apart under loads that
-     * nothing bears any more.
+     * nothing bears any more; u is the last equilibrium then.
      */
     void step(Vector &u, const double t);
 
     /** Energies at u, the last equilibrium. Collective. */
     LoadingEnergy energy(const Vector &u) const;
+
+    unsigned int n_steps() const
+    {
+      return steps;
+    }
 
     /** Of the solver so far. */
     unsigned int n_iterations() const
@@ -57,20 +66,21 @@ namespace PeriDeal
     }
 
   private:
-    void   solve(Vector &u, const double t, const double size);
-    void   break_bonds(Vector &u, const double t, const double size);
-    void   find_work_forces(Vector &forces, const Vector &u, const double t);
-    double power(const Vector &change, const Vector &a, const Vector &b) const;
+    void solve(Vector &u, const double t);
+    void break_bonds(Vector &u, const double t);
+    void find_work_forces(Vector &forces, const Vector &u, const double t);
 
     ElasticOperator              &op;
     std::unique_ptr<StaticSolver> solver;
     const StaticOptions           options;
-    std::vector<bool>             held;        // prescribed unknowns
-    Vector                        last, older; // the two equilibria before
+    std::vector<bool>             held;   // prescribed unknowns
+    Vector                        last;   // equilibrium before the step
+    Vector                        before; // u less what the last step brought before bonds broke
     Vector                        forces, last_forces, loads, scratch;
-    double                        now = 0., last_time = 0.;
-    bool                          has_older  = false;
-    unsigned int                  iterations = 0;
-    LoadingEnergy                 so_far;
+    double size = 0.; // of the residual of the largest load so far, by which others are measured
+    double now = 0., last_time = 0.;
+    bool   has_before = false, loaded = false;
+    unsigned int  iterations = 0, steps = 0;
+    LoadingEnergy so_far;
   };
 } // namespace PeriDeal

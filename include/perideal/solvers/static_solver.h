@@ -52,8 +52,8 @@ namespace PeriDeal
                                                    const StaticOptions &options);
 
   /**
-   * The l2 norm of the residual that prescribed displacements and loads at time t leave in the undeformed body. @p u becomes that body, @p residual the residual of the free
-   * unknowns, @p image is overwritten. Collective.
+   * The l2 norm of the residual that prescribed displacements and loads at time t leave in a body that is undeformed but for these, with the stiffness K of the last linearize(). @p u becomes
+   * these displacements, @p residual the residual of the free unknowns, @p image is overwritten. Collective.
    */
   double undeformed_residual(ElasticOperator &op,
                              Vector          &u,
