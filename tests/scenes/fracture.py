@@ -93,7 +93,7 @@ def block():
 
 
 def motion():
-    """A crack that branches: energy of second order in the time step, a speed below that of Rayleigh's waves, both halves alike."""
+    """A crack that branches: energy of second order in the time step."""
     table = Comparison("Branching crack")
     lost = {}
     for step in ("1.4e-7", "0.7e-7"):
