@@ -233,14 +233,12 @@ namespace PeriDeal
   template <int dim>
   bool Scene<dim>::is_loaded_slowly() const
   {
-    const auto changes = [](const auto &list) {
-      return std::any_of(list.begin(), list.end(), [](const auto &load) {
-        return load.depends_on_time();
-      });
-    };
+    const auto &forces = initial_and_source.body_force;
     return general.physics == Physics::elasticity && elasticity.is_static() &&
-           (changes(boundary_conditions.displacement) || changes(boundary_conditions.traction) ||
-            changes(initial_and_source.body_force));
+           (boundary_conditions.depends_on_time() ||
+            std::any_of(forces.begin(), forces.end(), [](const auto &force) {
+              return force.depends_on_time();
+            }));
   }
 
 

@@ -16,15 +16,12 @@ namespace PeriDeal
   MotionStepper::MotionStepper(ElasticOperator &op, const double dt)
     : op(op)
     , inverse_mass(inverse_capacity(op))
+    , held(held_unknowns(op))
     , longest(dt)
+    , work_of_forces(op)
   {
-    for (Vector *v : {&unbalanced, &last, &last_velocity, &loads, &forces, &last_forces})
+    for (Vector *v : {&unbalanced, &last, &last_velocity, &change})
       op.initialize_vector(*v);
-    last = 1.;
-    op.clear_constrained(last);
-    held.resize(inverse_mass.size());
-    for (unsigned int i = 0; i < held.size(); ++i)
-      held[i] = last.local_element(i) == 0.;
   }
 
 
@@ -72,20 +69,10 @@ namespace PeriDeal
   }
 
 
-  void MotionStepper::find_work_forces(Vector &f, const double t)
-  {
-    if (op.depends_on_time())
-      op.mechanical_loads(loads, t);
-    for (unsigned int i = 0; i < held.size(); ++i)
-      f.local_element(i) = loads.local_element(i) - (held[i] ? unbalanced.local_element(i) : 0.);
-  }
-
-
   void MotionStepper::begin(const Vector &u, const Vector &v, const double t)
   {
     op.unbalanced(unbalanced, u, t);
-    op.mechanical_loads(loads, t);
-    find_work_forces(last_forces, t);
+    work_of_forces.begin(unbalanced, t);
     fresh = false;
     if (started)
       return;
@@ -132,21 +119,17 @@ namespace PeriDeal
         last_velocity = v;
         step(u, v, now, next - now);
         ++spent.steps;
-        find_work_forces(forces, next);
-        double gain = 0.;
-        for (unsigned int i = 0; i < held.size(); ++i)
-          gain += 0.5 * (forces.local_element(i) + last_forces.local_element(i)) *
-                  (u.local_element(i) - last.local_element(i));
-        gain = Utilities::MPI::sum(gain, u.get_mpi_communicator());
+        change = u;
+        change -= last;
+        const double gain = work_of_forces.step(change, unbalanced, next);
         work += gain;
         effort += std::abs(gain);
-        last_forces.swap(forces);
         // Bonds break between two steps: within one, half a step of their force would be lost and with it energy of order dt.
         if (op.break_bonds(u) > 0)
           {
             operator_changed();
             op.unbalanced(unbalanced, u, next);
-            find_work_forces(last_forces, next);
+            work_of_forces.begin(unbalanced, next);
           }
         if (k % between_checks == between_checks - 1 || k + 1 == n)
           check(v, next);

@@ -20,14 +20,10 @@ namespace PeriDeal
     : op(op)
     , solver(std::move(solver))
     , options(options)
+    , work_of_forces(op)
   {
-    for (Vector *v : {&last, &before, &forces, &last_forces, &loads, &scratch})
+    for (Vector *v : {&last, &before, &unbalanced, &scratch})
       op.initialize_vector(*v);
-    scratch = 1.;
-    op.clear_constrained(scratch);
-    held.resize(scratch.locally_owned_size());
-    for (unsigned int i = 0; i < held.size(); ++i)
-      held[i] = scratch.local_element(i) == 0.;
   }
 
 
@@ -36,12 +32,14 @@ namespace PeriDeal
     const unsigned long long n_broken = op.n_broken_bonds();
     try
       {
-        iterations += solver->solve(u, t);
+        iterations += solver->solve(u, t, size);
       }
     catch (const UserError &failure)
       {
         if (n_broken == 0)
           throw;
+        op.mechanical_loads(scratch, t);
+        const bool         loaded = scratch.linfty_norm() > 0.;
         std::ostringstream message;
         message
           << "No equilibrium was found at t = " << t << ", after " << n_broken
@@ -57,45 +55,41 @@ namespace PeriDeal
   }
 
 
-  void SlowLoading::find_work_forces(Vector &f, const Vector &u, const double t)
-  {
-    op.mechanical_loads(loads, t);
-    op.unbalanced(f, u, t);
-    for (unsigned int i = 0; i < held.size(); ++i)
-      f.local_element(i) = loads.local_element(i) - (held[i] ? f.local_element(i) : 0.);
-  }
-
-
   void SlowLoading::break_bonds(Vector &u, const double t)
   {
     constexpr double share = 0.9; // of the largest stretch: what breaks at once
     if (!op.brittle())
       return;
+    bool any = false;
     for (double energy = op.energy(u); op.break_bonds(u, share) > 0;)
       {
+        any = true;
         solver->operator_changed();
         scratch = u;
         solve(u, t);
         scratch.sadd(-1., 1., u);
         // Supports are at rest.
-        const double gain = scratch * loads, left = op.energy(u);
+        const double gain = scratch * work_of_forces.loads(), left = op.energy(u);
         so_far.work += gain;
         so_far.dissipated += energy + gain - left;
         energy = left;
       }
+    if (!any)
+      return;
+    op.unbalanced(unbalanced, u, t);
+    work_of_forces.begin(unbalanced, t);
   }
 
 
   void SlowLoading::begin(Vector &u, const double t)
   {
     size = start_statics(op, u, t, options);
-    op.mechanical_loads(loads, t);
-    loaded = loads.linfty_norm() > 0.;
-    last   = u;
+    last = u;
     solve(u, t);
     so_far.start = op.energy(u);
+    op.unbalanced(unbalanced, u, t);
+    work_of_forces.begin(unbalanced, t);
     break_bonds(u, t);
-    find_work_forces(last_forces, u, t);
     now = t;
   }
 
@@ -105,7 +99,7 @@ namespace PeriDeal
     last = u;
     if (has_before)
       {
-        size = std::max(size, undeformed_residual(op, u, scratch, loads, t));
+        size = std::max(size, undeformed_residual(op, u, scratch, unbalanced, t));
         // Where forces are linear and loads change in proportion this is the solution.
         const double ratio = (t - now) / (now - last_time);
         u                  = last;
@@ -114,15 +108,12 @@ namespace PeriDeal
       }
     else
       size = std::max(size, start_statics(op, u, t, options));
-    op.mechanical_loads(loads, t);
-    loaded = loads.linfty_norm() > 0.;
     solve(u, t);
-    find_work_forces(forces, u, t);
+    op.unbalanced(unbalanced, u, t);
     before = u;
     before -= last;
-    so_far.work += 0.5 * (before * forces + before * last_forces);
+    so_far.work += work_of_forces.step(before, unbalanced, t);
     break_bonds(u, t);
-    find_work_forces(last_forces, u, t);
     before.sadd(-1., 1., u);
     has_before = true;
     last_time  = now;

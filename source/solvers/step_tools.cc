@@ -32,6 +32,18 @@ namespace PeriDeal
   }
 
 
+  std::vector<bool> held_unknowns(const Operator &op)
+  {
+    Vector mark;
+    op.initialize_vector(mark);
+    mark = 1.;
+    op.clear_constrained(mark);
+    std::vector<bool> held(mark.locally_owned_size());
+    std::transform(mark.begin(), mark.end(), held.begin(), [](const double m) { return m == 0.; });
+    return held;
+  }
+
+
   std::size_t memory_of(const std::initializer_list<const Vector *> vectors)
   {
     std::size_t sum = 0;

@@ -66,7 +66,7 @@ def wire(name, image=None, models="peridynamics", **more):
     chosen = {**QUIET, "Models": models, "Output/Line": "", **more}
     if image:
         chosen["Domain/Image"] = f"images/{image}.png"
-    return run_scene(f"prm/papers/le_2014/{name}.prm", chosen)
+    return run_scene(f"prm/papers/le_2014/{name}", chosen)
 
 
 def phases(run, model="peridynamics"):
@@ -78,11 +78,11 @@ def peak(run, phase, what="99th percentile", model="peridynamics"):
 
 
 FAMILIES = {
-    "void_length": ["length_07", "length_13", "length_20", "length_31"],
-    "void_width": ["width_03", "width_10", "width_20"],
-    "slanted_void": ["slanted_05", "slanted_10", "slanted_20"],
-    "circular_void": ["circle_06", "circle_12", "circle_18", "circle_40"],
-    "aspect_ratio": ["aspect_20_5", "aspect_10_10", "aspect_5_20"],
+    "void_length.prm": ["length_07", "length_13", "length_20", "length_31"],
+    "void_width.prm": ["width_03", "width_10", "width_20"],
+    "slanted_void.prm": ["slanted_05", "slanted_10", "slanted_20"],
+    "circular_void.prm": ["circle_06", "circle_12", "circle_18", "circle_40"],
+    "aspect_ratio.prm": ["aspect_20_5", "aspect_10_10", "aspect_5_20"],
 }
 
 
@@ -96,10 +96,10 @@ COLUMNS = ("section", "mean xx") + tuple(f"{p} {w}" for p in PHASES for w in ("m
 
 def kinds():
     """Void, soft and hard defects of the same shape against the sound wire."""
-    sound = wire("longitudinal")
+    sound = wire("longitudinal.prm")
     rows, highest = [row_of("sound", sound)], {}
-    for kind in ("void", "soft", "hard"):
-        run = wire(f"{kind}_defect")
+    for kind, scene in (("void", "void_defect.prm"), ("soft", "soft_defect.prm"), ("hard", "hard_defect.prm")):
+        run = wire(scene)
         rows.append(row_of(kind, run))
         highest[kind] = peak(run, "bi2212", "maximum") / peak(sound, "bi2212", "maximum")
     print_table("Defects, MPa", COLUMNS, rows)
@@ -111,7 +111,7 @@ def kinds():
 def trends():
     """How the largest stresses depend on length, width, angle, diameter and shape of a void."""
     rows, bi2212, silver = [], {}, {}
-    rows.append(row_of("sound", wire("longitudinal")))
+    rows.append(row_of("sound", wire("longitudinal.prm")))
     for name, images in FAMILIES.items():
         for image in images:
             run = wire(name, image)
@@ -154,8 +154,8 @@ def check_trends(bi2212, silver):
 def models():
     """Finite elements on the same pixels: the macroscopic stress, and the means of the phases under strain and cooling."""
     table = Comparison("Peridynamics against finite elements on the same pixels, relative")
-    scenes = [("longitudinal", None), ("cross_section", None), ("void_defect", None), ("void_length", "length_31"),
-              ("slanted_void", None), ("circular_void", "circle_40")]
+    scenes = [("longitudinal.prm", None), ("cross_section.prm", None), ("void_defect.prm", None), ("void_length.prm", "length_31"),
+              ("slanted_void.prm", None), ("circular_void.prm", "circle_40")]
     for name, image in scenes:
         run = wire(name, image, models="finite elements, peridynamics")
         pd, fem = (run.model(m) for m in ("peridynamics", "finite elements"))
@@ -168,9 +168,19 @@ def models():
     table.show()
 
 
+def delamination():
+    """A void between filament and silver relieves the silver beside it, in both models alike."""
+    table = Comparison("Filament loose from the silver, against finite elements on the same pixels, relative")
+    sound, loose = (wire(name, models="finite elements, peridynamics") for name in ("longitudinal.prm", "delamination.prm"))
+    for phase in PHASES:
+        pd, fem = (peak(loose, phase, "mean", m) / peak(sound, phase, "mean", m) for m in ("peridynamics", "finite elements"))
+        table.add(f"{phase}: mean von Mises stress over that of the sound wire", pd, fem, relative=STRAINED)
+    table.show()
+
+
 def cooling():
     """Silver in tension, Bi2212 in compression, and nothing in sum."""
-    run = wire("cooling", models="finite elements, peridynamics")
+    run = wire("cooling.prm", models="finite elements, peridynamics")
     table = Comparison("Cooling by 300 K, MPa")
     for model in ("finite elements", "peridynamics"):
         mean = {p: phases(run, model)[p]["mean stress"] for p in PHASES}

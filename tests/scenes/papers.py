@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Scenes of prm/papers against published numbers, closed forms and finite elements on finer meshes.
 
-    papers.py tan | crack | inclined | growing | diyaroglu | frames
+    papers.py tan | crack | inclined | growing | fibres | diyaroglu | frames
 
 The closed forms are those of doc/reproduce/closed_forms.py. Bounds that follow from no theory are at most 1.6 times the gap that was
 measured; the comment beside them says which.
@@ -161,32 +161,45 @@ def growing():
     table.show()
 
 
+def fibres():
+    """Bobaru 2012 Example 6: fibres that conduct a hundred times better than the matrix, across them, against finite elements on a fine mesh."""
+    table = Comparison("Bobaru (2012), Example 6: fibres in a matrix, along the scenes' lines, t = 7, in degrees")
+    settings = {"Output/Write at": "", "Output/Line": "-0.975,0.5 ; 0.975,0.5 ; 40"}
+    wanted = line(run_paper("bobaru_2012/example_6.prm", settings, {"Models": FEM, "Domain/Cells": "480, 480"}), FEM)[1]
+    for what, scene, model, more, limit in (("ours", "bobaru_2012/example_6.prm", PD, {}, 0.5),
+                                            ("finite elements on the same mesh", "bobaru_2012/example_6.prm", FEM, {}, 0.5),
+                                            ("as published, 60 x 60 cells", "bobaru_2012/example_6_paper.prm", PD, {"Domain/Cells": "60, 60"}, 14)):
+        run = run_paper(scene, settings, {"Models": model}, more)
+        table.add_limit(f"{what}: largest difference along the line", largest(line(run, model)[1], wanted), limit)
+    table.show()
+
+
 def diyaroglu():
     """Examples A and B against closed forms, C against finite elements on fine meshes."""
     table = Comparison("Diyaroglu (2017)")
     # Measured, in degrees: 4.9, 2.1, 1.04, 0.091 and 0.054, 0.0093, 0.0061, 0.00049; the order in the spacing is 1 and 2.
-    bounds = {"example_a_paper": (7, 3, 1.5, 0.13), "example_a": (0.08, 0.014, 0.009, 0.0008)}
+    bounds = {"example_a_paper.prm": (7, 3, 1.5, 0.13), "example_a.prm": (0.08, 0.014, 0.009, 0.0008)}
     for name, limits in bounds.items():
         found = {}
         for cells in (100, 200):
-            run = run_paper(f"diyaroglu_2017/{name}.prm", {"Models": PD, "Domain/Cells": cells, "Output/Line": f"{0.5 / cells!r} ; {1 - 0.5 / cells!r} ; {cells}"})
+            run = run_paper(f"diyaroglu_2017/{name}", {"Models": PD, "Domain/Cells": cells, "Output/Line": f"{0.5 / cells!r} ; {1 - 0.5 / cells!r} ; {cells}"})
             for t in (100, 500, 2000, 5000):
                 points, values = line(run, PD, t)
                 found[cells, t] = largest(values, exact.hot_ends(points[:, 0], t))
         for t, limit in zip((100, 500, 2000, 5000), limits):
             table.add_limit(f"{name}, t = {t}: largest error", found[100, t], limit)
-        table.add(f"{name}: order in the spacing", float(np.log2(found[100, 2000] / found[200, 2000])), 1 if name.endswith("paper") else 2, absolute=0.1)
+        table.add(f"{name}: order in the spacing", float(np.log2(found[100, 2000] / found[200, 2000])), 1 if "paper" in name else 2, absolute=0.1)
     # Measured, as a share of the largest temperature: 7.7e-2 and 4.8e-2 with a constant layer, 1.5e-3 and 6.4e-4 with a mirror.
-    for name, limits in (("example_b_paper", (0.12, 0.075)), ("example_b", (2.4e-3, 1e-3))):
-        run = run_paper(f"diyaroglu_2017/{name}.prm", {"Models": PD, "Time/Tolerance": "1e-6"})
+    for name, limits in (("example_b_paper.prm", (0.12, 0.075)), ("example_b.prm", (2.4e-3, 1e-3))):
+        run = run_paper(f"diyaroglu_2017/{name}", {"Models": PD, "Time/Tolerance": "1e-6"})
         for t, limit in zip((3, 6), limits):
             points, values = line(run, PD, t)
             wanted = exact.thermal_shock(points[:, 0], t)
             table.add_limit(f"{name}, t = {t}: largest error over largest temperature", largest(values, wanted) / float(wanted.max()), limit)
     fem = [line(run_paper("diyaroglu_2017/example_c.prm", {"Models": FEM, "Domain/Cells": f"{n}, {n}", "Output/Write at": "", "Time/Tolerance": "1e-6"}), FEM)[1] for n in (200, 400)]
     # Measured, in degrees: 2.9 and 0.16.
-    for name, limit in (("example_c_paper", 4.5), ("example_c", 0.25)):
-        run = run_paper(f"diyaroglu_2017/{name}.prm", {"Models": PD})
+    for name, limit in (("example_c_paper.prm", 4.5), ("example_c.prm", 0.25)):
+        run = run_paper(f"diyaroglu_2017/{name}", {"Models": PD})
         table.add_limit(f"{name}: largest difference from finite elements along x = 0.005", largest(line(run, PD)[1], 2 * fem[1] - fem[0]), limit)
     table.show()
 
@@ -213,7 +226,7 @@ def frames():
 
 
 def main():
-    parts = {function.__name__: function for function in (tan, crack, inclined, growing, diyaroglu, frames)}
+    parts = {function.__name__: function for function in (tan, crack, inclined, growing, fibres, diyaroglu, frames)}
     for name in sys.argv[1:] or parts:
         parts[name]()
     finish()

@@ -5,6 +5,7 @@
 
 #include <perideal/operators/elastic_operator.h>
 #include <perideal/solvers/stepper.h>
+#include <perideal/solvers/work_of_forces.h>
 
 #include <memory>
 #include <string>
@@ -78,20 +79,20 @@ namespace PeriDeal
 
     ElasticOperator          &op;
     const std::vector<double> inverse_mass;
-    std::vector<bool>         held; // prescribed
+    const std::vector<bool>   held; // prescribed
     Vector                    unbalanced, last, last_velocity;
     StepperCost               spent;
 
   private:
     void   begin(const Vector &u, const Vector &v, const double t);
-    void   find_work_forces(Vector &forces, const double t);
     double kinetic_energy(const Vector &v, const bool supports_only) const;
     void   check(const Vector &v, const double t) const;
 
     const double longest;
     bool         started = false, fresh = true;
     double       start = 0., work = 0., effort = 0., support_start = 0.;
-    Vector       loads, forces, last_forces;
+    Vector       change; // of a step
+    WorkOfForces work_of_forces;
   };
 
 

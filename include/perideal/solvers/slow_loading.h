@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/solvers/static_solver.h>
+#include <perideal/solvers/work_of_forces.h>
 
 #include <memory>
 
@@ -68,18 +69,17 @@ namespace PeriDeal
   private:
     void solve(Vector &u, const double t);
     void break_bonds(Vector &u, const double t);
-    void find_work_forces(Vector &forces, const Vector &u, const double t);
 
     ElasticOperator              &op;
     std::unique_ptr<StaticSolver> solver;
     const StaticOptions           options;
-    std::vector<bool>             held;   // prescribed unknowns
     Vector                        last;   // equilibrium before the step
     Vector                        before; // u less what the last step brought before bonds broke
-    Vector                        forces, last_forces, loads, scratch;
+    Vector                        unbalanced, scratch;
+    WorkOfForces                  work_of_forces;
     double size = 0.; // of the residual of the largest load so far, by which others are measured
     double now = 0., last_time = 0.;
-    bool   has_before = false, loaded = false;
+    bool   has_before        = false;
     unsigned int  iterations = 0, steps = 0;
     LoadingEnergy so_far;
   };

@@ -17,6 +17,9 @@ namespace PeriDeal
   /** C^{-1} with diagonal C, owned entries: a product is cheaper than a division. */
   std::vector<double> inverse_capacity(const Operator &op);
 
+  /** Owned entries: whether a boundary condition prescribes them. */
+  std::vector<bool> held_unknowns(const Operator &op);
+
   /** Bytes of vectors. */
   std::size_t memory_of(const std::initializer_list<const Vector *> vectors);
 

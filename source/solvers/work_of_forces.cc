@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/solvers/step_tools.h>
+#include <perideal/solvers/work_of_forces.h>
+
+namespace PeriDeal
+{
+  WorkOfForces::WorkOfForces(ElasticOperator &op)
+    : op(op)
+    , held(held_unknowns(op))
+  {
+    for (Vector *v : {&load, &forces, &last_forces})
+      op.initialize_vector(*v);
+  }
+
+
+  void WorkOfForces::find_forces(const Vector &unbalanced)
+  {
+    for (unsigned int i = 0; i < held.size(); ++i)
+      forces.local_element(i) =
+        load.local_element(i) - (held[i] ? unbalanced.local_element(i) : 0.);
+  }
+
+
+  void WorkOfForces::begin(const Vector &unbalanced, const double t)
+  {
+    op.mechanical_loads(load, t);
+    find_forces(unbalanced);
+    last_forces.swap(forces);
+  }
+
+
+  double WorkOfForces::step(const Vector &du, const Vector &unbalanced, const double t)
+  {
+    if (op.depends_on_time())
+      op.mechanical_loads(load, t);
+    find_forces(unbalanced);
+    const double work = 0.5 * (forces * du + last_forces * du);
+    last_forces.swap(forces);
+    return work;
+  }
+} // namespace PeriDeal
