@@ -155,7 +155,7 @@ def models():
     """Finite elements on the same pixels: the macroscopic stress, and the means of the phases under strain and cooling."""
     table = Comparison("Peridynamics against finite elements on the same pixels, relative")
     scenes = [("longitudinal.prm", None), ("cross_section.prm", None), ("void_defect.prm", None), ("void_length.prm", "length_31"),
-              ("slanted_void.prm", None), ("circular_void.prm", "circle_40")]
+              ("slanted_void.prm", None), ("circular_void.prm", "circle_40"), ("delamination.prm", None)]
     for name, image in scenes:
         run = wire(name, image, models="finite elements, peridynamics")
         pd, fem = (run.model(m) for m in ("peridynamics", "finite elements"))
@@ -165,16 +165,6 @@ def models():
             check_close(a["volume fraction"], b["volume fraction"], relative=1e-12, what=f"{name}: share of {phase}")
             table.add(f"  {phase}: mean xx", a["mean stress"]["xx"], b["mean stress"]["xx"], relative=STRAINED)
             table.add(f"  {phase}: mean von Mises", a["von mises"]["mean"], b["von mises"]["mean"], relative=STRAINED)
-    table.show()
-
-
-def delamination():
-    """A void between filament and silver relieves the silver beside it, in both models alike."""
-    table = Comparison("Filament loose from the silver, against finite elements on the same pixels, relative")
-    sound, loose = (wire(name, models="finite elements, peridynamics") for name in ("longitudinal.prm", "delamination.prm"))
-    for phase in PHASES:
-        pd, fem = (peak(loose, phase, "mean", m) / peak(sound, phase, "mean", m) for m in ("peridynamics", "finite elements"))
-        table.add(f"{phase}: mean von Mises stress over that of the sound wire", pd, fem, relative=STRAINED)
     table.show()
 
 
