@@ -126,9 +126,10 @@ class Wire:
         elif o.defect == "circle":
             self.fill(lambda p, q: math.hypot(p - x, q - y) < 0.5 * o.diameter, DEFECT)
         elif o.defect == "irregular":
-            line = rough_line(self.rng, 90, 0.08 * o.diameter, 5)
-            self.fill(lambda p, q: math.hypot((p - x) / 0.7, q - y) <
-                      0.5 * o.diameter + line[int(90 * math.atan2(q - y, p - x) / (2 * math.pi)) % 90], DEFECT)
+            self.draw_irregular_defect(x, y)
+            others = [m for m in self.middles if m != middle]
+            for k in range(o.defects - 1):
+                self.draw_irregular_defect(self.rng.uniform(0.2, 0.8) * self.width, others[k % len(others)] if others else y)
         else:  # delamination: what is matrix just above and below the filament
             half = 0.5 * o.thickness + 3 * o.roughness
             for i in range(max(0, int(x - 0.5 * o.length)), min(self.width, int(x + 0.5 * o.length))):
@@ -136,6 +137,13 @@ class Wire:
                 if column:
                     for j in range(max(column) + 1, min(self.height, max(column) + 1 + o.breadth)):
                         self.phase[j][i] = DEFECT
+
+    def draw_irregular_defect(self, x, y):
+        """A blob taller than wide."""
+        diameter = self.options.diameter
+        line = rough_line(self.rng, 90, 0.08 * diameter, 5)
+        self.fill(lambda p, q: math.hypot((p - x) / 0.7, q - y) <
+                  0.5 * diameter + line[int(90 * math.atan2(q - y, p - x) / (2 * math.pi)) % 90], DEFECT)
 
     def write(self, path):
         """As PNG, every pixel scale x scale times."""
@@ -149,6 +157,7 @@ ALL = {
     "longitudinal": [], "single_filament": ["--filaments", "1"],
     "cross_section": ["--section", "cross", "--bridges", "9", "--thickness", "22", "--roughness", "1"],
     "irregular": ["--defect", "irregular", "--diameter", "20"],
+    "several": ["--defect", "irregular", "--diameter", "20", "--defects", "4"],
     **{f"length_{n:02}": ["--defect", "rectangle", "--breadth", "5", "--length", str(n + 2), "--edge", "2"]
        for n in (7, 13, 20, 31)},
     **{f"width_{n:02}": ["--defect", "rectangle", "--breadth", str(n), "--length", "33", "--edge", "2"]
@@ -191,6 +200,7 @@ def make_parser():
     add("--length", type=float, default=14, help="of a rectangle or a slanted defect along y, of a delamination along x (14)")
     add("--breadth", type=int, default=5, help="of a rectangle or a slanted defect along x, opening of a delamination (5)")
     add("--diameter", type=float, default=14, help="of a circle or an irregular defect (14)")
+    add("--defects", type=int, default=1, help="number of irregular defects: one in the middle, the others anywhere in the other filaments (1)")
     add("--edge", type=float, default=0,
         help="a rectangle begins so far below the nominal lower side of the filament (0: it lies in the middle)")
     add("--at", type=pair, help="x,y: middle of the defect (middle of a filament)")
@@ -204,7 +214,7 @@ def main():
     """One image or all of them."""
     parser = make_parser()
     options = parser.parse_args()
-    if min(options.width, options.height, options.filaments, options.scale) < 1:
+    if min(options.width, options.height, options.filaments, options.scale, options.defects) < 1:
         parser.error("sizes and numbers have to be 1 or more")
     if not options.all:
         Wire(options).write(options.output)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Le, thesis, North Carolina State University (2014), chapter 2: plane elasticity."""
+"""Le, thesis, North Carolina State University (2014), chapter 2: plane elasticity; chapter 3 is in le_2014_wires."""
 
 import numpy as np
 
 import figures
+import le_2014_wires
 from results import FEM, PD, fitted_order
 from lines import Line, Paper, Picture, Table
 
@@ -69,7 +70,7 @@ def section(published):
     over_h = [plate_line(f"horizon {length(h):g} mm, m = 5", f"hole_{h}_m5", length(h)) for h in HORIZONS]
     over_m = [plate_line(f"horizon 3 mm, m = {m}", f"hole_3_m{m}", 3) for m in RATIOS]
     influence = [plate_line(what, name, 3) for what, name in (
-        ("1", "hole_3_m5"), ("conical", "influence_conical_0"), ("1/r", "influence_constant_1"), ("conical/r", "influence_conical_1"), ("conical/r², the default", "influence_conical_2"))]
+        ("1", "hole_3_m5"), ("conical, the default", "influence_conical_0"), ("1/r", "influence_constant_1"), ("conical/r", "influence_conical_1"), ("conical/r²", "influence_conical_2"))]
     corner = [Line(f"horizon {length(h):g} mm", f"corner_{h}", lambda study, h=h: [at_hole(study[f"corner_{h}"])]) for h in CORNERS]
     columns = ["u_x of the end, percent above finite elements", "von Mises above the hole"]
     tables = [
@@ -84,11 +85,13 @@ def section(published):
         Table("corner", "Fig. 2.12: stress above the corner of a square hole", "A picture. Von Mises' stress in MPa of the node next to the upper corner, m = 5.", ["von Mises"], corner, kind="picture", digits=4),
         Table("slope", "Fig. 2.12: the power of the horizon", "Fitted over 3, 2 and 1.5 mm. The stress at a corner of 90 degrees grows with distance to the power -0.4555 (Williams).", ["exponent"],
               [Line("m = 5", [f"corner_{h}" for h in reversed(FITTED)], corner_slope)], kind="picture", digits=3)]
+    tables += le_2014_wires.tables(published)
     drawn = sorted({f"hole_3_m{m}" for m in RATIOS} | {f"hole_{h}_m5" for h in HORIZONS} | {f"corner_{h}" for h in CORNERS} | {"elements"})
     pictures = [Picture("le_2014_m", "Fig. 2.5: m-convergence.", drawn, draw), Picture("le_2014_delta", "Fig. 2.7: delta-convergence.", [], None),
-                Picture("le_2014_corner", "Fig. 2.12: stress above the corner.", [], None)]
-    return Paper("le_2014", "Le (2014): plates with a round and with a square hole",
+                Picture("le_2014_corner", "Fig. 2.12: stress above the corner.", [], None)] + le_2014_wires.pictures()
+    return Paper("le_2014", "Le (2014): plates with a round and with a square hole, and wires",
                  "Q. V. Le, Relationship between microstructure and mechanical properties in Bi2Sr2CaCu2Ox round wires using peridynamic simulation, thesis, North Carolina State University (2014); the model: Q. V. Le, W. K. Chan, "
                  "J. Schwartz, A two-dimensional ordinary, state-based peridynamic model for linearly elastic solids, Int. J. Numer. Meth. Engng 98 (2014) 547-561.",
-                 "As published: nodes at the centres of square cells, those in the hole left out, volume fraction of equation 2.50, influence function 1, the outermost column of nodes held and loaded. 50 mm divided by horizon/m is rounded to a "
-                 "whole number of cells.", tables, pictures)
+                 "Chapter 2 as published: nodes at the centres of square cells, those in the hole left out, volume fraction of equation 2.50, influence function 1, the outermost column of nodes held and loaded. 50 mm divided by horizon/m is rounded to a "
+                 "whole number of cells. Chapter 3: a cell for each pixel of 0.56 micrometres, ten more layers of silver around the image, horizon of five cells, influence function 1, bonds cut at voids.",
+                 tables, pictures)

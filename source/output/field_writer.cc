@@ -19,10 +19,12 @@ namespace PeriDeal
   template <int dim>
   FieldWriter<dim>::FieldWriter(const DoFHandler<dim> &dofs,
                                 const std::string     &directory,
-                                const std::string     &series)
+                                const std::string     &series,
+                                const Choice          &shows)
     : dofs(dofs)
     , directory(directory)
     , series(series)
+    , shows(shows)
   {
     // The default compression takes ten times as long for files that are a tenth smaller.
     DataOutBase::VtkFlags flags;
@@ -99,7 +101,7 @@ namespace PeriDeal
     patches.clear();
     patches.reserve(dofs.get_triangulation().n_active_cells());
     for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned())
+      if (cell->is_locally_owned() && (!shows || shows(cell->center())))
         {
           patches.emplace_back();
           auto &patch          = patches.back();

@@ -136,6 +136,7 @@ namespace PeriDeal
       "Gmsh file (.msh) of quadrilaterals or hexahedra, relative to the working directory or else to the "
       "folder of the scene file. Its boundary ids name the sides; give `Horizon` as a length.");
     declare_image();
+    declare_extra_layers();
     parse();
   }
 
@@ -157,7 +158,7 @@ namespace PeriDeal
     for (unsigned int d = 0; d < dim; ++d)
       {
         const double slack = 1e-9 * (upper[d] - lower[d]);
-        inside             = inside && p[d] >= lower[d] - slack && p[d] <= upper[d] + slack;
+        inside = inside && p[d] >= body_lower[d] - slack && p[d] <= body_upper[d] + slack;
       }
     return inside;
   }
@@ -305,6 +306,7 @@ namespace PeriDeal
         refuse_image_entries();
         parse_cells();
       }
+    parse_extra_layers();
     parse_hole();
     coarsening = whole_number("Coarsening");
     parse_fine_part();

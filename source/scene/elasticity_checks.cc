@@ -196,6 +196,8 @@ namespace PeriDeal
                       "'" + time.stepper +
                         "' is for motion ('Physics = elasticity'); 'Physics' is '" +
                         names_of(general.physics).physics + "'. Use 'auto'.");
+        if (domain.has_extra_layers())
+          entry_error(domain.where("Extra layers"), "is for 'Physics = elasticity'.");
         return;
       }
     const bool changes_temperature = !is_zero(elasticity.temperature_change);

@@ -339,7 +339,7 @@ namespace PeriDeal
 
     void note_areas(Domain<2> &domain)
     {
-      const PhaseMap                &map    = *domain.image;
+      const PhaseMap                 map    = domain.image_of_body();
       const std::vector<std::size_t> counts = map.counts();
       std::string text = "the image has " + std::to_string(map.n_cells[0]) + " x " +
                          std::to_string(map.n_cells[1]) + " cells: ";

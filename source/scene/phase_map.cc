@@ -183,6 +183,48 @@ namespace PeriDeal
   }
 
 
+  PhaseMap PhaseMap::surrounded(const std::array<unsigned int, 4> &n_layers, const int phase) const
+  {
+    PhaseMap map = *this;
+    for (unsigned int d = 0; d < 2; ++d)
+      {
+        map.lower[d] -= spacing[d] * n_layers[2 * d];
+        map.n_cells[d] += n_layers[2 * d] + n_layers[2 * d + 1];
+      }
+    map.phases.clear();
+    const auto near = [&](const unsigned int k, const unsigned int d) {
+      return std::clamp(static_cast<int>(k) - static_cast<int>(n_layers[2 * d]),
+                        0,
+                        static_cast<int>(n_cells[d]) - 1);
+    };
+    for (unsigned int j = 0; j < map.n_cells[1]; ++j)
+      for (unsigned int i = 0; i < map.n_cells[0]; ++i)
+        {
+          const bool own = i >= n_layers[0] && i < n_layers[0] + n_cells[0] && j >= n_layers[2] &&
+                           j < n_layers[2] + n_cells[1];
+          map.phases.push_back(own || phase == nearest ? phases[index(near(i, 0), near(j, 1))] :
+                                                         phase);
+        }
+    return map;
+  }
+
+
+  PhaseMap PhaseMap::without(const std::array<unsigned int, 4> &n_layers) const
+  {
+    PhaseMap map = *this;
+    for (unsigned int d = 0; d < 2; ++d)
+      {
+        map.lower[d] += spacing[d] * n_layers[2 * d];
+        map.n_cells[d] -= n_layers[2 * d] + n_layers[2 * d + 1];
+      }
+    map.phases.clear();
+    for (unsigned int j = 0; j < map.n_cells[1]; ++j)
+      for (unsigned int i = 0; i < map.n_cells[0]; ++i)
+        map.phases.push_back(phases[index(i + n_layers[0], j + n_layers[2])]);
+    return map;
+  }
+
+
   int PhaseMap::phase(const int i, const int j) const
   {
     const bool inside = i >= 0 && j >= 0 && i < static_cast<int>(n_cells[0]) &&

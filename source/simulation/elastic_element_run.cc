@@ -119,6 +119,8 @@ namespace PeriDeal
         visit_cells(
           QGauss<dim>(handler.get_fe().degree + 1),
           [&](const auto &values, const unsigned int q, const auto &, const auto &gradient) {
+            if (!scene.domain.shows(values.get_cell()->center()))
+              return;
             volume += values.JxW(q);
             if (!elements->cut_cells()[values.get_cell()->active_cell_index()])
               sum += values.JxW(q) *
@@ -161,7 +163,8 @@ namespace PeriDeal
         visit_cells(
           QGauss<dim>(handler.get_fe().degree + 1),
           [&](const auto &values, const unsigned int q, const auto &, const auto &gradient) {
-            if (elements->cut_cells()[values.get_cell()->active_cell_index()])
+            if (elements->cut_cells()[values.get_cell()->active_cell_index()] ||
+                !scene.domain.shows(values.get_cell()->center()))
               return;
             if (q == 0)
               samples.push_back(

@@ -166,9 +166,11 @@ namespace PeriDeal
         std::string            series = model.name();
         std::replace(series.begin(), series.end(), ' ', '_');
         if (writers.size() == k)
-          writers.push_back(std::make_unique<FieldWriter<dim>>(model.dofs(),
-                                                               scene.general.output_directory,
-                                                               series));
+          writers.push_back(std::make_unique<FieldWriter<dim>>(
+            model.dofs(),
+            scene.general.output_directory,
+            series,
+            [this](const Point<dim> &p) { return scene.domain.shows(p); }));
         const std::string name =
           writers[k]->write(model.fields(), t, scene.output.vtu, scene.output.hdf5);
         if (!name.empty())
@@ -337,8 +339,8 @@ namespace PeriDeal
       }
     if (!record->comparison.empty())
       summary["comparison"] = record->comparison;
-    Point<dim> lower, upper;
-    for (unsigned int d = 0; d < dim; ++d)
+    Point<dim> lower = scene.domain.lower, upper = scene.domain.upper;
+    for (unsigned int d = 0; d < dim && !scene.domain.has_extra_layers(); ++d)
       {
         lower[d] = summary["domain"]["lower"][d];
         upper[d] = summary["domain"]["upper"][d];

@@ -128,10 +128,11 @@ namespace PeriDeal
         SymmetricTensor<2, 3> sum;
         double                volume = 0.;
         for (unsigned int i = 0; i < stress.size(); ++i)
-          {
-            sum += node_set->volume(i) * stress[i];
-            volume += node_set->volume(i);
-          }
+          if (scene.domain.shows(node_set->position(i)))
+            {
+              sum += node_set->volume(i) * stress[i];
+              volume += node_set->volume(i);
+            }
         return Utilities::MPI::sum(sum, handler.get_communicator()) /
                Utilities::MPI::sum(volume, handler.get_communicator());
       }
@@ -141,9 +142,10 @@ namespace PeriDeal
         const auto                stress = nodal_stress(states->tensors(this->displacement));
         std::vector<StressSample> samples;
         for (unsigned int i = 0; i < stress.size(); ++i)
-          samples.push_back({scene.material.phases.all().at(node_set->position(i)),
-                             node_set->volume(i),
-                             stress[i]});
+          if (scene.domain.shows(node_set->position(i)))
+            samples.push_back({scene.material.phases.all().at(node_set->position(i)),
+                               node_set->volume(i),
+                               stress[i]});
         return samples;
       }
 

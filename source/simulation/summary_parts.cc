@@ -120,13 +120,15 @@ namespace PeriDeal
                                          {"flow", names.flow},
                                          {"quantity", names.quantity}};
     static const char *const shapes[] = {"box", "plate with hole", "mesh file", "image"};
-    const auto               corners  = bounding_box(mesh, communicator);
+    const auto               corners  = scene.domain.has_extra_layers() ?
+                                          std::make_pair(scene.domain.body_lower, scene.domain.body_upper) :
+                                          bounding_box(mesh, communicator);
     summary["domain"]                 = {{"lower", coordinates(corners.first)},
                                          {"upper", coordinates(corners.second)},
                                          {"shape", shapes[static_cast<int>(scene.domain.shape)]}};
     summary["cells"]                  = mesh.n_global_active_cells();
     if (scene.domain.image)
-      summary["image"] = describe_image(scene.domain.image_file, *scene.domain.image);
+      summary["image"] = describe_image(scene.domain.image_file, scene.domain.image_of_body());
     return summary;
   }
 
@@ -135,7 +137,7 @@ namespace PeriDeal
   void write_image_as_read(const Scene<dim> &scene, const MPI_Comm communicator)
   {
     if (scene.domain.image)
-      write_files({{"image_as_read.png", encode_png(scene.domain.image->picture())}},
+      write_files({{"image_as_read.png", encode_png(scene.domain.image_of_body().picture())}},
                   scene.general.output_directory,
                   communicator);
   }

@@ -14,6 +14,8 @@ import sys
 import tempfile
 import zlib
 
+import h5py
+
 from scene_test import (SOURCE_DIR, Comparison, check, check_close, check_less, check_message, finish, print_table,
                         run_scene)
 
@@ -21,9 +23,9 @@ FOLDER = tempfile.mkdtemp(prefix="perideal_images_")
 QUIET = {"Output/Fields": "none"}
 PHASES = ("silver", "bi2212")
 
-# Gaps between peridynamics and finite elements; measured at most 1.52 %, 1.91 % and 4.3 %.
-MACROSCOPIC = 0.023
-STRAINED = 0.029
+# Gaps between peridynamics and finite elements; measured at most 1.9 %, 3.8 % and 4.3 %.
+MACROSCOPIC = 0.028
+STRAINED = 0.057
 COOLED = 0.064
 BALANCE = 1e-8
 
@@ -124,11 +126,11 @@ def trends():
 
 def show_kinds(table, highest):
     """Le (2014): 111, and nearly 67.7, over 67.7 MPa."""
-    check(highest["void"] > 1.25,  # measured 1.359
+    check(highest["void"] > 1.5,  # measured 1.714
            f"a void raises the largest stress in Bi2212 by {highest['void']:.3f}")
     for kind in ("soft", "hard"):
-        table.add(kind, highest[kind], 1, absolute=0.016)  # measured 0.0105
-        check(highest["void"] > 1.2 * highest[kind], f"a void is worse than a {kind} defect: {highest['void']:.3f}, {highest[kind]:.3f}")
+        table.add(kind, highest[kind], 1, absolute=0.047)  # measured 0.032 and 0.013
+        check(highest["void"] > 1.45 * highest[kind], f"a void is worse than a {kind} defect: {highest['void']:.3f}, {highest[kind]:.3f}")
 
 
 def check_trends(bi2212, silver):
@@ -139,16 +141,18 @@ def check_trends(bi2212, silver):
 
     grows(bi2212, ["sound", "length_07", "length_13", "length_20"], "Bi2212 with the length of a void")
     check(bi2212["length_31"] < 0.9 * bi2212["length_20"], "a void through the filament relieves Bi2212")
-    grows(silver, ["length_13", "length_20", "length_31"], "silver with the length of a void")
+    grows(silver, ["sound", "length_07", "length_13", "length_20", "length_31"], "silver with the length of a void")
     grows(silver, ["width_20", "width_10", "width_03"], "silver with a narrower slit")
     grows(silver, ["slanted_20", "slanted_10", "slanted_05"], "silver with a narrower slanted slit")
     for width in (10, 20):  # in Bi2212 only: the acute corners of these pixels are in silver
         check(bi2212[f"slanted_{width}"] < bi2212[f"width_{width}"], f"a slanted slit of {width} pixels is no worse than an upright one")
     grows(bi2212, ["circle_06", "circle_12", "circle_18"], "Bi2212 with the diameter of a void")
     check(bi2212["circle_40"] < 0.9 * bi2212["circle_18"], "a round void wider than the filament relieves Bi2212")
-    grows(silver, ["circle_12", "circle_18", "circle_40"], "silver with the diameter of a void")
+    grows(silver, ["sound", "circle_06", "circle_12", "circle_18", "circle_40"], "silver with the diameter of a void")
     grows(bi2212, ["aspect_5_20", "aspect_10_10", "aspect_20_5"], "Bi2212 with the aspect ratio of a void")
-    check_close(bi2212["aspect_5_20"], bi2212["sound"], relative=0.01, what="a void along the filament against the sound wire")  # measured 0.7 %
+    grows(silver, ["aspect_5_20", "aspect_10_10", "aspect_20_5"], "silver with the aspect ratio of a void")
+    for name, values, gap in (("Bi2212", bi2212, 0.022), ("silver", silver, 3e-4)):  # measured 1.4 % and 0.02 %
+        check_close(values["aspect_5_20"], values["sound"], relative=gap, what=f"{name}: a void along the filament against the sound wire")
 
 
 def models():
@@ -316,6 +320,49 @@ def islands():
         check_close(transient.probe(model, (0.45, 0.35)), 1, absolute=1e-8, what=f"{model}: an insulated part keeps its heat")
 
 
+def layers():
+    """Extra layers take part in everything but the results, and relieve the outermost nodes of their cut families."""
+    text, _ = small(LADDER)
+    stiff = {**ELASTIC, "Material/Phases/Young modulus": "fibre: 30"}
+    chosen = {**stiff, "Output/Fields": "hdf5, vtu", "Output/Probes": "0.55,0.15 ; 1,0.4", "Domain/Extra layers": "left: 3 ; right: 3 ; top: 2"}
+    plain = run_scene(text, stiff)
+    runs = {n: run_scene(text, chosen, ranks=n) for n in (1, 2, 4)}
+    summary = runs[1].summary
+    check(summary["cells"] == 39 + 6 * 6 + 10 * 2, f"cells of the mesh: {summary['cells']}")
+    check(summary["image"] == plain.summary["image"], "the image is described without layers")
+    check(summary["domain"]["lower"] == plain.summary["domain"]["lower"] and
+          max(abs(a - b) for a, b in zip(summary["domain"]["upper"], plain.summary["domain"]["upper"])) < 1e-12, "so is the body")
+    check(read_png(os.path.join(runs[1].folder, "image_as_read.png")) == read_png(os.path.join(plain.folder, "image_as_read.png")), "and the picture of it")
+    for model in ("finite elements", "peridynamics"):
+        for n, run in runs.items():
+            with h5py.File(os.path.join(run.folder, run.summary["fields"][0]["files"][model])) as file:
+                x = file["nodes"][()]
+            check(len(x) == 4 * 39 and x.min() > -1e-6 and x[:, 0].max() < 1 + 1e-6 and x[:, 1].max() < 0.4 + 1e-6, f"{model}, {n} processes: fields of the body alone")
+            check_close(run.model(model)["mean stress"]["xx"], runs[1].model(model)["mean stress"]["xx"], relative=1e-8, what=f"{model}: mean stress on {n} processes")
+            check_close(run.probe(model, (0.55, 0.15), column="ux"), runs[1].probe(model, (0.55, 0.15), column="ux"), relative=1e-8, what=f"{model}: displacement on {n} processes")
+        shares = [entry["volume fraction"] for entry in phases(runs[1], model).values()]
+        check_close(shares, [29 / 39, 10 / 39], relative=1e-12, what=f"{model}: volume fractions of the body")
+    # A bar stretched evenly: what its ends show without layers is the error of cut families.
+    gaps = {}
+    for n in (0, 6):
+        run = run_scene("prm/elasticity/bar_2d.prm", {**QUIET, "Models": "peridynamics", "Boundary conditions/Traction": "", "Boundary conditions/Symmetry": "bottom",
+                                                      "Boundary conditions/Displacement": "left: 1e-3*x, free ; right: 1e-3*x, free", "Domain/Extra layers": f"left: {n} ; right: {n}",
+                                                      "Output/Line": "0,0.5 ; 2,0.5 ; 81"})
+        rows = run.rows("peridynamics", table="line.csv")
+        gaps[n] = max(abs(row["sxx"] / rows[40]["sxx"] - 1) for row in rows)
+    print(f"largest difference of the stress along a bar: {gaps[0]:.3g} without, {gaps[6]:.3g} with six layers at its ends")
+    check(gaps[6] < 0.1 * gaps[0], f"layers at the ends of a bar: {gaps}")
+    # The silver at the sides of the wire: 128 MPa without layers, as finite elements with them.
+    highest = {n: {m: peak(run, "silver", "maximum", m) for m in ("finite elements", "peridynamics")} for n, run in
+               ((n, wire("longitudinal.prm", models="finite elements, peridynamics", **{"Domain/Extra layers": str(n), "Domain/Extra layers phase": "silver" if n else ""})) for n in (0, 10))}
+    print(f"largest von Mises stress in silver: {highest}")
+    for text_of_run, overrides, parts in ((text, {**chosen, "Output/Probes": "-0.05,0.1"}, ["'Probes'", "outside the body"]),
+                                          ("prm/quick_start.prm", {"Domain/Extra layers": "2"}, ["'Extra layers' in section 'Domain'", "'Physics = elasticity'"]),
+                                          ("prm/elasticity/bar_2d.prm", {"Domain/Extra layers": "2", "Domain/Extra layers phase": "silver"}, ["'Extra layers phase'", "not 'image'"]),
+                                          ("prm/elasticity/bar_2d.prm", {"Domain/Extra layers": "front: 2"}, ["'Extra layers' in section 'Domain'", "'front'"])):
+        check_message(run_scene(text_of_run, overrides, expect_error=True), *parts)
+
+
 def mistakes():
     """Each ends with one message that says what to do."""
     text = small(LADDER)[0]
@@ -357,6 +404,6 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    for part in sys.argv[1:] or ["files", "heat", "islands", "mistakes", "kinds", "trends", "models", "cooling"]:
+    for part in sys.argv[1:] or ["files", "heat", "islands", "layers", "mistakes", "kinds", "trends", "models", "cooling"]:
         globals()[part]()
     finish(FOLDER)

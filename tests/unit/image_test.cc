@@ -210,6 +210,60 @@ namespace PeriDeal
   }
 
 
+  TEST(Image, extra_layers)
+  {
+    const Image    image(small);
+    const Settings elastic = {{"General/Physics", "elasticity"},
+                              {"Material/Young modulus", "1"},
+                              {"Material/Poisson ratio", "0.3"},
+                              {"Boundary conditions/Displacement", "left: 0, 0 ; right: 0.1, free"}};
+    Scene<2>       plain, nearest, named;
+    fill(plain, image.settings(elastic));
+    fill(nearest, image.settings(elastic + Settings{{"Domain/Extra layers", "left: 2 ; top: 1"}}));
+    fill(named,
+         image.settings(elastic + Settings{{"Domain/Extra layers", "1"},
+                                           {"Domain/Extra layers phase", "fibre"}}));
+    EXPECT_EQ(nearest.domain.cells, (std::array<unsigned int, 2>{{6, 4}}));
+    EXPECT_EQ(nearest.domain.lower, Point<2>(-2., 0.));
+    EXPECT_EQ(nearest.domain.upper, Point<2>(4., 4.));
+    EXPECT_EQ(nearest.domain.body_lower, Point<2>(0., 0.));
+    EXPECT_EQ(nearest.domain.body_upper, Point<2>(4., 3.));
+    EXPECT_TRUE(nearest.domain.shows(Point<2>(0.5, 2.5)));
+    EXPECT_FALSE(nearest.domain.shows(Point<2>(0.5, 3.5)));
+    EXPECT_FALSE(nearest.domain.shows(Point<2>(-0.5, 0.5)));
+    EXPECT_FALSE(plain.domain.has_extra_layers());
+    const PhaseMap &map = *plain.domain.image;
+    for (const Scene<2> *scene : {&nearest, &named})
+      {
+        EXPECT_EQ(scene->domain.image_of_body().phases, map.phases);
+        EXPECT_EQ(scene->domain.image_of_body().lower, map.lower);
+        for (std::size_t cell = 0; cell < map.phases.size(); ++cell)
+          {
+            const Point<2> p = map.center(cell);
+            EXPECT_EQ(scene->domain.image->at(p[0], p[1]), map.phases[cell]);
+          }
+      }
+    for (double y = 0.5; y < 3.; ++y)
+      for (const double x : {-1.5, -0.5})
+        EXPECT_EQ(nearest.domain.image->at(x, y), map.at(0.5, y));
+    for (double x = 0.5; x < 4.; ++x)
+      EXPECT_EQ(nearest.domain.image->at(x, 3.5), map.at(x, 2.5));
+    EXPECT_EQ(nearest.domain.image->at(-1.5, 3.5), map.at(0.5, 2.5));
+    for (const Point<2> &p : {Point<2>(-0.5, 1.5), Point<2>(4.5, 3.5), Point<2>(1.5, -0.5)})
+      EXPECT_EQ(named.domain.image->at(p[0], p[1]), 1);
+    const auto with = [&](const Settings &more) { return fault(image.settings(elastic + more)); };
+    expect_parts(with({{"Domain/Extra layers", "-1"}}), {"'Extra layers' in section 'Domain'"});
+    expect_parts(with({{"Domain/Extra layers", "lef: 1"}}),
+                 {"'Extra layers' in section 'Domain'", "'lef'", "'left'"});
+    expect_parts(with({{"Domain/Extra layers phase", "fibre"}}),
+                 {"'Extra layers phase'", "'Extra layers' is 0"});
+    expect_parts(with({{"Domain/Extra layers", "2"}, {"Domain/Extra layers phase", "fiber"}}),
+                 {"'Extra layers phase'", "'fiber'", "'fibre'"});
+    expect_parts(fault(image.settings({{"Domain/Extra layers", "2"}})),
+                 {"'Extra layers'", "'Physics = elasticity'"});
+  }
+
+
   TEST(Image, conducts_in_series)
   {
     // Columns of 1, 3 and 1 in series between 0 and 1, three high: heat 3/(4/1 + 2/3).

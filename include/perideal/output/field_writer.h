@@ -8,6 +8,7 @@
 
 #include <perideal/base/types.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,16 @@ namespace PeriDeal
   class FieldWriter : public dealii::DataOutInterface<dim>
   {
   public:
-    /** @param directory where the series goes; @param series its name, for example `finite_elements` */
+    using Choice = std::function<bool(const dealii::Point<dim> &)>;
+
+    /**
+     * @param directory where the series goes; @param series its name, for example `finite_elements`
+     * @param shows     whether the cell with this centre is written; empty: all are
+     */
     FieldWriter(const dealii::DoFHandler<dim> &dofs,
                 const std::string             &directory,
-                const std::string             &series);
+                const std::string             &series,
+                const Choice                  &shows = {});
 
     /** Returns the name of the HDF5 file relative to the directory (empty if not asked for). Collective. */
     std::string write(const std::vector<OutputField> &fields,
@@ -57,6 +64,7 @@ namespace PeriDeal
 
     const dealii::DoFHandler<dim>                    &dofs;
     std::string                                       directory, series;
+    const Choice                                      shows;
     unsigned int                                      n_written = 0;
     std::vector<dealii::DataOutBase::Patch<dim, dim>> patches;
     std::vector<std::string>                          names;

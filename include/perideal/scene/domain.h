@@ -67,7 +67,7 @@ namespace PeriDeal
     Domain();
 
     Shape                         shape = Shape::box;
-    dealii::Point<dim>            lower, upper;
+    dealii::Point<dim>            lower, upper; // with the extra layers, as cells
     std::array<unsigned int, dim> cells;
     NodePlacement                 nodes = NodePlacement::vertices;
     dealii::Point<dim>            hole_center;
@@ -78,6 +78,10 @@ namespace PeriDeal
     unsigned int coarsening = 0; // times that cells are merged away from where they stay fine
     Expression   fine;           // they stay fine where greater than 0
     bool         fine_by_formula = false; // else in the zone of section `Coupling`
+
+    /** Rows of cells beyond each side (left, right, bottom, ...), which are in no result, and the body between them. */
+    std::array<unsigned int, 2 * dim> extra_layers{};
+    dealii::Point<dim>                body_lower, body_upper;
 
     std::string               image_file;
     std::shared_ptr<PhaseMap> image; // of `Shape = image`, else null
@@ -107,7 +111,7 @@ namespace PeriDeal
     void parse();
 
     /**
-     * Whether a point lies in the box between the corners, its boundary included (relative slack
+     * Whether a point lies in the box of the body, without extra layers, its boundary included (relative slack
      * 1e-9).
      */
     bool contains(const dealii::Point<dim> &p) const;
@@ -124,6 +128,14 @@ namespace PeriDeal
     /** Whether cells of the lattice are missing. */
     bool has_voids() const;
 
+    bool has_extra_layers() const;
+
+    /** Whether what is at a point of the mesh belongs to the results: anywhere but in extra layers. */
+    bool shows(const dealii::Point<dim> &p) const;
+
+    /** The image without extra layers. */
+    PhaseMap image_of_body() const;
+
   private:
     /** Cells or Node spacing. */
     void parse_cells();
@@ -132,6 +144,9 @@ namespace PeriDeal
     void parse_fine_part();
 
     void parse_hole();
+
+    void declare_extra_layers();
+    void parse_extra_layers();
 
     void declare_image();
     void parse_image();

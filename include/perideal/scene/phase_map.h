@@ -84,6 +84,14 @@ namespace PeriDeal
       return static_cast<std::size_t>(j) * n_cells[0] + i;
     }
 
+    static constexpr int nearest = -3; // of surrounded(): the phase of the nearest cell
+
+    /** With rows of cells of this phase beyond the left, right, lower and upper side. */
+    PhaseMap surrounded(const std::array<unsigned int, 4> &n_layers, const int phase) const;
+
+    /** Without these rows. */
+    PhaseMap without(const std::array<unsigned int, 4> &n_layers) const;
+
     /** Phase of a cell, empty outside the image. */
     int phase(const int i, const int j) const;
 
