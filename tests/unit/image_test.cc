@@ -231,7 +231,6 @@ namespace PeriDeal
     EXPECT_TRUE(nearest.domain.shows(Point<2>(0.5, 2.5)));
     EXPECT_FALSE(nearest.domain.shows(Point<2>(0.5, 3.5)));
     EXPECT_FALSE(nearest.domain.shows(Point<2>(-0.5, 0.5)));
-    EXPECT_FALSE(plain.domain.has_extra_layers());
     const PhaseMap &map = *plain.domain.image;
     for (const Scene<2> *scene : {&nearest, &named})
       {
