@@ -74,10 +74,7 @@ namespace PeriDeal
       /// Buffers of a tile of any admitted size, in the memory of this thread.
       StencilTile prepare_tile(const StencilPlan &plan)
       {
-        StencilTile tile;
-        tile.channels   = plan.channels.data();
-        tile.n_channels = plan.channels.size();
-        tile.weights    = plan.weights.data();
+        StencilTile tile = {};
         std::copy(plan.halo.begin(), plan.halo.end(), tile.halo);
         tile.max_points                    = tile_length(plan);
         const std::ptrdiff_t n_folded_rows = StencilKernel::block_rows + 2 * tile.halo[1];
@@ -93,6 +90,14 @@ namespace PeriDeal
         tile.column                      = tile.folded + folded_size;
         tile.result                      = tile.column + column_size;
         return tile;
+      }
+
+      void set_plan(const StencilPlan &plan, StencilTile &tile)
+      {
+        tile.channels   = plan.channels.data();
+        tile.n_channels = plan.channels.size();
+        tile.weights    = plan.weights.data();
+        std::copy(plan.odd.begin(), plan.odd.end(), tile.odd);
       }
 
       /// The smallest rectangle with all points of @p runs with x_begin <= x < x_end.
@@ -150,8 +155,8 @@ namespace PeriDeal
           {
             const int  a = key[0], c = key[1];
             const auto mirror = columns.find({{c, a}});
-            const bool shared =
-              (a != c && mirror != columns.end() && bitwise_equal(mirror->second, weights));
+            const bool shared = a != c && plan.odd[0] == plan.odd[2] && mirror != columns.end() &&
+                                bitwise_equal(mirror->second, weights);
             if (shared && a < c)
               continue; // comes with (c,a)
             StencilChannel channel = {};
@@ -188,8 +193,9 @@ namespace PeriDeal
 
   StencilKernel::StencilKernel(const unsigned int                     dim,
                                const std::vector<std::array<int, 3>> &offsets,
-                               const std::vector<double>             &weights)
-    : plan{{{0, 0, 0}}, {}, {}}
+                               const std::vector<double>             &weights,
+                               const std::array<bool, 3>             &odd)
+    : plan{{{0, 0, 0}}, odd, {}, {}}
     , bonds(0)
   {
     if (dim < 1 || dim > 3)
@@ -209,12 +215,16 @@ namespace PeriDeal
     for (const auto &[offset, weight] : sorted)
       {
         std::size_t images = 1;
+        bool        none   = false;
         for (unsigned int i = 0; i < 3; ++i)
           {
             images *= (offset[i] != 0 ? 2 : 1);
             plan.halo[i] = std::max(plan.halo[i], offset[i]);
+            none         = none || (odd[i] && offset[i] == 0);
           }
         bonds += (offset == std::array<int, 3>{{0, 0, 0}} ? 0 : images);
+        if (none || weight == 0.)
+          continue;
         std::vector<double> &column = columns[{{offset[0], offset[2]}}];
         column.resize(offset[1] + 1, 0.); // b increases within (a,*,c)
         column[offset[1]] = weight;
@@ -224,12 +234,12 @@ namespace PeriDeal
 
 
 
-  void StencilKernel::apply_block(const Grid &grid, const Run *runs, const std::size_t n_runs) const
+  void StencilKernel::apply_block(const Term       *terms,
+                                  const std::size_t n_terms,
+                                  const Run        *runs,
+                                  const std::size_t n_runs)
   {
-    internal::StencilTile tile = internal::prepare_tile(plan);
-    tile.row_stride            = grid.row_stride;
-    tile.plane_stride          = grid.plane_stride;
-
+    internal::StencilTile     tile = internal::prepare_tile(terms[0].kernel->plan);
     const internal::Rectangle all =
       internal::bounding_rectangle(runs, n_runs, PTRDIFF_MIN, PTRDIFF_MAX);
     for (std::ptrdiff_t x = all.x_begin; x < all.x_end; x += tile.max_points)
@@ -238,11 +248,24 @@ namespace PeriDeal
           internal::bounding_rectangle(runs, n_runs, x, std::min(x + tile.max_points, all.x_end));
         if (box.x_begin >= box.x_end)
           continue;
-        tile.origin =
-          grid.data + box.x_begin + box.y_begin * grid.row_stride + runs[0].z * grid.plane_stride;
-        tile.n_points = box.x_end - box.x_begin;
-        tile.n_rows   = box.y_end - box.y_begin;
-        internal::compute_stencil_tile(tile);
+        tile.n_points   = box.x_end - box.x_begin;
+        tile.n_rows     = box.y_end - box.y_begin;
+        tile.accumulate = false;
+        for (std::size_t t = 0; t < n_terms; ++t)
+          {
+            const Grid &grid = terms[t].grid;
+            if (terms[t].kernel->plan.channels.empty())
+              continue;
+            internal::set_plan(terms[t].kernel->plan, tile);
+            tile.row_stride   = grid.row_stride;
+            tile.plane_stride = grid.plane_stride;
+            tile.origin       = grid.data + box.x_begin + box.y_begin * grid.row_stride +
+                          runs[0].z * grid.plane_stride;
+            internal::compute_stencil_tile(tile);
+            tile.accumulate = true;
+          }
+        if (!tile.accumulate)
+          std::fill(tile.result, tile.result + tile.n_rows * tile.result_row, 0.);
 
         for (std::size_t i = 0; i < n_runs; ++i)
           {
@@ -263,12 +286,24 @@ namespace PeriDeal
 
   void StencilKernel::row(const Grid &grid, const Run &run) const
   {
-    apply_block(grid, &run, 1);
+    const Term term = {this, grid};
+    apply_block(&term, 1, &run, 1);
   }
 
 
 
   void StencilKernel::apply(const Grid &grid, const Run *runs, const std::size_t n_runs) const
+  {
+    const Term term = {this, grid};
+    apply_sum(&term, 1, runs, n_runs);
+  }
+
+
+
+  void StencilKernel::apply_sum(const Term       *terms,
+                                const std::size_t n_terms,
+                                const Run        *runs,
+                                const std::size_t n_runs)
   {
     for (std::size_t begin = 0, end; begin < n_runs; begin = end)
       {
@@ -276,7 +311,7 @@ namespace PeriDeal
         for (end = begin + 1; end < n_runs; ++end)
           if (runs[end].z != runs[begin].z || internal::block_of(runs[end].y) != block)
             break;
-        apply_block(grid, runs + begin, end - begin);
+        apply_block(terms, n_terms, runs + begin, end - begin);
       }
   }
 

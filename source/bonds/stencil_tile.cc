@@ -59,13 +59,18 @@ namespace PeriDeal
       }
 
       /// The sum of the shifted rows of a channel at one vector of points.
-      template <int n_loads>
+      template <int n_loads, bool odd>
       HWY_INLINE V load_sum(const double *p, const std::ptrdiff_t *shift)
       {
         const D d;
         const V first = hn::LoadU(d, p + shift[0]);
         if constexpr (n_loads == 1)
           return first;
+        else if constexpr (odd && n_loads == 2)
+          return hn::Sub(first, hn::LoadU(d, p + shift[1]));
+        else if constexpr (odd)
+          return hn::Add(hn::Sub(first, hn::LoadU(d, p + shift[1])),
+                         hn::Sub(hn::LoadU(d, p + shift[2]), hn::LoadU(d, p + shift[3])));
         else if constexpr (n_loads == 2)
           return hn::Add(first, hn::LoadU(d, p + shift[1]));
         else if constexpr (n_loads == 3)
@@ -75,14 +80,20 @@ namespace PeriDeal
                          hn::Add(hn::LoadU(d, p + shift[2]), hn::LoadU(d, p + shift[3])));
       }
 
-      /// sum + w_0 p(y) + sum_b w_b (p(y+b) + p(y-b)) with the window centred at p(y).
-      template <int reach>
+      /// sum + w_0 p(y) + sum_b w_b (p(y+b) + p(y-b)) with the window centred at p(y); if odd, sum + sum_b w_b (p(y+b) - p(y-b)).
+      template <int reach, bool odd>
       HWY_INLINE V filter_point(V sum, const V *weights, const V *centre)
       {
-        sum = hn::MulAdd(weights[0], centre[0], sum);
+        if constexpr (!odd)
+          sum = hn::MulAdd(weights[0], centre[0], sum);
         HWY_UNROLL(64)
         for (int b = 1; b <= reach; ++b)
-          sum = hn::MulAdd(weights[b], hn::Add(centre[b], centre[-b]), sum);
+          {
+            if constexpr (odd)
+              sum = hn::MulAdd(weights[b], hn::Sub(centre[b], centre[-b]), sum);
+            else
+              sum = hn::MulAdd(weights[b], hn::Add(centre[b], centre[-b]), sum);
+          }
         return sum;
       }
 
@@ -95,13 +106,13 @@ namespace PeriDeal
       };
 
       /// One row of output at one vector of points.
-      template <int reach, int n_loads>
+      template <int reach, int n_loads, bool odd_x, bool odd_y>
       HWY_INLINE void filter_row(const StencilFilter &f, const V *weights, Position &at, V *window)
       {
         const D d;
-        window[2 * reach] = load_sum<n_loads>(at.source, f.shift);
+        window[2 * reach] = load_sum<n_loads, odd_x>(at.source, f.shift);
         const V before    = hn::LoadU(d, at.initial);
-        hn::StoreU(filter_point<reach>(before, weights, window + reach), d, at.result);
+        hn::StoreU(filter_point<reach, odd_y>(before, weights, window + reach), d, at.result);
         at.source += f.source_row;
         at.initial += f.initial_row;
         at.result += f.result_row;
@@ -111,7 +122,7 @@ namespace PeriDeal
       }
 
       /// Filter a strip of @p n_vectors vectors of points along y, with the window in registers.
-      template <int reach, int n_loads>
+      template <int reach, int n_loads, bool odd_x, bool odd_y>
       HWY_NOINLINE void filter_in_registers(const StencilFilter &filter,
                                             const std::ptrdiff_t n_vectors)
       {
@@ -130,14 +141,14 @@ namespace PeriDeal
             V        window[2 * reach + 1];
             HWY_UNROLL(64)
             for (int i = 0; i < 2 * reach; ++i, at.source += f.source_row)
-              window[i] = load_sum<n_loads>(at.source, f.shift);
+              window[i] = load_sum<n_loads, odd_x>(at.source, f.shift);
             for (std::ptrdiff_t y = 0; y < f.n_rows; ++y)
-              filter_row<reach, n_loads>(f, weights, at, window);
+              filter_row<reach, n_loads, odd_x, odd_y>(f, weights, at, window);
           }
       }
 
       /// The same for any reach, with the window in a column of vectors in memory.
-      template <int n_loads>
+      template <int n_loads, bool odd_x, bool odd_y>
       HWY_NOINLINE void filter_in_memory(const StencilFilter &f, const std::ptrdiff_t n_vectors)
       {
         const D              d;
@@ -145,55 +156,80 @@ namespace PeriDeal
         for (std::ptrdiff_t x = 0; x < n_vectors * lanes; x += lanes)
           {
             for (std::ptrdiff_t y = 0; y < f.n_rows + 2 * f.reach; ++y)
-              hn::Store(load_sum<n_loads>(f.source + x + y * f.source_row, f.shift),
+              hn::Store(load_sum<n_loads, odd_x>(f.source + x + y * f.source_row, f.shift),
                         d,
                         f.column + y * lanes);
             for (std::ptrdiff_t y = 0; y < f.n_rows; ++y)
               {
                 const double *centre = f.column + (y + f.reach) * lanes;
                 V             sum    = hn::LoadU(d, f.initial + x + y * f.initial_row);
-                sum = hn::MulAdd(hn::Set(d, f.weights[0]), hn::Load(d, centre), sum);
+                if constexpr (!odd_y)
+                  sum = hn::MulAdd(hn::Set(d, f.weights[0]), hn::Load(d, centre), sum);
                 for (std::ptrdiff_t b = 1; b <= f.reach; ++b)
-                  sum = hn::MulAdd(
-                    hn::Set(d, f.weights[b]),
-                    hn::Add(hn::Load(d, centre + b * lanes), hn::Load(d, centre - b * lanes)),
-                    sum);
+                  {
+                    const V above = hn::Load(d, centre + b * lanes),
+                            below = hn::Load(d, centre - b * lanes);
+                    sum           = hn::MulAdd(hn::Set(d, f.weights[b]),
+                                     odd_y ? hn::Sub(above, below) : hn::Add(above, below),
+                                     sum);
+                  }
                 hn::StoreU(sum, d, f.result + x + y * f.result_row);
               }
           }
       }
 
-      template <int n_loads>
+      template <int n_loads, bool odd_x, bool odd_y>
       void filter(const StencilFilter &f, const std::ptrdiff_t n_vectors)
       {
         switch (f.reach)
           {
             case 0:
-              return filter_in_registers<0, n_loads>(f, n_vectors);
+              return filter_in_registers<0, n_loads, odd_x, odd_y>(f, n_vectors);
             case 1:
-              return filter_in_registers<1, n_loads>(f, n_vectors);
+              return filter_in_registers<1, n_loads, odd_x, odd_y>(f, n_vectors);
             case 2:
-              return filter_in_registers<2, n_loads>(f, n_vectors);
+              return filter_in_registers<2, n_loads, odd_x, odd_y>(f, n_vectors);
             case 3:
-              return filter_in_registers<3, n_loads>(f, n_vectors);
+              return filter_in_registers<3, n_loads, odd_x, odd_y>(f, n_vectors);
             case 4:
-              return filter_in_registers<4, n_loads>(f, n_vectors);
+              return filter_in_registers<4, n_loads, odd_x, odd_y>(f, n_vectors);
             case 5:
-              return filter_in_registers<5, n_loads>(f, n_vectors);
+              return filter_in_registers<5, n_loads, odd_x, odd_y>(f, n_vectors);
             case 6:
-              return filter_in_registers<6, n_loads>(f, n_vectors);
+              return filter_in_registers<6, n_loads, odd_x, odd_y>(f, n_vectors);
             case 7:
-              return filter_in_registers<7, n_loads>(f, n_vectors);
+              return filter_in_registers<7, n_loads, odd_x, odd_y>(f, n_vectors);
             case 8:
-              return filter_in_registers<8, n_loads>(f, n_vectors);
+              return filter_in_registers<8, n_loads, odd_x, odd_y>(f, n_vectors);
             default:
-              return filter_in_memory<n_loads>(f, n_vectors);
+              return filter_in_memory<n_loads, odd_x, odd_y>(f, n_vectors);
           }
       }
 
-      /// to[i] = from[i + shift] + from[i - shift], or from[i] if shift is zero, for i < n. Exactly
+      template <bool odd_x, bool odd_y>
+      void filter(const StencilFilter &f, const std::ptrdiff_t n_vectors)
+      {
+        if constexpr (odd_x)
+          return f.n_loads == 2 ? filter<2, odd_x, odd_y>(f, n_vectors) :
+                                  filter<4, odd_x, odd_y>(f, n_vectors);
+        else
+          switch (f.n_loads)
+            {
+              case 1:
+                return filter<1, odd_x, odd_y>(f, n_vectors);
+              case 2:
+                return filter<2, odd_x, odd_y>(f, n_vectors);
+              case 3:
+                return filter<3, odd_x, odd_y>(f, n_vectors);
+              default:
+                return filter<4, odd_x, odd_y>(f, n_vectors);
+            }
+      }
+
+      /// to[i] = from[i + shift] + from[i - shift] (odd: their difference), or from[i] if shift is zero, for i < n. Exactly
       /// the n points are read; those that lie @p later ahead are asked for, as rows are too short
       /// for the machine to foresee the next one.
+      template <bool odd>
       void fold(const double        *from,
                 const std::ptrdiff_t shift,
                 const std::ptrdiff_t later,
@@ -218,12 +254,12 @@ namespace PeriDeal
             for (; i + lanes <= n; i += lanes)
               {
                 hwy::Prefetch(from + i + shift + later);
-                hn::StoreU(hn::Add(hn::LoadU(d, from + i + shift), hn::LoadU(d, from + i - shift)),
-                           d,
-                           to + i);
+                const V above = hn::LoadU(d, from + i + shift),
+                        below = hn::LoadU(d, from + i - shift);
+                hn::StoreU(odd ? hn::Sub(above, below) : hn::Add(above, below), d, to + i);
               }
             for (; i < n; ++i)
-              to[i] = from[i + shift] + from[i - shift];
+              to[i] = odd ? from[i + shift] - from[i - shift] : from[i + shift] + from[i - shift];
           }
       }
 
@@ -235,15 +271,15 @@ namespace PeriDeal
         const std::ptrdiff_t n     = tile.n_points + 2 * reach_x;
         const std::ptrdiff_t lanes = hn::Lanes(D());
         for (std::ptrdiff_t y = -reach_y; y < tile.n_rows + reach_y; ++y)
-          for (std::ptrdiff_t c = 0; c <= tile.halo[2]; ++c)
+          for (std::ptrdiff_t c = tile.odd[2] ? 1 : 0; c <= tile.halo[2]; ++c)
             {
               double *row = tile.folded + c * tile.folded_fold + (y + reach_y) * tile.folded_row +
                             tile.margin - reach_x;
-              fold(tile.origin + y * tile.row_stride - reach_x,
-                   c * tile.plane_stride,
-                   3 * tile.row_stride,
-                   n,
-                   row);
+              (tile.odd[2] ? fold<true> : fold<false>)(tile.origin + y * tile.row_stride - reach_x,
+                                                       c * tile.plane_stride,
+                                                       3 * tile.row_stride,
+                                                       n,
+                                                       row);
               for (std::ptrdiff_t i = 0; i < lanes; ++i)
                 row[n + i] = 0.;
             }
@@ -260,6 +296,7 @@ namespace PeriDeal
 
         StencilFilter f;
         f.reach       = channel.reach;
+        f.n_loads     = channel.n_loads;
         f.weights     = tile.weights + channel.first_weight;
         f.source      = tile.folded + (tile.halo[1] - f.reach) * tile.folded_row + tile.margin + x;
         f.source_row  = tile.folded_row;
@@ -271,17 +308,11 @@ namespace PeriDeal
         f.n_rows      = tile.n_rows;
         for (int i = 0; i < channel.n_loads; ++i)
           f.shift[i] = channel.fold[i] * tile.folded_fold + channel.shift[i];
-        switch (channel.n_loads)
-          {
-            case 1:
-              return filter<1>(f, n_vectors);
-            case 2:
-              return filter<2>(f, n_vectors);
-            case 3:
-              return filter<3>(f, n_vectors);
-            default:
-              return filter<4>(f, n_vectors);
-          }
+        if (tile.odd[0])
+          return tile.odd[1] ? filter<true, true>(f, n_vectors) : filter<true, false>(f, n_vectors);
+        else
+          return tile.odd[1] ? filter<false, true>(f, n_vectors) :
+                               filter<false, false>(f, n_vectors);
       }
 
       /// A strip of a stencil that reaches along x only, with the sums in registers.
@@ -295,7 +326,7 @@ namespace PeriDeal
         V                    sum[n_vectors];
         HWY_UNROLL(8)
         for (int v = 0; v < n_vectors; ++v)
-          sum[v] = hn::Zero(d);
+          sum[v] = tile.accumulate ? hn::LoadU(d, result + v * lanes) : hn::Zero(d);
         for (std::size_t k = 0; k < tile.n_channels; ++k)
           {
             const StencilChannel &channel = tile.channels[k];
@@ -310,10 +341,13 @@ namespace PeriDeal
               {
                 HWY_UNROLL(8)
                 for (int v = 0; v < n_vectors; ++v)
-                  sum[v] = hn::MulAdd(weight,
-                                      hn::Add(hn::LoadU(d, source + v * lanes + channel.shift[0]),
-                                              hn::LoadU(d, source + v * lanes + channel.shift[1])),
-                                      sum[v]);
+                  {
+                    const V right = hn::LoadU(d, source + v * lanes + channel.shift[0]),
+                            left  = hn::LoadU(d, source + v * lanes + channel.shift[1]);
+                    sum[v]        = hn::MulAdd(weight,
+                                        tile.odd[0] ? hn::Sub(right, left) : hn::Add(right, left),
+                                        sum[v]);
+                  }
               }
           }
         HWY_UNROLL(8)
@@ -351,7 +385,7 @@ namespace PeriDeal
           for (std::size_t k = 0; k < tile.n_channels; ++k)
             apply_channel(tile,
                           tile.channels[k],
-                          k == 0,
+                          k == 0 && !tile.accumulate,
                           v * lanes,
                           (n_vectors - v < strip ? n_vectors - v : strip));
       }

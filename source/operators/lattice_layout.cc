@@ -10,11 +10,14 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  LatticeLayout<dim>::LatticeLayout(const Families<dim> &families, const std::array<int, 3> &halo)
+  LatticeLayout<dim>::LatticeLayout(const Families<dim>      &families,
+                                    const std::array<int, 3> &halo,
+                                    const std::vector<bool>  &computed)
     : halo(halo)
   {
     lay_out_grid(families);
     find_fills(families);
+    find_runs(families, computed);
     find_groups(families);
     order_fills();
   }
@@ -129,15 +132,28 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeLayout<dim>::find_groups(const Families<dim> &families)
+  void LatticeLayout<dim>::find_runs(const Families<dim>     &families,
+                                     const std::vector<bool> &computed)
   {
     for (const LatticePiece &piece : fills)
       if (piece.node < families.nodes().n_owned())
-        {
-          const auto p = place(piece.slot);
-          runs.push_back({p[0], p[1], p[2], piece.n, nullptr});
-        }
+        for (std::uint32_t begin = 0, end = 0; begin < piece.n; begin = end + 1)
+          {
+            for (end = begin; end < piece.n && (computed.empty() || computed[piece.node + end]);
+                 ++end)
+              {}
+            if (end == begin)
+              continue;
+            const auto p = place(piece.slot + begin);
+            runs.push_back({p[0], p[1], p[2], end - begin, nullptr});
+          }
     StencilKernel::sort_for_reuse(runs);
+  }
+
+
+  template <int dim>
+  void LatticeLayout<dim>::find_groups(const Families<dim> &families)
+  {
     for (std::size_t k = 0; k < runs.size(); ++k)
       {
         const StencilKernel::Run           &run = runs[k];

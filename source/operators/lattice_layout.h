@@ -46,7 +46,10 @@ namespace PeriDeal
       std::size_t fills = 0, runs = 0, pieces = 0, ranges = 0;
     };
 
-    LatticeLayout(const Families<dim> &families, const std::array<int, 3> &halo);
+    /** @param computed the owned nodes whose sums are wanted; all if empty */
+    LatticeLayout(const Families<dim>      &families,
+                  const std::array<int, 3> &halo,
+                  const std::vector<bool>  &computed = {});
 
     bool        in_grid(const Index &site) const;
     std::size_t slot(const Index &site) const;
@@ -74,10 +77,10 @@ namespace PeriDeal
 
     std::vector<Group>              groups;
     std::vector<LatticePiece>       fills;  // owned nodes and ghosts, to be copied into the grid
-    std::vector<LatticePiece>       pieces; // owned nodes
-    std::vector<StencilKernel::Run> runs;   // owned nodes; `out` is not set
+    std::vector<LatticePiece>       pieces; // owned nodes that are computed
+    std::vector<StencilKernel::Run> runs;   // the same; `out` is not set
     std::vector<std::uint32_t>      first_nodes;                 // of the runs
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges; // of owned nodes: begin, end
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges; // of these nodes: begin, end
     std::vector<double>                                  varying_volumes, varying_sums;
 
   private:
@@ -85,6 +88,7 @@ namespace PeriDeal
 
     void lay_out_grid(const Families<dim> &families);
     void find_fills(const Families<dim> &families);
+    void find_runs(const Families<dim> &families, const std::vector<bool> &computed);
     void find_groups(const Families<dim> &families);
     void order_fills();
     void cut(const LatticePiece        &piece,

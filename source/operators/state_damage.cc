@@ -117,7 +117,7 @@ namespace PeriDeal
           // W x e times (b_i/q_i + b_j/q_j)/(W x^2); the same digits at both ends of a bond.
           const unsigned int j = neighbors[k];
           const double limit   = (stiffness[i] + stiffness[j]) * std::min(critical[i], critical[j]);
-          const double found   = springs[k] * extension_moment(u.begin(), i, k);
+          const double found   = springs[k] * extension_moment(u.begin(), i, stored_bond(k));
           if (found <= limit)
             continue;
           breaking.push_back({k, found / limit});
@@ -184,7 +184,7 @@ namespace PeriDeal
     std::vector<typename Families<dim>::Bond> family;
     std::vector<std::pair<unsigned int, int>> crossed;
     std::vector<double>                       result(nodes.n_owned());
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+    for (const unsigned int i : stored_nodes) // others have no bond cut
       {
         // Bonds are stored in the order of the family, those that cracks cut left out.
         bonds.bonds_of(i, family, false);

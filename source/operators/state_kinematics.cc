@@ -12,6 +12,8 @@
 #include <cmath>
 #include <limits>
 
+#include "state_lattice.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -19,10 +21,9 @@ namespace PeriDeal
   template <int dim>
   Tensor<1, dim> StateOperator<dim>::deformed_bond(const double      *u,
                                                    const unsigned int i,
-                                                   const std::size_t  k) const
+                                                   const unsigned int j) const
   {
-    const unsigned int j    = neighbors[k];
-    Tensor<1, dim>     bond = bonds.bond_vector(i, j);
+    Tensor<1, dim> bond = bonds.bond_vector(i, j);
     for (unsigned int d = 0; d < dim; ++d)
       bond[d] += u[dim * j + d] - u[dim * i + d];
     return bond;
@@ -32,31 +33,30 @@ namespace PeriDeal
   template <int dim>
   double StateOperator<dim>::strained_extension_moment(const double      *u,
                                                        const unsigned int i,
-                                                       const std::size_t  k) const
+                                                       const Bond        &bond) const
   {
-    const unsigned int   j       = neighbors[k];
+    const unsigned int   j       = bond.neighbor;
     const Tensor<1, dim> xi      = bonds.bond_vector(i, j);
     const double         thermal = 0.5 * (laws[i].thermal + laws[j].thermal);
     Tensor<1, dim>       eta;
     for (unsigned int d = 0; d < dim; ++d)
       eta[d] = u[dim * j + d] - u[dim * i + d];
     if (!full)
-      return moments[k] * eta - thermal * (moments[k] * xi);
+      return bond.moment * eta - thermal * (bond.moment * xi);
     // |Y| - |xi| without the difference of two nearly equal numbers
     const double x = xi.norm();
-    return lengths[k] * ((2. * xi + eta) * eta / ((xi + eta).norm() + x) - thermal * x);
+    return bond.length * ((2. * xi + eta) * eta / ((xi + eta).norm() + x) - thermal * x);
   }
 
 
   template <int dim>
-  void StateOperator<dim>::find_deformed_dilatation_forces(const Vector &u) const
+  void StateOperator<dim>::find_strained_dilatation_forces(const Vector &u) const
   {
     const Nodes<dim> &nodes = bonds.nodes();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         double sum = 0.;
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          sum += extension_moment(u.begin(), i, k);
+        for_each_bond(i, [&](const Bond &bond) { sum += extension_moment(u.begin(), i, bond); });
         const StateLaw &law  = laws[i].law;
         const double    q    = weighted.local_element(i);
         tau.local_element(i) = law.volumetric * law.dilatation * sum / (q * q * nodes.volume(i));
@@ -70,16 +70,16 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes = bonds.nodes();
     if (volumetric)
-      find_deformed_dilatation_forces(u);
+      find_strained_dilatation_forces(u);
     const double *const t = tau.begin();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         Tensor<1, dim> force;
         for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
           {
-            const Tensor<1, dim> bond = deformed_bond(u.begin(), i, k);
+            const Tensor<1, dim> bond = deformed_bond(u.begin(), i, neighbors[k]);
             const double         size =
-              springs[k] * extension_moment(u.begin(), i, k) + t[i] + t[neighbors[k]];
+              springs[k] * extension_moment(u.begin(), i, stored_bond(k)) + t[i] + t[neighbors[k]];
             force += size * lengths[k] / bond.norm() * bond;
           }
         for (unsigned int d = 0; d < dim; ++d)
@@ -117,12 +117,12 @@ namespace PeriDeal
     const Nodes<dim> &nodes = bonds.nodes();
     u.update_ghost_values();
     if (volumetric)
-      find_deformed_dilatation_forces(u);
+      find_strained_dilatation_forces(u);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
         {
-          const Tensor<1, dim> bond = deformed_bond(u.begin(), i, k);
-          const double         size = springs[k] * extension_moment(u.begin(), i, k) +
+          const Tensor<1, dim> bond = deformed_bond(u.begin(), i, neighbors[k]);
+          const double         size = springs[k] * extension_moment(u.begin(), i, stored_bond(k)) +
                               tau.local_element(i) + tau.local_element(neighbors[k]);
           moments[k] = lengths[k] / bond.norm() * bond;
           across[k]  = size * lengths[k] / bond.norm();
@@ -157,7 +157,9 @@ namespace PeriDeal
   {
     v.update_ghost_values();
     const double *const x = v.begin();
-    for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
+    if (lattice)
+      lattice->forces(y.begin(), x, nullptr);
+    for (const unsigned int i : stored_nodes)
       {
         Tensor<1, dim> force;
         for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
@@ -183,8 +185,9 @@ namespace PeriDeal
     for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
       {
         double row = 0.;
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          row += 2. * springs[k] * moments[k].norm_square();
+        for_each_bond(i, [&](const Bond &bond) {
+          row += 2. * bond.spring * bond.moment.norm_square();
+        });
         bound = std::max(bound, row / mass.local_element(dim * i));
       }
     return Utilities::MPI::max(bound, bonds.nodes().communicator());
@@ -203,11 +206,11 @@ namespace PeriDeal
 #define PERIDEAL_INSTANTIATE(dim)                                                                    \
   template Tensor<1, dim> StateOperator<dim>::deformed_bond(const double *,                          \
                                                             const unsigned int,                      \
-                                                            const std::size_t) const;                \
+                                                            const unsigned int) const;               \
   template double         StateOperator<dim>::strained_extension_moment(const double *,              \
                                                                 const unsigned int,          \
-                                                                const std::size_t) const;    \
-  template void           StateOperator<dim>::find_deformed_dilatation_forces(const Vector &) const; \
+                                                                const Bond &) const;         \
+  template void           StateOperator<dim>::find_strained_dilatation_forces(const Vector &) const; \
   template void           StateOperator<dim>::find_forces(Vector &, const Vector &) const;           \
   template bool           StateOperator<dim>::nonlinear() const;                                     \
   template void           StateOperator<dim>::linearize(const Vector &);                             \

@@ -13,6 +13,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "state_lattice.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -46,7 +48,7 @@ namespace PeriDeal
     tau.reinit(nodes.partitioner());
     weighted.reinit(nodes.partitioner());
     find_laws();
-    store_bonds();
+    find_bonds();
     find_critical_stretches();
     find_diagonal();
     find_thermal_loads();
@@ -54,13 +56,30 @@ namespace PeriDeal
 
 
   template <int dim>
+  StateOperator<dim>::~StateOperator() = default;
+
+
+  template <int dim>
   void StateOperator<dim>::find_thermal_loads()
   {
     if (any_thermal && !full) // with full kinematics it is in the extensions
       {
-        scratch = 0.;
-        sum_forces(thermal_loads, scratch, true);
-        thermal_loads *= -1.;
+        const Nodes<dim> &nodes = bonds.nodes();
+        scratch                 = 0.;
+        if (volumetric)
+          find_strained_dilatation_forces(scratch);
+        const double *const t = tau.begin();
+        for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+          {
+            Tensor<1, dim> force;
+            for_each_bond(i, [&](const Bond &bond) {
+              force += (bond.spring * extension_moment(scratch.begin(), i, bond) + t[i] +
+                        t[bond.neighbor]) *
+                       bond.moment;
+            });
+            for (unsigned int d = 0; d < dim; ++d)
+              thermal_loads.local_element(dim * i + d) = force[d];
+          }
       }
     if (!loads_vary)
       find_loads(constant_loads, 0.);
@@ -100,67 +119,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateOperator<dim>::store_bonds()
-  {
-    const Nodes<dim>                         &nodes = bonds.nodes();
-    std::vector<typename Families<dim>::Bond> family;
-    std::vector<double>                       weights; // W x^2
-    std::string                               message;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        bonds.bonds_of(i, family, false);
-        SymmetricTensor<2, dim> shape;
-        double                  q = 0.;
-        for (const auto &bond : family)
-          {
-            if (bond.cut || bond.intact == 0.)
-              continue;
-            AssertIndexRange(bond.neighbor, nodes.n_local()); // no fictitious nodes
-            const Tensor<1, dim> xi = bonds.bond_vector(i, bond.neighbor);
-            const double         w  = bond.intact / bonds.bond_conductivity(i, bond.neighbor);
-            neighbors.push_back(bond.neighbor);
-            moments.push_back(w * xi);
-            weights.push_back(w * xi.norm_square());
-            q += weights.back() / nodes.volume(i);
-            shape += w * symmetrize(outer_product(xi, xi));
-            n_bonds += 0.5; // at each end
-          }
-        starts.push_back(neighbors.size());
-        weighted.local_element(i) = q;
-        if (message.empty() && !(q > 0.))
-          message =
-            "The node at " + place_of(dim * i) +
-            " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
-        else if (message.empty() && eigenvalues(shape)[dim - 1] < 1e-9 * trace(shape))
-          message =
-            "All bonds of the node at " + place_of(dim * i) +
-            " lie in one line or plane, across which nothing holds it. Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
-      }
-    throw_on_all_if_any(nodes.communicator(), message);
-    weighted.update_ghost_values();
-    springs.resize(neighbors.size());
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-        {
-          const unsigned int j = neighbors[k];
-          springs[k]           = (laws[i].law.extension / weighted.local_element(i) +
-                        laws[j].law.extension / weighted.local_element(j)) /
-                       weights[k];
-        }
-    if (!full)
-      return;
-    across.resize(neighbors.size(), 0.);
-    for (const Tensor<1, dim> &p : moments)
-      lengths.push_back(p.norm());
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::find_dilatation_forces(const Vector &x, const bool thermal) const
+  void StateOperator<dim>::find_dilatation_forces(const Vector &x) const
   {
     const Nodes<dim> &nodes = bonds.nodes();
     const double     *u     = x.begin();
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+    if (lattice)
+      lattice->dilatation_forces(tau.begin(), u);
+    for (const unsigned int i : stored_nodes)
       {
         Tensor<1, dim> own;
         for (unsigned int d = 0; d < dim; ++d)
@@ -172,9 +137,6 @@ namespace PeriDeal
             const Tensor<1, dim> &p = moments[k];
             for (unsigned int d = 0; d < dim; ++d)
               sum += p[d] * (v[d] - own[d]);
-            if (thermal)
-              sum -= 0.5 * (laws[i].thermal + laws[neighbors[k]].thermal) *
-                     (p * bonds.bond_vector(i, neighbors[k]));
           }
         const StateLaw &law  = laws[i].law;
         const double    q    = weighted.local_element(i);
@@ -185,14 +147,15 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateOperator<dim>::sum_forces(Vector &y, const Vector &x, const bool thermal) const
+  void StateOperator<dim>::sum_forces(Vector &y, const Vector &x) const
   {
-    const Nodes<dim> &nodes = bonds.nodes();
-    const double     *u     = x.begin();
+    const double *u = x.begin();
     if (volumetric)
-      find_dilatation_forces(x, thermal);
+      find_dilatation_forces(x);
     const double *const t = tau.begin();
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+    if (lattice)
+      lattice->forces(y.begin(), u, volumetric ? t : nullptr);
+    for (const unsigned int i : stored_nodes)
       {
         Tensor<1, dim> own, force;
         for (unsigned int d = 0; d < dim; ++d)
@@ -205,8 +168,6 @@ namespace PeriDeal
             double                product = 0.;
             for (unsigned int d = 0; d < dim; ++d)
               product += p[d] * (v[d] - own[d]);
-            if (thermal)
-              product -= 0.5 * (laws[i].thermal + laws[j].thermal) * (p * bonds.bond_vector(i, j));
             const double size = springs[k] * product + t[i] + t[j];
             for (unsigned int d = 0; d < dim; ++d)
               force[d] += size * p[d];
@@ -221,7 +182,7 @@ namespace PeriDeal
   void StateOperator<dim>::multiply(Vector &y, const Vector &x) const
   {
     x.update_ghost_values();
-    sum_forces(y, x, false);
+    sum_forces(y, x);
     if (full)
       add_geometric_forces(y, x);
     x.set_ghost_state(false);
@@ -352,8 +313,9 @@ namespace PeriDeal
     size.memory =
       bonds.memory_consumption() +
       neighbors.size() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
-      laws.size() * sizeof(NodeLaw);
-    size.form = "stored";
+      laws.size() * sizeof(NodeLaw) + starts.size() * sizeof(std::size_t) +
+      stored_nodes.size() * sizeof(unsigned int) + (lattice ? lattice->memory_consumption() : 0);
+    size.form = lattice ? "lattice" : "stored";
     return size;
   }
 

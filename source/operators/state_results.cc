@@ -34,12 +34,11 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         Tensor<1, dim> sum, diagonal;
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          {
-            sum += moments[k];
-            for (unsigned int d = 0; d < dim; ++d)
-              diagonal[d] += (springs[k] + factor[neighbors[k]]) * moments[k][d] * moments[k][d];
-          }
+        for_each_bond(i, [&](const Bond &bond) {
+          sum += bond.moment;
+          for (unsigned int d = 0; d < dim; ++d)
+            diagonal[d] += (bond.spring + factor[bond.neighbor]) * bond.moment[d] * bond.moment[d];
+        });
         for (unsigned int d = 0; d < dim; ++d)
           stiffness_diagonal.local_element(dim * i + d) = diagonal[d] + factor[i] * sum[d] * sum[d];
       }
@@ -62,11 +61,10 @@ namespace PeriDeal
       {
         double         length = 0.;
         Tensor<1, dim> sum;
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          {
-            length += moments[k].norm();
-            sum += moments[k];
-          }
+        for_each_bond(i, [&](const Bond &bond) {
+          length += bond.moment.norm();
+          sum += bond.moment;
+        });
         const double q          = weighted.local_element(i);
         source.local_element(i) = volumetric ?
                                     std::abs(laws[i].law.volumetric) * laws[i].law.dilatation *
@@ -79,12 +77,11 @@ namespace PeriDeal
       {
         double         row = 0.;
         Tensor<1, dim> sum;
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          {
-            row += 2. * springs[k] * moments[k].norm_square() +
-                   source.local_element(neighbors[k]) * moments[k].norm();
-            sum += moments[k];
-          }
+        for_each_bond(i, [&](const Bond &bond) {
+          row += 2. * bond.spring * bond.moment.norm_square() +
+                 source.local_element(bond.neighbor) * bond.moment.norm();
+          sum += bond.moment;
+        });
         for (std::size_t k = starts[i]; full && k < starts[i + 1]; ++k)
           row += 2. * std::abs(across[k]);
         row += source.local_element(i) * sum.norm();
@@ -101,18 +98,17 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes = bonds.nodes();
     u.update_ghost_values();
-    if (volumetric && full)
-      find_deformed_dilatation_forces(u);
+    if (volumetric && (full || any_thermal))
+      find_strained_dilatation_forces(u);
     else if (volumetric)
-      find_dilatation_forces(u, any_thermal);
+      find_dilatation_forces(u);
     double sum = 0.;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          {
-            const double product = extension_moment(u.begin(), i, k);
-            sum += 0.25 * springs[k] * product * product;
-          }
+        for_each_bond(i, [&](const Bond &bond) {
+          const double product = extension_moment(u.begin(), i, bond);
+          sum += 0.25 * bond.spring * product * product;
+        });
         const StateLaw &law = laws[i].law;
         if (volumetric && law.volumetric != 0.)
           {
@@ -133,8 +129,8 @@ namespace PeriDeal
     theta.assign(nodes.n_owned(), 0.);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          theta[i] += extension_moment(u.begin(), i, k);
+        for_each_bond(i,
+                      [&](const Bond &bond) { theta[i] += extension_moment(u.begin(), i, bond); });
         theta[i] *= laws[i].law.dilatation / (weighted.local_element(i) * nodes.volume(i));
       }
     u.set_ghost_state(false);
@@ -149,37 +145,36 @@ namespace PeriDeal
     result.stress.resize(nodes.n_owned());
     result.strain.resize(nodes.n_owned());
     u.update_ghost_values();
-    if (volumetric && full)
-      find_deformed_dilatation_forces(u);
+    if (volumetric && (full || any_thermal))
+      find_strained_dilatation_forces(u);
     else if (volumetric)
-      find_dilatation_forces(u, any_thermal);
+      find_dilatation_forces(u);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         Tensor<2, dim> gradient, shape, stress;
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          {
-            const unsigned int   j  = neighbors[k];
-            const Tensor<1, dim> xi = bonds.bond_vector(i, j);
-            Tensor<1, dim>       eta;
-            for (unsigned int d = 0; d < dim; ++d)
-              eta[d] = u.begin()[dim * j + d] - u.begin()[dim * i + d];
-            const double x2      = xi.norm_square();
-            const double weight  = full ? lengths[k] / std::sqrt(x2) : (moments[k] * xi) / x2; // W
-            const double product = extension_moment(u.begin(), i, k); // W x e
-            gradient += weight * outer_product(eta, xi);
-            shape += weight * outer_product(xi, xi);
-            // V_i V_j t/x, of this end or the mean of both
-            const double         own   = laws[i].law.extension / weighted.local_element(i);
-            const double         force = several_phases ?
-                                           0.5 * (weight * (tau.local_element(i) + tau.local_element(j)) +
-                                          springs[k] * weight * product) :
-                                           weight * tau.local_element(i) + own * product / x2;
-            const Tensor<1, dim> y     = xi + eta;
-            if (full)
-              stress += force * std::sqrt(x2) / y.norm() * outer_product(y, y);
-            else
-              stress += force * outer_product(xi, xi);
-          }
+        for_each_bond(i, [&](const Bond &bond) {
+          const unsigned int   j  = bond.neighbor;
+          const Tensor<1, dim> xi = bonds.bond_vector(i, j);
+          Tensor<1, dim>       eta;
+          for (unsigned int d = 0; d < dim; ++d)
+            eta[d] = u.begin()[dim * j + d] - u.begin()[dim * i + d];
+          const double x2      = xi.norm_square();
+          const double weight  = full ? bond.length / std::sqrt(x2) : (bond.moment * xi) / x2; // W
+          const double product = extension_moment(u.begin(), i, bond); // W x e
+          gradient += weight * outer_product(eta, xi);
+          shape += weight * outer_product(xi, xi);
+          // V_i V_j t/x, of this end or the mean of both
+          const double         own   = laws[i].law.extension / weighted.local_element(i);
+          const double         force = several_phases ?
+                                         0.5 * (weight * (tau.local_element(i) + tau.local_element(j)) +
+                                        bond.spring * weight * product) :
+                                         weight * tau.local_element(i) + own * product / x2;
+          const Tensor<1, dim> y     = xi + eta;
+          if (full)
+            stress += force * std::sqrt(x2) / y.norm() * outer_product(y, y);
+          else
+            stress += force * outer_product(xi, xi);
+        });
         // Few bonds may be left, or none.
         const bool           held = determinant(shape) > 1e-12 * std::pow(trace(shape) / dim, dim);
         const Tensor<2, dim> slopes = held ? gradient * invert(shape) : Tensor<2, dim>();
@@ -199,13 +194,13 @@ namespace PeriDeal
   void StateOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
     // Springs between the nearest nodes, diagonals of cells included, as stiff as the bond-based solid.
-    const Nodes<dim>        &nodes = bonds.nodes();
-    const IndexSet           owned = unknowns->locally_owned_range();
-    std::vector<std::size_t> first{0};
-    std::vector<std::size_t> near; // of the stored bonds, unbroken
-    std::vector<bool>        damaged(nodes.n_owned(), false);
-    Vector                   sums(nodes.partitioner());
-    const auto               is_near = [&](const unsigned int i, const Tensor<1, dim> &xi) {
+    const Nodes<dim>         &nodes = bonds.nodes();
+    const IndexSet            owned = unknowns->locally_owned_range();
+    std::vector<std::size_t>  first{0};
+    std::vector<unsigned int> near; // neighbours, of unbroken bonds
+    std::vector<bool>         damaged(nodes.n_owned(), false);
+    Vector                    sums(nodes.partitioner());
+    const auto                is_near = [&](const unsigned int i, const Tensor<1, dim> &xi) {
       const double size = std::pow(nodes.volume(i), 1. / dim);
       if (!nodes.lattice())
         return xi.norm() < 1.8 * size;
@@ -216,18 +211,17 @@ namespace PeriDeal
     };
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          {
-            const Tensor<1, dim> xi = bonds.bond_vector(i, neighbors[k]);
-            if (!is_near(i, xi) && !is_near(neighbors[k], xi))
-              continue;
-            // As q, that of the body before bonds broke.
-            sums.local_element(i) += nodes.volume(neighbors[k]) * xi.norm_square();
-            if (springs[k] == 0.)
-              damaged[i] = true;
-            else
-              near.push_back(k);
-          }
+        for_each_bond(i, [&](const Bond &bond) {
+          const Tensor<1, dim> xi = bonds.bond_vector(i, bond.neighbor);
+          if (!is_near(i, xi) && !is_near(bond.neighbor, xi))
+            return;
+          // As q, that of the body before bonds broke.
+          sums.local_element(i) += nodes.volume(bond.neighbor) * xi.norm_square();
+          if (bond.spring == 0.)
+            damaged[i] = true;
+          else
+            near.push_back(bond.neighbor);
+        });
         first.push_back(near.size());
       }
     sums.update_ghost_values();
@@ -249,7 +243,7 @@ namespace PeriDeal
           columns.push_back(unknowns->local_to_global(dim * i + d));
         for (std::size_t n = first[i]; n < first[i + 1]; ++n)
           for (unsigned int d = 0; d < dim; ++d)
-            columns.push_back(unknowns->local_to_global(dim * neighbors[near[n]] + d));
+            columns.push_back(unknowns->local_to_global(dim * near[n] + d));
         for (unsigned int d = 0; d < dim; ++d)
           pattern.add_entries(columns[d], columns.begin(), columns.end());
       }
@@ -280,7 +274,7 @@ namespace PeriDeal
         };
         for (std::size_t n = first[i]; n < first[i + 1]; ++n)
           {
-            const unsigned int   j  = neighbors[near[n]];
+            const unsigned int   j  = near[n];
             const Tensor<1, dim> xi = bonds.bond_vector(i, j);
             const double         spring =
               nodes.volume(i) * nodes.volume(j) *

@@ -61,10 +61,21 @@ namespace PeriDeal
                "'exchange' has no place for a nonlocal dilatation" :
                "fictitious nodes and layers are not defined",
              "use 'none'.");
-      refuse(pd.form == OperatorForm::lattice,
+      if (pd.form != OperatorForm::lattice)
+        return;
+      const std::string not_lattice = "'lattice' is not defined", use = "use 'auto'.";
+      refuse(!runs(scene, Model::peridynamics),
              "Operator form",
-             "'lattice' is not defined",
-             "use 'auto'.");
+             not_lattice + " without 'Models = peridynamics'",
+             use);
+      refuse(scene.elasticity.kinematics == Kinematics::full,
+             "Operator form",
+             not_lattice + " for 'Kinematics = full'",
+             use);
+      refuse(scene.material.fracture_energy || scene.material.critical_stretch,
+             "Operator form",
+             not_lattice + " where bonds may break",
+             use);
     }
 
 

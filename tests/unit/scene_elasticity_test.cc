@@ -460,7 +460,13 @@ end
     expect(elastic_fault({pd + "Boundary treatment=exchange"}),
            pd + "Boundary treatment",
            {"dilatation", "use 'none'"});
-    expect(elastic_fault({pd + "Operator form=lattice"}), pd + "Operator form", {"'auto'"});
+    EXPECT_EQ(elastic_fault({pd + "Operator form=lattice"}), "");
+    expect(elastic_fault({pd + "Operator form=lattice", "Elasticity/Kinematics=full"}),
+           pd + "Operator form",
+           {"'Kinematics = full'", "'auto'"});
+    expect(elastic_fault({pd + "Operator form=lattice", "Material/Critical stretch=0.1"}),
+           pd + "Operator form",
+           {"may break", "'auto'"});
     expect(elastic_fault({"Output/Grid=5, 5"}), "Output/Grid", {"what diffuses"});
     expect(elastic_fault({"Finite elements/Capacity=consistent"}),
            "Finite elements/Capacity",

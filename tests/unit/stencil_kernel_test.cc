@@ -27,6 +27,7 @@ namespace
     std::vector<Offset> offsets;
     std::vector<double> weights;
     Offset              halo = {{0, 0, 0}};
+    std::array<bool, 3> odd  = {{false, false, false}};
 
     void add(const Offset &offset, const double weight)
     {
@@ -102,16 +103,21 @@ namespace
         {
           Offset o    = s.offsets[i];
           bool   skip = false;
+          int    sign = 1;
           for (unsigned int k = 0; k < 3; ++k)
-            if (image & (1 << k))
-              {
-                skip = skip || o[k] == 0;
-                o[k] = -o[k];
-              }
+            {
+              skip = skip || (s.odd[k] && o[k] == 0);
+              if (image & (1 << k))
+                {
+                  skip = skip || o[k] == 0;
+                  o[k] = -o[k];
+                  sign = s.odd[k] ? -sign : sign;
+                }
+            }
           if (skip)
             continue;
           const long double term =
-            static_cast<long double>(s.weights[i]) * f.at(x + o[0], y + o[1], z + o[2]);
+            sign * static_cast<long double>(s.weights[i]) * f.at(x + o[0], y + o[1], z + o[2]);
           sum += term;
           size += std::abs(term);
         }
@@ -138,7 +144,7 @@ namespace
 
   void expect_direct_sum(const Stencil &s, const Field &f, const unsigned int dim)
   {
-    const StencilKernel       kernel(dim, s.offsets, s.weights);
+    const StencilKernel       kernel(dim, s.offsets, s.weights, s.odd);
     const std::vector<double> out = apply_whole(kernel, f);
     EXPECT_EQ(kernel.halo(), s.halo);
     double worst = 0;
@@ -213,7 +219,7 @@ namespace
   void check(const Stencil &s, const unsigned int dim, const Offset &n, std::mt19937 &random)
   {
     const Field         f(n, s.halo, random);
-    const StencilKernel kernel(dim, s.offsets, s.weights);
+    const StencilKernel kernel(dim, s.offsets, s.weights, s.odd);
     expect_direct_sum(s, f, dim);
     const std::vector<double> whole = apply_whole(kernel, f);
     expect_same_row_by_row(kernel, f, whole, random);
@@ -255,6 +261,54 @@ TEST(StencilKernel, ThreeDimensions)
       check(ball(3, radius, isotropic, random), 3, {{21, 11, 9}}, random);
   check(ball(3, 3.5, true, random), 3, {{71, 35, 5}}, random);
   check(ball(3, 10.5, true, random), 3, {{5, 3, 2}}, random);
+}
+
+
+
+TEST(StencilKernel, OddStencils)
+{
+  std::mt19937 random(7);
+  for (unsigned int dim = 1; dim <= 3; ++dim)
+    for (unsigned int parity = 1; parity < (1u << dim); ++parity)
+      for (const double radius : {2.5, 5.5, 10.})
+        for (const bool isotropic : {true, false})
+          {
+            Stencil s = ball(dim, dim == 3 ? 0.5 * radius + 1. : radius, isotropic, random);
+            for (unsigned int d = 0; d < dim; ++d)
+              s.odd[d] = (parity & (1u << d)) != 0;
+            check(s, dim, {{41, dim > 1 ? 35 : 1, dim > 2 ? 4 : 1}}, random);
+          }
+}
+
+
+
+TEST(StencilKernel, SumsOfTerms)
+{
+  std::mt19937 random(8);
+  for (unsigned int dim = 1; dim <= 3; ++dim)
+    {
+      Stencil      even = ball(dim, 3.5, true, random), odd = even, none = even;
+      const Offset n = {{77, dim > 1 ? 37 : 1, dim > 2 ? 3 : 1}};
+      odd.odd[0]     = true;
+      none.weights.assign(even.weights.size(), 0.);
+      const Field         a(n, even.halo, random), b(n, even.halo, random);
+      const StencilKernel k_even(dim, even.offsets, even.weights),
+        k_odd(dim, odd.offsets, odd.weights, odd.odd), k_none(dim, none.offsets, none.weights);
+      const std::vector<double> of_a = apply_whole(k_even, a), of_b = apply_whole(k_odd, b);
+      const StencilKernel::Term terms[] = {{&k_none, b.grid}, {&k_even, a.grid}, {&k_odd, b.grid}};
+      std::vector<double>       found(n[0]);
+      for (int y = 0; y < n[1]; ++y)
+        {
+          const StencilKernel::Run run = {0, y, 0, found.size(), found.data()};
+          StencilKernel::apply_sum(terms, 3, &run, 1);
+          for (int x = 0; x < n[0]; ++x)
+            EXPECT_NEAR(found[x],
+                        of_a[x + y * n[0]] + of_b[x + y * n[0]],
+                        1e-13 * even.offsets.size());
+          StencilKernel::apply_sum(terms, 1, &run, 1);
+          EXPECT_EQ(found, std::vector<double>(n[0], 0.));
+        }
+    }
 }
 
 

@@ -18,6 +18,9 @@ namespace PeriDeal
    *
    *   out(x,y,z) = sum over offsets (a,b,c) of w(|a|,|b|,|c|) g(x+a, y+b, z+c).
    *
+   * A stencil may be odd in some coordinates: then the terms also have the signs of these coordinates of their offsets, and where
+   * one of them is zero there is no term.
+   *
    * **Method.** Mirror images are added before they are multiplied. In 3D, rows are first folded
    * over z into a buffer, u_c(x,y) = g(x,y,z+c) + g(x,y,z-c). Then, for each class of shifts in x,
    * the row p(y) = u_c(x+a,y) + u_c(x-a,y) is formed in a vector register and slides through a
@@ -84,12 +87,15 @@ namespace PeriDeal
      * weight of each; a zero coordinate has one image, any other two, so an entry stands for 1 to 8
      * bonds. The offset (0,0,0) is allowed: with it a constant diagonal can be built in.
      *
+     * @p odd says in which coordinates the stencil is odd. halo() is that of all offsets, those of no weight included.
+     *
      * @throw std::invalid_argument if the lists are of different or zero length, if an offset is
      * negative, occurs twice or leaves the dimension, or if a weight is not finite.
      */
     StencilKernel(const unsigned int                     dim,
                   const std::vector<std::array<int, 3>> &offsets,
-                  const std::vector<double>             &weights);
+                  const std::vector<double>             &weights,
+                  const std::array<bool, 3>             &odd = {{false, false, false}});
 
     /// One run by itself. Same values as apply(), but without sharing work among rows: slower in 2D
     /// and 3D.
@@ -107,6 +113,19 @@ namespace PeriDeal
     {
       apply(grid, runs.data(), runs.size());
     }
+
+    /** A stencil and the field that it is applied to. */
+    struct Term
+    {
+      const StencilKernel *kernel;
+      Grid                 grid;
+    };
+
+    /** The sum of several terms, as apply(), in one go. All have the same halo. */
+    static void apply_sum(const Term       *terms,
+                          const std::size_t n_terms,
+                          const Run        *runs,
+                          const std::size_t n_runs);
 
     /**
      * Sort by floor(y / block_rows), z, y, x: apply() then finds whole blocks, and in 3D walks
@@ -133,7 +152,10 @@ namespace PeriDeal
     static std::string target();
 
   private:
-    void apply_block(const Grid &grid, const Run *runs, const std::size_t n_runs) const;
+    static void apply_block(const Term       *terms,
+                            const std::size_t n_terms,
+                            const Run        *runs,
+                            const std::size_t n_runs);
 
     internal::StencilPlan plan;
     std::size_t           bonds;

@@ -13,7 +13,8 @@ namespace PeriDeal
   {
     /**
      * One term of the stencil: an input row p, and the symmetric filter over y that is applied to
-     * it. The input row is the sum of up to four rows u_c, each shifted in x.
+     * it. The input row is the sum of up to four rows u_c, each shifted in x; of a stencil that is odd in x,
+     * the second and the fourth are subtracted.
      */
     struct StencilChannel
     {
@@ -29,6 +30,7 @@ namespace PeriDeal
     struct StencilPlan
     {
       std::array<int, 3>          halo;
+      std::array<bool, 3>         odd;
       std::vector<StencilChannel> channels;
       std::vector<double>         weights;
     };
@@ -40,6 +42,8 @@ namespace PeriDeal
       std::size_t           n_channels;
       const double         *weights;
       std::ptrdiff_t        halo[3];
+      bool                  odd[3];
+      bool                  accumulate; // add to result
 
       const double  *origin; // g at the first point of the first row
       std::ptrdiff_t row_stride;

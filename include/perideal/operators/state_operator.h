@@ -5,6 +5,7 @@
 
 #include <perideal/bonds/families.h>
 #include <perideal/laws/elasticity.h>
+#include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/displacement_conditions.h>
 #include <perideal/operators/elastic_operator.h>
 
@@ -22,6 +23,10 @@ namespace PeriDeal
   };
 
 
+  template <int dim>
+  class StateLattice;
+
+
   /**
    * Linear peridynamic solid (Silling 2007; in 2D Le 2014 section 2 in the corrected form of doc/elasticity.md), and the bond-based
    * solid as the same without dilatation. With xi the bond, x its length, M = xi/x, the extension e = M . (u_j - u_i) - s x, s the mean thermal strain of
@@ -31,7 +36,8 @@ namespace PeriDeal
    *   F_i = sum_j W_ij [ (c_i theta_i/q_i + c_j theta_j/q_j) x + (b_i/q_i + b_j/q_j) e_ij ] M
    *
    * with d, c, b the factors dilatation, volumetric and extension of StateLaw. The prefactor of omega drops out. An application takes two passes over
-   * the bonds, the dilatations first. Each bond is stored at both ends: W xi, one number, a column.
+   * the bonds, the dilatations first. On a lattice, with linear kinematics and where nothing breaks, nodes without cut bonds store none (StateLattice). Other
+   * bonds are stored at both ends: W xi, one number, a column.
    *
    * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a rotation makes none. q is that of the undeformed body. The tangent
    * of linearize() has W x Y/|Y| in the place of W xi, and across the bond the stiffness force/|Y|.
@@ -49,8 +55,12 @@ namespace PeriDeal
   class StateOperator : public ElasticOperator
   {
   public:
-    /** Adds the halo to the nodes. Collective. Throws UserError: isolated nodes, nodes all of whose bonds lie in one line. */
+    /**
+     * Adds the halo to the nodes. Collective. Throws UserError: isolated nodes, nodes all of whose bonds lie in one line, `Operator form = lattice` where there
+     * is none.
+     */
     StateOperator(Nodes<dim> &nodes, const Scene<dim> &scene);
+    ~StateOperator() override;
 
     void                initialize_vector(Vector &vector) const override;
     void                apply(Vector &y, const Vector &x) const override;
@@ -85,6 +95,9 @@ namespace PeriDeal
 
     const Families<dim> &families() const;
 
+    /** How many of this process's bonds are stored, each counted at both ends. */
+    std::size_t n_stored_bonds() const;
+
     /** Of the owned nodes and their ghosts; empty where bonds do not break. */
     const std::vector<double> &critical_stretches() const;
 
@@ -111,42 +124,65 @@ namespace PeriDeal
       double   thermal; // strain
     };
 
-    void find_laws();
-    void store_bonds();
-    void find_thermal_loads();
-    void find_critical_stretches();
-    void find_overstretched(const Vector &u, const double share);
-    void find_diagonal();
-    void find_loads(Vector &loads, const double t) const;
+    /** A bond of a node, as it is stored. */
+    struct Bond
+    {
+      unsigned int           neighbor;
+      dealii::Tensor<1, dim> moment;         // W xi, of the tangent W x Y/|Y|
+      double                 spring, length; // length: W x, with full kinematics
+    };
+
+    /** Visit the unbroken bonds of an owned node, stored or not, in the order of its family. */
+    template <typename Visit>
+    void for_each_bond(const unsigned int i, const Visit &visit) const;
+
+    void     find_laws();
+    bool     may_leave_out_bonds() const;
+    bool     has_complete_family(const unsigned int i) const;
+    void     find_bonds();
+    void     store_bonds(const unsigned int                               i,
+                         const std::vector<typename Families<dim>::Bond> &family,
+                         std::string                                     &message);
+    void     find_springs();
+    void     make_lattice();
+    StateLaw most_frequent_law() const;
+    void     find_thermal_loads();
+    void     find_critical_stretches();
+    void     find_overstretched(const Vector &u, const double share);
+    void     find_diagonal();
+    void     find_loads(Vector &loads, const double t) const;
     template <typename Visit>
     void for_each_load(const double t, const Visit &visit) const;
-    void find_dilatation_forces(const Vector &x, const bool thermal) const;
-    void sum_forces(Vector &y, const Vector &x, const bool thermal) const;
+    void find_dilatation_forces(const Vector &x) const;
+    void sum_forces(Vector &y, const Vector &x) const;
     void add_geometric_forces(Vector &y, const Vector &x) const;
-    void find_deformed_dilatation_forces(const Vector &u) const;
+    void find_strained_dilatation_forces(const Vector &u) const;
     void sum_deformed_forces(Vector &y, const Vector &u) const;
     void find_forces(Vector &y, const Vector &u) const;
 
     /** xi + u_j - u_i. */
     dealii::Tensor<1, dim> deformed_bond(const double      *u,
                                          const unsigned int i,
-                                         const std::size_t  k) const;
+                                         const unsigned int j) const;
 
     /** W x e of a bond of an owned node, thermal extension taken off. */
-    double extension_moment(const double *u, const unsigned int i, const std::size_t k) const
+    double extension_moment(const double *u, const unsigned int i, const Bond &bond) const
     {
       if (full || any_thermal)
-        return strained_extension_moment(u, i, k);
+        return strained_extension_moment(u, i, bond);
       double product = 0.;
       for (unsigned int d = 0; d < dim; ++d)
-        product += moments[k][d] * (u[dim * neighbors[k] + d] - u[dim * i + d]);
+        product += bond.moment[d] * (u[dim * bond.neighbor + d] - u[dim * i + d]);
       return product;
     }
 
+    Bond stored_bond(const std::size_t k) const
+    {
+      return {neighbors[k], moments[k], springs[k], full ? lengths[k] : 0.};
+    }
+
     /** The same in general. */
-    double strained_extension_moment(const double      *u,
-                                     const unsigned int i,
-                                     const std::size_t  k) const;
+    double strained_extension_moment(const double *u, const unsigned int i, const Bond &bond) const;
 
     const Scene<dim>                                          &scene;
     Families<dim>                                              bonds;
@@ -154,7 +190,10 @@ namespace PeriDeal
     std::unique_ptr<DisplacementConditions<dim>>               conditions;
     std::vector<NodeLaw>                                       laws;     // owned and ghosts
     Vector                                                     weighted; // q_i; ghosts up to date
-    std::vector<std::size_t>            starts{0}; // of the bonds of each owned node
+    std::unique_ptr<StateLattice<dim>>                         lattice;  // or none
+    std::vector<bool>                   on_lattice;   // owned nodes that store no bond
+    std::vector<unsigned int>           stored_nodes; // the others
+    std::vector<std::size_t>            starts{0};    // of the stored bonds of each owned node
     std::vector<unsigned int>           neighbors;
     std::vector<dealii::Tensor<1, dim>> moments; // W xi, of the tangent W x Y/|Y|
     std::vector<double>                 springs; // (b_i/q_i + b_j/q_j)/(W x^2)
@@ -174,4 +213,30 @@ namespace PeriDeal
     bool           loads_vary     = false;
     mutable Vector scratch, source, tau; // tau_i = c_i theta_i/q_i
   };
+
+
+  template <int dim>
+  template <typename Visit>
+  inline void StateOperator<dim>::for_each_bond(const unsigned int i, const Visit &visit) const
+  {
+    if (on_lattice.empty() || !on_lattice[i])
+      {
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          visit(stored_bond(k));
+        return;
+      }
+    const Nodes<dim> &nodes = bonds.nodes();
+    const auto        site  = nodes.lattice()->index(nodes.position(i));
+    const double      own   = laws[i].law.extension / weighted.local_element(i);
+    for (const FamilyMember<dim> &member : bonds.lattice_members())
+      {
+        const unsigned int j = bonds.node_at(site + member.offset);
+        if (j == dealii::numbers::invalid_unsigned_int)
+          continue;
+        const dealii::Tensor<1, dim> xi    = bonds.bond_vector(i, j);
+        const double                 w     = nodes.volume(i) * nodes.volume(j) * member.weight;
+        const double                 other = laws[j].law.extension / weighted.local_element(j);
+        visit(Bond{j, w * xi, (own + other) / (w * xi.norm_square()), 0.});
+      }
+  }
 } // namespace PeriDeal

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Which bonds are stored, and which the lattice knows.
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/operators/state_operator.h>
+
+#include <algorithm>
+#include <array>
+
+#include "state_lattice.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  bool StateOperator<dim>::may_leave_out_bonds() const
+  {
+    const OperatorForm wanted = scene.peridynamics.form;
+    std::string        reason;
+    if (!bonds.has_unique_sites())
+      reason = "the nodes are not on a lattice with one node per site";
+    else if (full)
+      reason = "with 'Kinematics = full' each bond has its own direction";
+    else if (scene.material.fracture_energy || scene.material.critical_stretch)
+      reason = "bonds may break";
+    AssertThrow(
+      wanted != OperatorForm::lattice || reason.empty(),
+      UserError("'Operator form = lattice' in section 'Peridynamics' is not possible here: " +
+                reason + ". Use 'auto' or 'stored'."));
+    return wanted != OperatorForm::stored && reason.empty();
+  }
+
+
+  template <int dim>
+  bool StateOperator<dim>::has_complete_family(const unsigned int i) const
+  {
+    const Nodes<dim> &nodes  = bonds.nodes();
+    const double      volume = nodes.lattice()->cell_volume();
+    if (nodes.volume(i) != volume || bonds.near_crack(i))
+      return false;
+    const auto site = nodes.lattice()->index(nodes.position(i));
+    for (const FamilyMember<dim> &member : bonds.lattice_members())
+      {
+        const unsigned int j = bonds.node_at(site + member.offset);
+        if (j == numbers::invalid_unsigned_int || nodes.volume(j) != volume)
+          return false;
+      }
+    return true;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_bonds()
+  {
+    const Nodes<dim>                         &nodes         = bonds.nodes();
+    const bool                                may_leave_out = may_leave_out_bonds();
+    std::vector<typename Families<dim>::Bond> family;
+    std::string                               message;
+    double                                    complete_q = 0.; // of a complete family
+    if (may_leave_out)
+      {
+        on_lattice.assign(nodes.n_owned(), false);
+        for (const FamilyMember<dim> &member : bonds.lattice_members())
+          complete_q += nodes.lattice()->cell_volume() * member.weight * member.r * member.r;
+      }
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        if (may_leave_out && has_complete_family(i))
+          {
+            on_lattice[i]             = true;
+            weighted.local_element(i) = complete_q;
+            n_bonds += 0.5 * bonds.lattice_members().size(); // at each end
+          }
+        else
+          {
+            bonds.bonds_of(i, family, false);
+            if (may_leave_out)
+              on_lattice[i] = std::none_of(family.begin(), family.end(), [](const auto &bond) {
+                return bond.cut || bond.intact == 0.;
+              });
+            store_bonds(i, family, message);
+          }
+        starts.push_back(neighbors.size());
+        if (!may_leave_out || !on_lattice[i])
+          stored_nodes.push_back(i);
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+    weighted.update_ghost_values();
+    find_springs();
+    if (may_leave_out)
+      make_lattice();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::store_bonds(const unsigned int                               i,
+                                       const std::vector<typename Families<dim>::Bond> &family,
+                                       std::string                                     &message)
+  {
+    const Nodes<dim>       &nodes  = bonds.nodes();
+    const bool              stored = on_lattice.empty() || !on_lattice[i];
+    SymmetricTensor<2, dim> shape;
+    double                  q = 0.;
+    for (const auto &bond : family)
+      {
+        if (bond.cut || bond.intact == 0.)
+          continue;
+        AssertIndexRange(bond.neighbor, nodes.n_local()); // no fictitious nodes
+        const Tensor<1, dim> xi = bonds.bond_vector(i, bond.neighbor);
+        const double         w  = bond.intact / bonds.bond_conductivity(i, bond.neighbor);
+        q += w * xi.norm_square() / nodes.volume(i);
+        shape += w * symmetrize(outer_product(xi, xi));
+        n_bonds += 0.5; // at each end
+        if (!stored)
+          continue;
+        neighbors.push_back(bond.neighbor);
+        moments.push_back(w * xi);
+        springs.push_back(w * xi.norm_square());
+      }
+    weighted.local_element(i) = q;
+    if (!message.empty())
+      return;
+    if (!(q > 0.))
+      message =
+        "The node at " + place_of(dim * i) +
+        " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
+    else if (eigenvalues(shape)[dim - 1] < 1e-9 * trace(shape))
+      message =
+        "All bonds of the node at " + place_of(dim * i) +
+        " lie in one line or plane, across which nothing holds it. Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_springs()
+  {
+    for (const unsigned int i : stored_nodes)
+      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+        {
+          const unsigned int j = neighbors[k];
+          springs[k]           = (laws[i].law.extension / weighted.local_element(i) +
+                        laws[j].law.extension / weighted.local_element(j)) /
+                       springs[k]; // W x^2
+        }
+    if (!full)
+      return;
+    across.resize(neighbors.size(), 0.);
+    for (const Tensor<1, dim> &p : moments)
+      lengths.push_back(p.norm());
+  }
+
+
+  template <int dim>
+  StateLaw StateOperator<dim>::most_frequent_law() const
+  {
+    // Of several the softest or the stiffest one, whichever more nodes have.
+    using Numbers              = std::array<double, 3>;
+    const MPI_Comm     all     = bonds.nodes().communicator();
+    const unsigned int n_owned = bonds.nodes().n_owned();
+    const auto         law_of  = [&](const unsigned int i) {
+      const StateLaw &law = laws[i].law;
+      return Numbers{{law.extension, law.volumetric, law.dilatation}};
+    };
+    std::vector<Numbers> extremes; // of this process
+    for (unsigned int i = 0; i < n_owned; ++i)
+      {
+        extremes.resize(2, law_of(i));
+        extremes[0] = std::min(extremes[0], law_of(i));
+        extremes[1] = std::max(extremes[1], law_of(i));
+      }
+    std::vector<Numbers> found;
+    for (const std::vector<Numbers> &others : Utilities::MPI::all_gather(all, extremes))
+      found.insert(found.end(), others.begin(), others.end());
+    const auto            limits = std::minmax_element(found.begin(), found.end());
+    std::array<double, 2> counts{{0., 0.}};
+    for (unsigned int i = 0; i < n_owned; ++i)
+      {
+        counts[0] += law_of(i) == *limits.first ? 1. : 0.;
+        counts[1] += law_of(i) == *limits.second ? 1. : 0.;
+      }
+    for (double &count : counts)
+      count = Utilities::MPI::sum(count, all);
+    const Numbers &chosen = counts[0] >= counts[1] ? *limits.first : *limits.second;
+    StateLaw       law;
+    law.extension  = chosen[0];
+    law.volumetric = chosen[1];
+    law.dilatation = chosen[2];
+    return law;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::make_lattice()
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    const StateLaw    law   = most_frequent_law();
+    double            q     = 0.;
+    for (const FamilyMember<dim> &member : bonds.lattice_members())
+      q += nodes.lattice()->cell_volume() * member.weight * member.r * member.r;
+    typename StateLattice<dim>::Coefficients coefficients;
+    coefficients.stiffness  = law.extension / q;
+    coefficients.dilatation = volumetric ? law.volumetric * law.dilatation / (q * q) : 0.;
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      {
+        const double own = weighted.local_element(i);
+        coefficients.stiffnesses.push_back(laws[i].law.extension / own);
+        if (volumetric && i < nodes.n_owned())
+          coefficients.dilatations.push_back(laws[i].law.volumetric * laws[i].law.dilatation /
+                                             (own * own));
+      }
+    lattice = std::make_unique<StateLattice<dim>>(bonds, coefficients, on_lattice);
+  }
+
+
+  template <int dim>
+  std::size_t StateOperator<dim>::n_stored_bonds() const
+  {
+    return neighbors.size();
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                        \
+  template void        StateOperator<dim>::find_bonds(); \
+  template std::size_t StateOperator<dim>::n_stored_bonds() const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
