@@ -41,7 +41,7 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes  = bonds.nodes();
     const double      volume = nodes.lattice()->cell_volume();
-    if (nodes.volume(i) != volume || bonds.near_crack(i))
+    if (nodes.volume(i) != volume)
       return false;
     const auto site = nodes.lattice()->index(nodes.position(i));
     for (const FamilyMember<dim> &member : bonds.lattice_members())
@@ -55,44 +55,60 @@ namespace PeriDeal
 
 
   template <int dim>
+  double StateOperator<dim>::complete_weighted() const
+  {
+    double q = 0.;
+    for (const FamilyMember<dim> &member : bonds.lattice_members())
+      q += bonds.nodes().lattice()->cell_volume() * member.weight * member.r * member.r;
+    return q;
+  }
+
+
+  template <int dim>
   void StateOperator<dim>::find_bonds()
   {
-    const Nodes<dim>                         &nodes         = bonds.nodes();
-    const bool                                may_leave_out = may_leave_out_bonds();
+    const Nodes<dim>                         &nodes     = bonds.nodes();
+    const bool                                leave_out = may_leave_out_bonds();
+    const double                              q         = leave_out ? complete_weighted() : 0.;
     std::vector<typename Families<dim>::Bond> family;
     std::string                               message;
-    double                                    complete_q = 0.; // of a complete family
-    if (may_leave_out)
+    if (leave_out)
       {
-        on_lattice.assign(nodes.n_owned(), false);
+        on_lattice.assign(nodes.n_owned(), true);
         for (const FamilyMember<dim> &member : bonds.lattice_members())
-          complete_q += nodes.lattice()->cell_volume() * member.weight * member.r * member.r;
+          {
+            LatticeBond bond;
+            bond.offset = member.offset;
+            for (unsigned int d = 0; d < dim; ++d)
+              bond.moment[d] = member.weight * (member.offset[d] * nodes.lattice()->spacing[d]);
+            bond.weight = member.weight * member.r * member.r;
+            lattice_bonds.push_back(bond);
+          }
       }
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        if (may_leave_out && has_complete_family(i))
-          {
-            on_lattice[i]             = true;
-            weighted.local_element(i) = complete_q;
-            n_bonds += 0.5 * bonds.lattice_members().size(); // at each end
-          }
+        const bool complete = leave_out && has_complete_family(i);
+        if (complete && !bonds.near_crack(i))
+          n_bonds += 0.5 * static_cast<double>(lattice_bonds.size()); // at each end
         else
           {
             bonds.bonds_of(i, family, false);
-            if (may_leave_out)
+            if (leave_out)
               on_lattice[i] = std::none_of(family.begin(), family.end(), [](const auto &bond) {
                 return bond.cut || bond.intact == 0.;
               });
             store_bonds(i, family, message);
           }
+        if (complete && on_lattice[i])
+          weighted.local_element(i) = q; // to the last bit
         starts.push_back(neighbors.size());
-        if (!may_leave_out || !on_lattice[i])
+        if (!leave_out || !on_lattice[i])
           stored_nodes.push_back(i);
       }
     throw_on_all_if_any(nodes.communicator(), message);
     weighted.update_ghost_values();
     find_springs();
-    if (may_leave_out)
+    if (leave_out)
       make_lattice();
   }
 
@@ -197,11 +213,9 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::make_lattice()
   {
-    const Nodes<dim> &nodes = bonds.nodes();
-    const StateLaw    law   = most_frequent_law();
-    double            q     = 0.;
-    for (const FamilyMember<dim> &member : bonds.lattice_members())
-      q += nodes.lattice()->cell_volume() * member.weight * member.r * member.r;
+    const Nodes<dim>                        &nodes = bonds.nodes();
+    const StateLaw                           law   = most_frequent_law();
+    const double                             q     = complete_weighted();
     typename StateLattice<dim>::Coefficients coefficients;
     coefficients.stiffness  = law.extension / q;
     coefficients.dilatation = volumetric ? law.volumetric * law.dilatation / (q * q) : 0.;

@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "state_lattice.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -31,9 +33,18 @@ namespace PeriDeal
                            laws[i].law.volumetric * laws[i].law.dilatation / (q * q * nodes.volume(i)) :
                            0.;
       }
+    unsigned int regular = numbers::invalid_unsigned_int; // the first of those that are all alike
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
+        const bool     is_regular = lattice && on_lattice[i] && lattice->is_regular(i);
         Tensor<1, dim> sum, diagonal;
+        if (is_regular && regular != numbers::invalid_unsigned_int)
+          {
+            for (unsigned int d = 0; d < dim; ++d)
+              stiffness_diagonal.local_element(dim * i + d) =
+                stiffness_diagonal.local_element(dim * regular + d);
+            continue;
+          }
         for_each_bond(i, [&](const Bond &bond) {
           sum += bond.moment;
           for (unsigned int d = 0; d < dim; ++d)
@@ -41,6 +52,8 @@ namespace PeriDeal
         });
         for (unsigned int d = 0; d < dim; ++d)
           stiffness_diagonal.local_element(dim * i + d) = diagonal[d] + factor[i] * sum[d] * sum[d];
+        if (is_regular)
+          regular = i;
       }
     // Nodes without bonds, all of them broken: any positive number.
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
@@ -201,9 +214,8 @@ namespace PeriDeal
     std::vector<bool>         damaged(nodes.n_owned(), false);
     Vector                    sums(nodes.partitioner());
     const auto                is_near = [&](const unsigned int i, const Tensor<1, dim> &xi) {
-      const double size = std::pow(nodes.volume(i), 1. / dim);
       if (!nodes.lattice())
-        return xi.norm() < 1.8 * size;
+        return xi.norm() < 1.8 * std::pow(nodes.volume(i), 1. / dim);
       bool is = true;
       for (unsigned int d = 0; d < dim; ++d)
         is = is && std::abs(xi[d]) < 1.5 * nodes.lattice()->spacing[d];

@@ -132,13 +132,22 @@ namespace PeriDeal
       double                 spring, length; // length: W x, with full kinematics
     };
 
+    /** A bond of a complete family, with volumes of 1. */
+    struct LatticeBond
+    {
+      typename Lattice<dim>::Index offset;
+      dealii::Tensor<1, dim>       moment; // w xi
+      double                       weight; // w x^2
+    };
+
     /** Visit the unbroken bonds of an owned node, stored or not, in the order of its family. */
     template <typename Visit>
     void for_each_bond(const unsigned int i, const Visit &visit) const;
 
     void     find_laws();
     bool     may_leave_out_bonds() const;
-    bool     has_complete_family(const unsigned int i) const;
+    bool     has_complete_family(const unsigned int i) const; // cut or not
+    double   complete_weighted() const;                       // q of one that is not cut
     void     find_bonds();
     void     store_bonds(const unsigned int                               i,
                          const std::vector<typename Families<dim>::Bond> &family,
@@ -191,7 +200,8 @@ namespace PeriDeal
     std::vector<NodeLaw>                                       laws;     // owned and ghosts
     Vector                                                     weighted; // q_i; ghosts up to date
     std::unique_ptr<StateLattice<dim>>                         lattice;  // or none
-    std::vector<bool>                   on_lattice;   // owned nodes that store no bond
+    std::vector<bool>                   on_lattice; // owned nodes that store no bond
+    std::vector<LatticeBond>            lattice_bonds;
     std::vector<unsigned int>           stored_nodes; // the others
     std::vector<std::size_t>            starts{0};    // of the stored bonds of each owned node
     std::vector<unsigned int>           neighbors;
@@ -225,18 +235,18 @@ namespace PeriDeal
           visit(stored_bond(k));
         return;
       }
-    const Nodes<dim> &nodes = bonds.nodes();
-    const auto        site  = nodes.lattice()->index(nodes.position(i));
-    const double      own   = laws[i].law.extension / weighted.local_element(i);
-    for (const FamilyMember<dim> &member : bonds.lattice_members())
+    const Nodes<dim> &nodes  = bonds.nodes();
+    const auto        site   = nodes.lattice()->index(nodes.position(i));
+    const double      volume = nodes.volume(i);
+    const double      own    = laws[i].law.extension / weighted.local_element(i);
+    for (const LatticeBond &bond : lattice_bonds)
       {
-        const unsigned int j = bonds.node_at(site + member.offset);
+        const unsigned int j = bonds.node_at(site + bond.offset);
         if (j == dealii::numbers::invalid_unsigned_int)
           continue;
-        const dealii::Tensor<1, dim> xi    = bonds.bond_vector(i, j);
-        const double                 w     = nodes.volume(i) * nodes.volume(j) * member.weight;
-        const double                 other = laws[j].law.extension / weighted.local_element(j);
-        visit(Bond{j, w * xi, (own + other) / (w * xi.norm_square()), 0.});
+        const double w     = volume * nodes.volume(j);
+        const double other = laws[j].law.extension / weighted.local_element(j);
+        visit(Bond{j, w * bond.moment, (own + other) / (w * bond.weight), 0.});
       }
   }
 } // namespace PeriDeal
