@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "state_lattice.h"
 
@@ -221,9 +222,18 @@ namespace PeriDeal
         is = is && std::abs(xi[d]) < 1.5 * nodes.lattice()->spacing[d];
       return is;
     };
+    std::vector<LatticeBond> close; // those that are near
+    std::copy_if(lattice_bonds.begin(),
+                 lattice_bonds.end(),
+                 std::back_inserter(close),
+                 [](const LatticeBond &bond) {
+                   return std::all_of(bond.offset.begin(), bond.offset.end(), [](const int n) {
+                     return std::abs(n) <= 1;
+                   });
+                 });
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        for_each_bond(i, [&](const Bond &bond) {
+        const auto add_near = [&](const Bond &bond) {
           const Tensor<1, dim> xi = bonds.bond_vector(i, bond.neighbor);
           if (!is_near(i, xi) && !is_near(bond.neighbor, xi))
             return;
@@ -233,7 +243,11 @@ namespace PeriDeal
             damaged[i] = true;
           else
             near.push_back(bond.neighbor);
-        });
+        };
+        if (!on_lattice.empty() && on_lattice[i])
+          for_each_lattice_bond(i, close, add_near);
+        else
+          for_each_bond(i, add_near);
         first.push_back(near.size());
       }
     sums.update_ghost_values();

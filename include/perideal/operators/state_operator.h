@@ -144,6 +144,12 @@ namespace PeriDeal
     template <typename Visit>
     void for_each_bond(const unsigned int i, const Visit &visit) const;
 
+    /** The same of a node that stores none, those of the list. */
+    template <typename Visit>
+    void for_each_lattice_bond(const unsigned int              i,
+                               const std::vector<LatticeBond> &list,
+                               const Visit                    &visit) const;
+
     void     find_laws();
     bool     may_leave_out_bonds() const;
     bool     has_complete_family(const unsigned int i) const; // cut or not
@@ -235,11 +241,21 @@ namespace PeriDeal
           visit(stored_bond(k));
         return;
       }
+    for_each_lattice_bond(i, lattice_bonds, visit);
+  }
+
+
+  template <int dim>
+  template <typename Visit>
+  inline void StateOperator<dim>::for_each_lattice_bond(const unsigned int              i,
+                                                        const std::vector<LatticeBond> &list,
+                                                        const Visit                    &visit) const
+  {
     const Nodes<dim> &nodes  = bonds.nodes();
     const auto        site   = nodes.lattice()->index(nodes.position(i));
     const double      volume = nodes.volume(i);
     const double      own    = laws[i].law.extension / weighted.local_element(i);
-    for (const LatticeBond &bond : lattice_bonds)
+    for (const LatticeBond &bond : list)
       {
         const unsigned int j = bonds.node_at(site + bond.offset);
         if (j == dealii::numbers::invalid_unsigned_int)
