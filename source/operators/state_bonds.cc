@@ -172,9 +172,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  StateLaw StateOperator<dim>::most_frequent_law() const
+  StateLaw StateOperator<dim>::reference_law() const
   {
-    // Of several the softest or the stiffest one, whichever more nodes have.
+    // Of several the softest or the stiffest one.
     using Numbers              = std::array<double, 3>;
     const MPI_Comm     all     = bonds.nodes().communicator();
     const unsigned int n_owned = bonds.nodes().n_owned();
@@ -201,7 +201,11 @@ namespace PeriDeal
       }
     for (double &count : counts)
       count = Utilities::MPI::sum(count, all);
-    const Numbers &chosen = counts[0] >= counts[1] ? *limits.first : *limits.second;
+    // s of all others is written as a difference to it, which must not lose digits in the soft ones.
+    constexpr double most_contrast = 100.;
+    const bool       softest       = counts[0] >= counts[1] ||
+                         (*limits.second)[0] > most_contrast * (*limits.first)[0];
+    const Numbers &chosen = softest ? *limits.first : *limits.second;
     StateLaw       law;
     law.extension  = chosen[0];
     law.volumetric = chosen[1];
@@ -214,7 +218,7 @@ namespace PeriDeal
   void StateOperator<dim>::make_lattice()
   {
     const Nodes<dim>                        &nodes = bonds.nodes();
-    const StateLaw                           law   = most_frequent_law();
+    const StateLaw                           law   = reference_law();
     const double                             q     = complete_weighted();
     typename StateLattice<dim>::Coefficients coefficients;
     coefficients.stiffness  = law.extension / q;

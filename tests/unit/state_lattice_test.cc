@@ -215,6 +215,28 @@ TEST(StateLattice, phases_and_temperatures)
 }
 
 
+TEST(StateLattice, soft_beside_stiff)
+{
+  // Forces in the soft part keep their digits, for themselves.
+  const Settings settings = box<2>() + Settings{{"Domain/Cells", "40, 30"},
+                                                {"Material/Phases/Regions", "stiff: x > 0.3"},
+                                                {"Material/Phases/Young modulus", "stiff: 3e6"},
+                                                {"Material/Phases/Poisson ratio", "stiff: 0.2"}};
+  const auto     forces   = [&](const std::string &name) {
+    const Body<2> body(settings + form(name), Model::peridynamics);
+    Vector        y;
+    body.op().initialize_vector(y);
+    body.states->multiply(y, body.values(bumpy_vector<2>));
+    std::vector<double> soft;
+    for (unsigned int i = 0; i < y.locally_owned_size(); ++i)
+      if (body.position(i / 2)[0] < 0.22)
+        soft.push_back(y.local_element(i));
+    return soft;
+  };
+  EXPECT_LT(relative_gap(forces("lattice"), forces("stored")), 1e-12);
+}
+
+
 TEST(StateLattice, does_not_depend_on_the_number_of_processes)
 {
   const Settings settings = box<2>() + form("lattice") +

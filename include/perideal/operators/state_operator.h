@@ -160,7 +160,7 @@ namespace PeriDeal
                          std::string                                     &message);
     void     find_springs();
     void     make_lattice();
-    StateLaw most_frequent_law() const;
+    StateLaw reference_law() const;
     void     find_thermal_loads();
     void     find_critical_stretches();
     void     find_overstretched(const Vector &u, const double share);
