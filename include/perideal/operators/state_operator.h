@@ -95,6 +95,12 @@ namespace PeriDeal
 
     const Families<dim> &families() const;
 
+    /**
+     * K of multiply() as a matrix: with full kinematics the tangent of the last linearize(). Rows reach two horizons, so that it takes (2m + 1)^dim times
+     * the memory of a spring: for factorisations, eigenvalues and other programs. Collective.
+     */
+    void matrix(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
+
     /** How many of this process's bonds are stored, each counted at both ends. */
     std::size_t n_stored_bonds() const;
 

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// K of the state-based operator as a matrix, on request.
+
+#include <perideal/operators/state_operator.h>
+
+#include <algorithm>
+
+#include "state_lattice.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  /*
+   * With g_i . u = sum_j W xi . (u_j - u_i) over the bonds of node i,
+   *
+   *   K = sum_i c d/(V q^2) g_i g_i^T + sum over bonds of spring (W xi) (W xi)^T (1 -1; -1 1)
+   *
+   * so that the visit of node i gives rows of its whole family, also of those nodes that other processes own.
+   */
+  template <int dim>
+  void StateOperator<dim>::matrix(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    const Nodes<dim>                    &nodes = bonds.nodes();
+    const IndexSet                       owned = unknowns->locally_owned_range();
+    IndexSet                             written(owned.size());
+    std::vector<types::global_dof_index> indices;
+    std::vector<Tensor<1, dim>>          moment;
+    const auto                           find_family = [&](const unsigned int i) {
+      const auto add = [&](const unsigned int j, const Tensor<1, dim> &p) {
+        for (unsigned int d = 0; d < dim; ++d)
+          indices.push_back(unknowns->local_to_global(dim * j + d));
+        moment.push_back(p);
+      };
+      indices.clear();
+      moment.clear();
+      add(i, Tensor<1, dim>());
+      for_each_bond(i, [&](const Bond &bond) {
+        add(bond.neighbor, bond.moment);
+        moment[0] -= bond.moment;
+      });
+    };
+    for (unsigned int k = 0; k < dim * nodes.n_local(); ++k)
+      written.add_index(unknowns->local_to_global(k));
+    TrilinosWrappers::SparsityPattern pattern(owned, owned, written, nodes.communicator());
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        find_family(i);
+        for (std::size_t row = 0; row < indices.size(); ++row)
+          if (volumetric || row < dim)
+            pattern.add_entries(indices[row], indices.begin(), indices.end());
+      }
+    pattern.compress();
+    matrix.reinit(pattern);
+
+    FullMatrix<double> local;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        find_family(i);
+        local.reinit(indices.size(), indices.size());
+        const StateLaw &law = laws[i].law;
+        const double    q   = weighted.local_element(i);
+        const double    size =
+          volumetric ? law.volumetric * law.dilatation / (nodes.volume(i) * q * q) : 0.;
+        for (std::size_t row = 0; volumetric && row < indices.size(); ++row)
+          for (std::size_t column = 0; column < indices.size(); ++column)
+            local(row, column) =
+              size * moment[row / dim][row % dim] * moment[column / dim][column % dim];
+        std::size_t k = 1;
+        for_each_bond(i, [&](const Bond &bond) {
+          Tensor<2, dim> block = bond.spring * outer_product(bond.moment, bond.moment);
+          if (full && bond.length > 0.)
+            block += across[starts[i] + k - 1] *
+                     (unit_symmetric_tensor<dim>() -
+                      outer_product(bond.moment, bond.moment) / (bond.length * bond.length));
+          for (unsigned int d = 0; d < dim; ++d)
+            for (unsigned int e = 0; e < dim; ++e)
+              {
+                local(d, e) += block[d][e];
+                local(d, dim * k + e) -= block[d][e];
+              }
+          ++k;
+        });
+        const std::size_t n_rows = volumetric ? indices.size() : dim;
+        for (std::size_t row = 0; row < n_rows; ++row)
+          matrix.add(indices[row],
+                     static_cast<types::global_dof_index>(indices.size()),
+                     indices.data(),
+                     &local(row, 0));
+      }
+    matrix.compress(VectorOperation::add);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim) \
+  template void StateOperator<dim>::matrix(TrilinosWrappers::SparseMatrix &) const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
