@@ -32,7 +32,9 @@ namespace PeriDeal
       wanted != OperatorForm::lattice || reason.empty(),
       UserError("'Operator form = lattice' in section 'Peridynamics' is not possible here: " +
                 reason + ". Use 'auto' or 'stored'."));
-    return wanted != OperatorForm::stored && reason.empty();
+    // Bonds of bars take little, and differences of displacements round less than convolutions.
+    return wanted == OperatorForm::lattice ||
+           (wanted == OperatorForm::automatic && dim > 1 && reason.empty());
   }
 
 

@@ -268,6 +268,7 @@ TEST(StateLattice, choice_of_the_form)
     return Body<2>(box<2>() + more, Model::peridynamics).states->size().form;
   };
   EXPECT_EQ(form_of({}), "lattice");
+  EXPECT_EQ(Body<1>(box<1>(), Model::peridynamics).states->size().form, "stored");
   EXPECT_EQ(form_of(form("stored")), "stored");
   EXPECT_EQ(form_of({{"Material/Critical stretch", "0.1"}}), "stored");
   EXPECT_EQ(
