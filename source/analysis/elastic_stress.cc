@@ -8,21 +8,11 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  namespace
-  {
-    template <int dim>
-    double thermal_strain(const Scene<dim> &scene, const Point<dim> &p)
-    {
-      return scene.material.thermal_expansion.value(p) *
-             scene.elasticity.temperature_change.value(p);
-    }
-  } // namespace
-
-
   template <int dim>
   SymmetricTensor<2, 3> full_stress(const SymmetricTensor<2, dim> &stress,
                                     const Scene<dim>              &scene,
-                                    const Point<dim>              &p)
+                                    const Point<dim>              &p,
+                                    const double                   temperature_change)
   {
     SymmetricTensor<2, 3> full;
     for (unsigned int a = 0; a < dim; ++a)
@@ -32,7 +22,7 @@ namespace PeriDeal
       full[2][2] = stress_zz(scene.material.moduli(p),
                              scene.elasticity.plane,
                              stress,
-                             thermal_strain(scene, p));
+                             scene.material.thermal_expansion.value(p) * temperature_change);
     return full;
   }
 
@@ -40,22 +30,28 @@ namespace PeriDeal
   template <int dim>
   SymmetricTensor<2, 3> stress_of_strain(const SymmetricTensor<2, dim> &strain,
                                          const Scene<dim>              &scene,
-                                         const Point<dim>              &p)
+                                         const Point<dim>              &p,
+                                         const double                   temperature_change)
   {
-    return full_stress(
-      stress(scene.material.moduli(p), scene.elasticity.plane, strain, thermal_strain(scene, p)),
-      scene,
-      p);
+    return full_stress(stress(scene.material.moduli(p),
+                              scene.elasticity.plane,
+                              strain,
+                              scene.material.thermal_expansion.value(p) * temperature_change),
+                       scene,
+                       p,
+                       temperature_change);
   }
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                  \
   template SymmetricTensor<2, 3> full_stress(const SymmetricTensor<2, dim> &,      \
                                              const Scene<dim> &,                   \
-                                             const Point<dim> &);                  \
+                                             const Point<dim> &,                   \
+                                             const double);                        \
   template SymmetricTensor<2, 3> stress_of_strain(const SymmetricTensor<2, dim> &, \
                                                   const Scene<dim> &,              \
-                                                  const Point<dim> &);
+                                                  const Point<dim> &,              \
+                                                  const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -130,7 +130,8 @@ namespace PeriDeal
     std::vector<CrackEndIntegral> list;
     const auto                   &cracks   = scene.cracks.cracks;
     const Material               &material = scene.material;
-    const bool                    warm     = !scene.elasticity.temperature_change.is_constant() ||
+    const bool                    warm     = scene.elasticity.computes_temperature ||
+                      !scene.elasticity.temperature_change.is_constant() ||
                       scene.elasticity.temperature_change.value(Point<2>()) != 0.;
     const double size = 2. * scene.domain.spacing().norm(); // of cells: a ring has to hold some
     if (!scene.elasticity.is_static() || scene.domain.shape != Shape::box ||

@@ -17,12 +17,13 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::assemble_cell(CellData &data) const
   {
-    const unsigned int n = data.indices.size();
-    data.stiffness       = 0.;
-    data.thermal         = 0.;
-    data.mass            = 0.;
-    data.volume          = 0.;
-    data.thermal_energy  = 0.;
+    const unsigned int n        = data.indices.size();
+    const Vector      &at_nodes = this->temperature_change();
+    data.stiffness              = 0.;
+    data.thermal                = 0.;
+    data.mass                   = 0.;
+    data.volume                 = 0.;
+    data.thermal_energy         = 0.;
     for (const unsigned int q : data.values.quadrature_point_indices())
       {
         const Point<dim> &p      = data.values.quadrature_point(q);
@@ -31,9 +32,13 @@ namespace PeriDeal
         // A bar has E alone.
         const double lambda = dim == 1 ? 0. : lambda_of(moduli, dim, scene.elasticity.plane),
                      mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear;
-        const double strain = thermal_strain_factor(moduli, dim, scene.elasticity.plane) *
-                              scene.material.thermal_expansion.value(p) *
-                              scene.elasticity.temperature_change.value(p);
+        double change       = 0.; // of the temperature
+        if (at_nodes.size() == 0)
+          change = scene.elasticity.temperature_change.value(p);
+        else
+          for (unsigned int a = 0; a < n; ++a)
+            change += at_nodes(data.indices[a]) * data.values.shape_value(a, q);
+        const double strain   = thermal_strain(p, change);
         const double pressure = (dim * lambda + 2. * mu) * strain;
         const double density  = scene.material.density.value(p);
         data.thermal_energy += 0.5 * dim * pressure * strain * JxW;
@@ -89,27 +94,22 @@ namespace PeriDeal
     double energy = 0.;
     for_each_own_cell([&](const Cell &cell, CellData &of_cell) {
       change_cell(cell, of_cell);
-      energy += of_cell.thermal_energy;
+      add_thermal(of_cell, energy);
       of_cell.add_stiffness_to(stiffness);
       for (unsigned int i = 0; i < of_cell.unknowns.size(); ++i)
-        {
-          thermal_loads(of_cell.unknowns[i]) += of_cell.thermal(i);
-          mass(of_cell.unknowns[i]) += of_cell.mass(i / dim);
-        }
+        mass(of_cell.unknowns[i]) += of_cell.mass(i / dim);
       for (unsigned int i = 0; i < of_cell.indices.size(); ++i)
         volumes(of_cell.indices[i]) += of_cell.volume(i);
     });
-    thermal_energy = Utilities::MPI::sum(energy, dofs.get_communicator());
     if (coupling)
       {
         add_bonds(stiffness, false);
-        add_thermal_bonds();
         count_bonds();
       }
+    finish_thermal(energy);
     stiffness.compress(VectorOperation::add);
     mass.compress(VectorOperation::add);
     volumes.compress(VectorOperation::add);
-    thermal_loads.compress(VectorOperation::add);
     initialize_vector(stiffness_diagonal);
     for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
       if (column == unknowns->local_to_global(i))
@@ -117,6 +117,42 @@ namespace PeriDeal
     });
     conditions->mask(stiffness_diagonal, 1.);
     throw_if_isolated();
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::add_thermal(const CellData &data, double &energy)
+  {
+    energy += data.thermal_energy;
+    for (unsigned int i = 0; i < data.unknowns.size(); ++i)
+      thermal_loads(data.unknowns[i]) += data.thermal(i);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::finish_thermal(const double energy)
+  {
+    thermal_energy = Utilities::MPI::sum(energy, dofs.get_communicator());
+    if (coupling)
+      add_thermal_bonds();
+    thermal_loads.compress(VectorOperation::add);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::set_temperature_change(const Vector &nodal)
+  {
+    this->keep_temperature_change(nodal);
+    thermal_loads = 0.;
+    thermal_loads.zero_out_ghost_values();
+    double energy = 0.;
+    for_each_own_cell([&](const Cell &cell, CellData &of_cell) {
+      change_cell(cell, of_cell);
+      add_thermal(of_cell, energy);
+    });
+    finish_thermal(energy);
+    if (!loads_vary)
+      assemble_loads(constant_loads, 0.);
   }
 
 
@@ -206,6 +242,7 @@ namespace PeriDeal
 #define PERIDEAL_INSTANTIATE(dim)                                                             \
   template void         ElasticElements<dim>::assemble_cell(CellData &) const;                \
   template void         ElasticElements<dim>::assemble();                                     \
+  template void         ElasticElements<dim>::set_temperature_change(const Vector &);         \
   template void         ElasticElements<dim>::assemble_loads(Vector &, const double) const;   \
   template void         ElasticElements<dim>::mechanical_loads(Vector &, const double) const; \
   template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;

@@ -48,10 +48,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  double ElasticElements<dim>::thermal_strain(const Point<dim> &p) const
+  double ElasticElements<dim>::temperature_change_at(const unsigned int node) const
+  {
+    const Vector &at_nodes = this->temperature_change();
+    return at_nodes.size() > 0 ? at_nodes.local_element(node) :
+                                 scene.elasticity.temperature_change.value(positions[node]);
+  }
+
+
+  template <int dim>
+  double ElasticElements<dim>::thermal_strain(const Point<dim> &p,
+                                              const double      temperature_change) const
   {
     return thermal_strain_factor(scene.material.moduli(p), dim, scene.elasticity.plane) *
-           scene.material.thermal_expansion.value(p) * scene.elasticity.temperature_change.value(p);
+           scene.material.thermal_expansion.value(p) * temperature_change;
   }
 
 
@@ -61,7 +71,13 @@ namespace PeriDeal
     if (coupling && coupling->change_cell(cell, data.stiffness))
       {
         // The remainder carries a uniform thermal strain like the whole cell less its bonds.
-        const double           strain = thermal_strain(cell->center());
+        double change = 0.;
+        if (this->temperature_change().size() == 0)
+          change = scene.elasticity.temperature_change.value(cell->center());
+        else
+          for (const auto i : data.indices)
+            change += this->temperature_change()(i) / data.indices.size();
+        const double           strain = thermal_strain(cell->center(), change);
         dealii::Vector<double> free(data.thermal.size());
         for (unsigned int a = 0; a < data.indices.size(); ++a)
           for (unsigned int d = 0; d < dim; ++d)
@@ -159,7 +175,8 @@ namespace PeriDeal
   void ElasticElements<dim>::add_thermal_bonds()
   {
     const Expression &change = scene.elasticity.temperature_change;
-    if (change.is_constant() && change.value(Point<dim>()) == 0.)
+    if (this->temperature_change().size() == 0 && change.is_constant() &&
+        change.value(Point<dim>()) == 0.)
       return;
     std::vector<typename ElasticCoupling<dim>::Bond> bonds;
     double                                           energy = 0.;
@@ -170,11 +187,13 @@ namespace PeriDeal
           {
             if (bond.cut)
               continue;
-            const double         factor = bond_factor(i, bond.neighbor);
-            const Tensor<1, dim> xi     = positions[bond.neighbor] - positions[i];
-            const double         strain =
-              0.5 * (thermal_strain(positions[i]) + thermal_strain(positions[bond.neighbor]));
-            const Tensor<1, dim> force = factor * strain * (bond.block * xi);
+            const double         factor    = bond_factor(i, bond.neighbor);
+            const Tensor<1, dim> xi        = positions[bond.neighbor] - positions[i];
+            const auto           strain_at = [&](const unsigned int node) {
+              return thermal_strain(positions[node], temperature_change_at(node));
+            };
+            const double         strain = 0.5 * (strain_at(i) + strain_at(bond.neighbor));
+            const Tensor<1, dim> force  = factor * strain * (bond.block * xi);
             for (unsigned int d = 0; d < dim; ++d)
               thermal_loads.local_element(dim * i + d) -= force[d];
             energy += 0.25 * strain * (force * xi); // each bond is seen from both of its ends
@@ -306,6 +325,7 @@ namespace PeriDeal
   template void ElasticElements<dim>::add_bond_pattern(TrilinosWrappers::SparsityPattern &) const; \
   template void ElasticElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &, const bool)      \
     const;                                                                                         \
+  template double ElasticElements<dim>::thermal_strain(const Point<dim> &, const double) const;    \
   template void   ElasticElements<dim>::add_thermal_bonds();                                       \
   template void   ElasticElements<dim>::count_bonds();                                             \
   template void   ElasticElements<dim>::find_crack_factors();                                      \

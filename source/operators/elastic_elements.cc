@@ -121,6 +121,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ElasticElements<dim>::initialize_nodal_vector(Vector &vector) const
+  {
+    vector.reinit(nodes);
+  }
+
+
+  template <int dim>
   void ElasticElements<dim>::multiply(Vector &y, const Vector &x) const
   {
     stiffness.vmult(y, x);

@@ -41,6 +41,15 @@ namespace PeriDeal
   }
 
 
+  void ElasticOperator::keep_temperature_change(const Vector &nodal)
+  {
+    initialize_nodal_vector(nodal_change);
+    for (unsigned int i = 0; i < nodal_change.locally_owned_size(); ++i)
+      nodal_change.local_element(i) = nodal.local_element(i);
+    nodal_change.update_ghost_values();
+  }
+
+
   double ElasticOperator::scaled_bound() const
   {
     return sharp_bound(

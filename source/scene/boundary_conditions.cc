@@ -246,9 +246,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BoundaryConditions<dim>::parse(const bool box_sides, const bool hole, const Physics physics)
+  void BoundaryConditions<dim>::parse(const bool    box_sides,
+                                      const bool    hole,
+                                      const Physics physics,
+                                      const bool    with_heat)
   {
-    refuse_other_physics(physics);
+    refuse_other_physics(physics, with_heat);
     dirichlet    = parse_list("Dirichlet", box_sides, hole);
     flux         = parse_list("Flux", box_sides, hole);
     convection   = parse_list("Convection", box_sides, hole);

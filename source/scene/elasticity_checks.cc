@@ -83,7 +83,7 @@ namespace PeriDeal
     template <int dim>
     void check_other_sections(const Scene<dim> &scene)
     {
-      if (scene.finite_elements.consistent_capacity)
+      if (scene.finite_elements.consistent_capacity && !scene.elasticity.computes_temperature)
         entry_error(
           scene.finite_elements.where("Capacity"),
           "'consistent' is for what diffuses; masses are lumped with 'Physics = elasticity'.");
@@ -124,15 +124,16 @@ namespace PeriDeal
     template <int dim>
     void check_time(const Scene<dim> &scene)
     {
-      const InitialAndSource &loads   = scene.initial_and_source;
-      const std::string      &stepper = scene.time.stepper;
-      if (stepper != "auto" && !is_for_motion(stepper))
+      const InitialAndSource &loads     = scene.initial_and_source;
+      const std::string      &stepper   = scene.time.stepper;
+      const bool              with_heat = scene.elasticity.computes_temperature;
+      if (stepper != "auto" && !is_for_motion(stepper) && !with_heat)
         entry_error(
           scene.time.where("Stepper"),
           "'" + stepper +
-            "' is for what diffuses; with 'Physics = elasticity' the 'Solver' in section 'Elasticity' decides. Use 'auto', and with "
-            "'dynamics' also 'verlet' or 'newmark'.");
-      if (stepper != "auto" && scene.elasticity.is_static())
+            "' is for what diffuses; with 'Physics = elasticity' the 'Solver' in section 'Elasticity' decides. Use 'auto', with "
+            "'dynamics' also 'verlet' or 'newmark', and with 'Temperature change = computed' those of heat.");
+      if (is_for_motion(stepper) && scene.elasticity.is_static())
         entry_error(scene.time.where("Stepper"),
                     "'" + stepper + "' is for motion, but 'Solver' in section 'Elasticity' is '" +
                       scene.elasticity.solver_name() + "'. Use 'Solver = dynamics'.");
@@ -153,7 +154,8 @@ namespace PeriDeal
       };
       has_start(loads.initial_displacement, "Initial displacement");
       has_start(loads.initial_velocity, "Initial velocity");
-      if (scene.is_loaded_slowly() && scene.time.steady)
+      // With a computed temperature it is the heat problem that is steady.
+      if (scene.is_loaded_slowly() && scene.time.steady && !with_heat)
         entry_error(scene.time.where("Steady"), "is true, but there are loads that depend on t.");
     }
 
@@ -211,7 +213,8 @@ namespace PeriDeal
           entry_error(domain.where("Extra layers"), "is for 'Physics = elasticity'.");
         return;
       }
-    const bool changes_temperature = !is_zero(elasticity.temperature_change);
+    const bool changes_temperature = elasticity.computes_temperature ||
+                                     !is_zero(elasticity.temperature_change);
     if (changes_temperature && material.thermal_expansion.is_constant() &&
         material.thermal_expansion.value(Point<dim>()) == 0.)
       entry_error(elasticity.where("Temperature change"),
@@ -248,7 +251,7 @@ namespace PeriDeal
   {
     const auto &forces = initial_and_source.body_force;
     return general.physics == Physics::elasticity && elasticity.is_static() &&
-           (boundary_conditions.depends_on_time() ||
+           (warms_slowly() || boundary_conditions.depends_on_time() ||
             std::any_of(forces.begin(), forces.end(), [](const auto &force) {
               return force.depends_on_time();
             }));

@@ -35,7 +35,14 @@ namespace PeriDeal
       "0",
       "temperature",
       "Temperature above that of the unstrained body, a number or a formula of x, y, z; it strains the body by "
-      "`Thermal expansion` in section `Material` times this.");
+      "`Thermal expansion` in section `Material` times this. Or `computed`: each model first solves the heat problem that the scene describes, too "
+      "(Conductivity, Density and Heat capacity, Initial value and Source, Dirichlet, Flux and Convection, section `Time`), and the change is its temperature "
+      "less `Reference temperature`.");
+    declare("Reference temperature",
+            EntryType::number,
+            "0",
+            "temperature",
+            "With `Temperature change = computed`: temperature of the unstressed body.");
     declare(
       "Solver",
       EntryType::choice,
@@ -73,20 +80,34 @@ namespace PeriDeal
 
   void ElasticityControl::parse(const Physics physics, const unsigned int dim)
   {
-    model              = choice<ElasticModel>("Model");
-    plane              = choice<PlaneState>("Plane");
-    kinematics         = choice<Kinematics>("Kinematics");
-    solver             = choice<ElasticSolver>("Solver");
-    multigrid          = choice_name("Preconditioner") == "multigrid";
-    temperature_change = Expression(text("Temperature change"), where("Temperature change"));
+    model                 = choice<ElasticModel>("Model");
+    plane                 = choice<PlaneState>("Plane");
+    kinematics            = choice<Kinematics>("Kinematics");
+    solver                = choice<ElasticSolver>("Solver");
+    multigrid             = choice_name("Preconditioner") == "multigrid";
+    computes_temperature  = text("Temperature change") == "computed";
+    temperature_change    = computes_temperature ?
+                              Expression(0.) :
+                              Expression(text("Temperature change"), where("Temperature change"));
+    reference_temperature = number("Reference temperature");
     if (physics != Physics::elasticity)
       for (const Entry &entry : entries())
         if (is_given(entry.name))
           error(entry.name,
                 "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");
     if (temperature_change.depends_on_time())
-      error("Temperature change",
-            "'" + temperature_change.text() + "' depends on t; known variables here: x, y, z.");
+      error(
+        "Temperature change",
+        "'" + temperature_change.text() +
+          "' depends on t; known variables here: x, y, z. A temperature that changes in time can be 'computed'.");
+    if (computes_temperature && !is_static())
+      error(
+        "Temperature change",
+        "'computed' is for bodies at rest, but 'Solver' is 'dynamics'. Use another solver, or a formula of x, y, z here.");
+    if (is_given("Reference temperature") && !computes_temperature)
+      error("Reference temperature",
+            "has no effect: 'Temperature change' is '" + text("Temperature change") +
+              "'. Use 'Temperature change = computed', or leave the entry out.");
     if (dim != 2 && is_given("Plane"))
       error("Plane",
             "found '" + text("Plane") + "', but 'Dimension' is " + std::to_string(dim) +

@@ -203,7 +203,7 @@ namespace PeriDeal
   }
 
 
-  void InitialAndSource::parse(const Physics physics, const unsigned int dim)
+  void InitialAndSource::parse(const Physics physics, const unsigned int dim, const bool with_heat)
   {
     initial_value = Expression(text("Initial value"), where("Initial value"));
     source        = Expression(text("Source"), where("Source"));
@@ -231,12 +231,15 @@ namespace PeriDeal
             list->push_back(*value);
           }
       }
-    if (elastic && is_given("Initial value"))
+    const std::string or_computed = ", or 'Temperature change = computed' in section 'Elasticity'.";
+    if (elastic && !with_heat && is_given("Initial value"))
       error(
         "Initial value",
-        "is for what diffuses; with 'Physics = elasticity' bodies start at rest, or with 'Initial displacement' and 'Initial velocity'.");
-    if (elastic && is_given("Source"))
-      error("Source", "is for what diffuses; with 'Physics = elasticity' use 'Body force'.");
+        "is for what diffuses; with 'Physics = elasticity' bodies start at rest, or with 'Initial displacement' and 'Initial velocity'" +
+          or_computed);
+    if (elastic && !with_heat && is_given("Source"))
+      error("Source",
+            "is for what diffuses; with 'Physics = elasticity' use 'Body force'" + or_computed);
     if (!elastic && !text("Body force").empty())
       error("Body force",
             "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");

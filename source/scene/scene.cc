@@ -300,20 +300,22 @@ namespace PeriDeal
     domain.parse();
     elasticity.parse(general.physics, dim);
     material.parse(general.physics, dim, elasticity.plane, domain.image);
-    initial_and_source.parse(general.physics, dim);
+    initial_and_source.parse(general.physics, dim, elasticity.computes_temperature);
     boundary_conditions.parse(domain.shape != Shape::mesh_file,
                               domain.shape == Shape::plate_with_hole ||
                                 (domain.image && domain.image->has_voids()),
-                              general.physics);
+                              general.physics,
+                              elasticity.computes_temperature);
     cracks.parse(general.physics);
     peridynamics.parse(general.physics);
     coupling.parse();
     finite_elements.parse();
     time.parse();
     check_elasticity();
+    make_heat_problem();
     // a conductor without capacitance is always in its steady state, and an equilibrium has a time only where its loads have
     time.steady =
-      time.steady || !material.stores ||
+      (time.steady && !elasticity.computes_temperature) || !material.stores ||
       (general.physics == Physics::elasticity && elasticity.is_static() && !is_loaded_slowly());
     solver.parse();
     output.parse(time.end_time, time.steady);

@@ -106,16 +106,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BoundaryConditions<dim>::refuse_other_physics(const Physics physics) const
+  void BoundaryConditions<dim>::refuse_other_physics(const Physics physics,
+                                                     const bool    with_heat) const
   {
     const bool elastic = physics == Physics::elasticity;
     const auto refuse  = [&](const std::string &entry, const std::string &remedy) {
       if (is_given(entry))
         error(entry,
-              elastic ? "is for what diffuses; 'Physics' is 'elasticity'. Use " + remedy + "." :
+              elastic ? "is for what diffuses; 'Physics' is 'elasticity'. Use " + remedy +
+                          ", or 'Temperature change = computed' in section 'Elasticity'." :
                          "is for 'Physics = elasticity'; 'Physics' is '" +
                           names_of(physics).physics + "'. Use " + remedy + ".");
     };
+    if (elastic && with_heat)
+      return;
     if (elastic)
       {
         refuse("Dirichlet", "'Displacement'");
@@ -162,12 +166,12 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                   \
-  template std::vector<VectorCondition> BoundaryConditions<dim>::parse_vectors(     \
-    const std::string &,                                                            \
-    const bool,                                                                     \
-    const bool) const;                                                              \
-  template void BoundaryConditions<dim>::refuse_other_physics(const Physics) const; \
+#define PERIDEAL_INSTANTIATE(dim)                                                               \
+  template std::vector<VectorCondition> BoundaryConditions<dim>::parse_vectors(                 \
+    const std::string &,                                                                        \
+    const bool,                                                                                 \
+    const bool) const;                                                                          \
+  template void BoundaryConditions<dim>::refuse_other_physics(const Physics, const bool) const; \
   template void BoundaryConditions<dim>::check_vector_conditions() const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -80,6 +80,12 @@ namespace PeriDeal
             u[d]      = reader.evaluate(this->displacement, dim, d);
             slopes[d] = reader.gradients(this->displacement, dim, d);
           }
+        std::vector<double> changes; // of the temperature
+        if (const Vector change(elements->temperature_change()); change.size() > 0)
+          changes = reader.evaluate(change);
+        else
+          for (const Point<dim> &p : reader.inner_points())
+            changes.push_back(scene.elasticity.temperature_change.value(p));
         std::vector<double> rows;
         for (std::size_t k = 0; k < points.size(); ++k)
           {
@@ -90,10 +96,13 @@ namespace PeriDeal
                 values[d]   = u[d][k];
                 gradient[d] = slopes[d][k];
               }
-            append_row(values,
-                       stress_of_strain(symmetrize(gradient), scene, reader.inner_points()[k]),
-                       dim,
-                       rows);
+            append_row(
+              values,
+              stress_of_strain(symmetrize(gradient), scene, reader.inner_points()[k], changes[k]),
+              dim,
+              rows);
+            if (scene.elasticity.computes_temperature)
+              rows.push_back(changes[k] + scene.elasticity.reference_temperature);
           }
         return rows;
       }
@@ -109,6 +118,7 @@ namespace PeriDeal
           list.add_vector("velocity", this->velocity);
         list.add_stress(stress);
         list.add_strain(strain);
+        list.add_temperature(elements->temperature_change(), scene);
         return list.take();
       }
 
@@ -118,13 +128,13 @@ namespace PeriDeal
         double                volume = 0.;
         visit_cells(
           QGauss<dim>(handler.get_fe().degree + 1),
-          [&](const auto &values, const unsigned int q, const auto &, const auto &gradient) {
+          [&](const auto &values, const unsigned int q, const auto &indices, const auto &gradient) {
             if (!scene.domain.shows(values.get_cell()->center()))
               return;
             volume += values.JxW(q);
             if (!elements->cut_cells()[values.get_cell()->active_cell_index()])
-              sum += values.JxW(q) *
-                     stress_of_strain(symmetrize(gradient), scene, values.quadrature_point(q));
+              sum +=
+                values.JxW(q) * stress_at(values, q, indices, gradient, values.quadrature_point(q));
           });
         return Utilities::MPI::sum(sum, handler.get_communicator()) /
                Utilities::MPI::sum(volume, handler.get_communicator());
@@ -137,20 +147,23 @@ namespace PeriDeal
           {
             std::vector<CrackEndIntegral> ends = crack_end_integrals(scene);
             if (!ends.empty())
-              visit_cells(
-                QGauss<dim>(handler.get_fe().degree + 1),
-                [&](const auto &values, const unsigned int q, const auto &, const auto &gradient) {
-                  if (elements->cut_cells()[values.get_cell()->active_cell_index()])
-                    return;
-                  const Point<2>             &p = values.quadrature_point(q);
-                  const SymmetricTensor<2, 3> s = stress_of_strain(symmetrize(gradient), scene, p);
-                  SymmetricTensor<2, 2>       in_plane;
-                  for (unsigned int a = 0; a < 2; ++a)
-                    for (unsigned int b = a; b < 2; ++b)
-                      in_plane[a][b] = s[a][b];
-                  for (CrackEndIntegral &end : ends)
-                    end.add(p, values.JxW(q), gradient, in_plane);
-                });
+              visit_cells(QGauss<dim>(handler.get_fe().degree + 1),
+                          [&](const auto        &values,
+                              const unsigned int q,
+                              const auto        &indices,
+                              const auto        &gradient) {
+                            if (elements->cut_cells()[values.get_cell()->active_cell_index()])
+                              return;
+                            const Point<2>             &p = values.quadrature_point(q);
+                            const SymmetricTensor<2, 3> s =
+                              stress_at(values, q, indices, gradient, p);
+                            SymmetricTensor<2, 2> in_plane;
+                            for (unsigned int a = 0; a < 2; ++a)
+                              for (unsigned int b = a; b < 2; ++b)
+                                in_plane[a][b] = s[a][b];
+                            for (CrackEndIntegral &end : ends)
+                              end.add(p, values.JxW(q), gradient, in_plane);
+                          });
             for (const CrackEndIntegral &end : ends)
               list.push_back(end.result(handler.get_communicator()));
           }
@@ -162,7 +175,7 @@ namespace PeriDeal
         std::vector<StressSample> samples;
         visit_cells(
           QGauss<dim>(handler.get_fe().degree + 1),
-          [&](const auto &values, const unsigned int q, const auto &, const auto &gradient) {
+          [&](const auto &values, const unsigned int q, const auto &indices, const auto &gradient) {
             if (elements->cut_cells()[values.get_cell()->active_cell_index()] ||
                 !scene.domain.shows(values.get_cell()->center()))
               return;
@@ -171,8 +184,7 @@ namespace PeriDeal
                 {scene.material.phases.all().at(values.get_cell()->center()), 0., {}});
             samples.back().volume += values.JxW(q);
             samples.back().stress +=
-              values.JxW(q) *
-              stress_of_strain(symmetrize(gradient), scene, values.quadrature_point(q));
+              values.JxW(q) * stress_at(values, q, indices, gradient, values.quadrature_point(q));
           });
         for (StressSample &sample : samples)
           sample.stress /= sample.volume;
@@ -213,7 +225,8 @@ namespace PeriDeal
       {
         FEValues<dim>                        values(handler.get_fe(),
                              points,
-                             update_gradients | update_quadrature_points | update_JxW_values);
+                             update_values | update_gradients | update_quadrature_points |
+                               update_JxW_values);
         std::vector<types::global_dof_index> indices(handler.get_fe().n_dofs_per_cell());
         this->displacement.update_ghost_values();
         for (const auto &cell : handler.active_cell_iterators())
@@ -232,6 +245,23 @@ namespace PeriDeal
                 }
             }
         this->displacement.set_ghost_state(false);
+      }
+
+      /** The stress in a cell, with the material at p and the temperature at the point q. */
+      SymmetricTensor<2, 3> stress_at(const FEValues<dim>                        &values,
+                                      const unsigned int                          q,
+                                      const std::vector<types::global_dof_index> &indices,
+                                      const Tensor<2, dim>                       &gradient,
+                                      const Point<dim>                           &p) const
+      {
+        const Vector &at_nodes = elements->temperature_change();
+        double        change   = 0.;
+        if (at_nodes.size() == 0)
+          change = scene.elasticity.temperature_change.value(p);
+        else
+          for (unsigned int i = 0; i < indices.size(); ++i)
+            change += at_nodes(indices[i]) * values.shape_value(i, q);
+        return stress_of_strain(symmetrize(gradient), scene, p, change);
       }
 
       /** Means over the cells around each node, by their volumes. Each cell's own material counts, so that a jump is smeared over one row of cells. */
@@ -255,7 +285,7 @@ namespace PeriDeal
             // The material inside the cell, not at its edge.
             const Point<dim> p =
               values.quadrature_point(q) + 1e-6 * (cell->center() - values.quadrature_point(q));
-            const SymmetricTensor<2, 3> s = stress_of_strain(e, scene, p);
+            const SymmetricTensor<2, 3> s = stress_at(values, q, indices, gradient, p);
             for (unsigned int k = 0; k < n_stresses; ++k)
               sums[k](indices[q]) += s.access_raw_entry(k) * size;
             sums[n_stresses](indices[q]) += size;

@@ -52,6 +52,15 @@ namespace PeriDeal
       add("pressure", [&](const unsigned int i) { return pressure(stress[i]); });
     }
 
+    /** The temperature, where it is computed. */
+    void add_temperature(const Vector &change, const Scene<dim> &scene)
+    {
+      if (change.size() > 0)
+        add("temperature", [&](const unsigned int i) {
+          return change.local_element(i) + scene.elasticity.reference_temperature;
+        });
+    }
+
     void add_strain(const std::vector<dealii::SymmetricTensor<2, dim>> &strain)
     {
       for (unsigned int a = 0; a < dim; ++a)
@@ -81,7 +90,7 @@ namespace PeriDeal
   };
 
 
-  /** Append one row of elastic_columns(). */
+  /** Append one row of elastic_columns() but the temperature. */
   void append_row(const double                        *displacement,
                   const dealii::SymmetricTensor<2, 3> &stress,
                   const unsigned int                   dim,

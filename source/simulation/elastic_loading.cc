@@ -8,6 +8,8 @@
 #include <perideal/simulation/elastic_simulation.h>
 #include <perideal/solvers/step_tools.h>
 
+#include <algorithm>
+
 #include "result_record.h"
 #include "summary_parts.h"
 
@@ -36,6 +38,7 @@ namespace PeriDeal
   template <int dim>
   void ElasticSimulation<dim>::load()
   {
+    warm_until(0.);
     for (const auto &model : models)
       {
         begin_loading(*model);
@@ -81,6 +84,13 @@ namespace PeriDeal
   double ElasticSimulation<dim>::load_step() const
   {
     constexpr double share = 0.01; // of the end time, if no step is given
+    if (scene.warms_slowly())      // `Time step` is that of the heat problem
+      {
+        const bool remembers = std::any_of(models.begin(), models.end(), [](const auto &model) {
+          return model->op().brittle() || model->op().nonlinear();
+        });
+        return (remembers ? share : 1.) * scene.time.end_time;
+      }
     return scene.time.time_step > 0. ? scene.time.time_step : share * scene.time.end_time;
   }
 
@@ -102,6 +112,8 @@ namespace PeriDeal
     for (unsigned long long k = 1; k <= n; ++k)
       {
         const double to = k == n ? t : now + k * (t - now) / n;
+        if (scene.warms_slowly())
+          warm_until(to);
         for (const auto &model : models)
           {
             Timings::Scope scope(model->timings, "solving");

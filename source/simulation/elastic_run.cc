@@ -9,17 +9,24 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  std::vector<std::string> elastic_columns(const unsigned int dim)
+  template <int dim>
+  std::vector<std::string> elastic_columns(const Scene<dim> &scene)
   {
+    std::vector<std::string> columns;
     switch (dim)
       {
         case 1:
-          return {"ux", "sxx", "von_mises"};
+          columns = {"ux", "sxx", "von_mises"};
+          break;
         case 2:
-          return {"ux", "uy", "sxx", "syy", "szz", "sxy", "von_mises"};
+          columns = {"ux", "uy", "sxx", "syy", "szz", "sxy", "von_mises"};
+          break;
         default:
-          return {"ux", "uy", "uz", "sxx", "syy", "szz", "sxy", "sxz", "syz", "von_mises"};
+          columns = {"ux", "uy", "uz", "sxx", "syy", "szz", "sxy", "sxz", "syz", "von_mises"};
       }
+    if (scene.elasticity.computes_temperature)
+      columns.push_back("temperature");
+    return columns;
   }
 
 
@@ -49,6 +56,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                        \
+  template std::vector<std::string>         elastic_columns(const Scene<dim> &);         \
   template std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model,                \
                                                              const Triangulation<dim> &, \
                                                              const Scene<dim> &);

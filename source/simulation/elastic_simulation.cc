@@ -32,9 +32,10 @@ namespace PeriDeal
     : scene(scene)
     , text(text)
     , communicator(communicator)
+    , quiet(quiet)
     , progress(communicator, quiet)
-    , probes(scene.output.probes, dim, elastic_columns(dim))
-    , line(scene.output.line, dim, elastic_columns(dim))
+    , probes(scene.output.probes, dim, elastic_columns(scene))
+    , line(scene.output.line, dim, elastic_columns(scene))
     , record(std::make_unique<ResultRecord>())
   {}
 
@@ -134,6 +135,7 @@ namespace PeriDeal
         const double memory = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
         progress.line(line + ", " + readable_bytes(memory));
       }
+    build_heat();
   }
 
 
@@ -220,7 +222,8 @@ namespace PeriDeal
     record->balances[model.name()] = {{"boundary force", balance.sides},
                                       {"strain energy", energy},
                                       {"mean stress", stress}};
-    if (model.stepper || model.op().brittle() || scene.is_loaded_slowly())
+    if (model.stepper || model.op().brittle() ||
+        (scene.is_loaded_slowly() && !scene.warms_slowly()))
       record->balances[model.name()]["energy balance"] = add_energies(model, t);
     if (!model.stepper)
       record->balances[model.name()]["force balance"] = {{"throughput", balance.throughput()},

@@ -107,6 +107,12 @@ namespace PeriDeal
       add(c.name, "displacement " + text_of(c));
     for (const VectorCondition &c : conditions.traction)
       add(c.name, "traction " + text_of(c));
+    for (const SideCondition &c : conditions.dirichlet)
+      add(c.name, "temperature " + c.value.text());
+    for (const SideCondition &c : conditions.flux)
+      add(c.name, "heat flux " + c.value.text());
+    for (const SideCondition &c : conditions.convection)
+      add(c.name, "convection " + c.coefficient.text() + ", " + c.value.text());
     return sides;
   }
 

@@ -58,7 +58,30 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::build()
+  void Simulation<dim>::build_on(const std::shared_ptr<Triangulation<dim>> &given_mesh)
+  {
+    mesh = given_mesh;
+    build();
+    make_steppers();
+  }
+
+
+  template <int dim>
+  const ModelRun<dim> &Simulation<dim>::model(const unsigned int number) const
+  {
+    return *models[number];
+  }
+
+
+  template <int dim>
+  const std::vector<std::string> &Simulation<dim>::notes() const
+  {
+    return record->notes;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::build_mesh_of_run()
   {
     const unsigned int n_proc = Utilities::MPI::n_mpi_processes(communicator);
     progress.line(scene.general.title + "  (" + text.file_name + ", " + std::to_string(n_proc) +
@@ -68,6 +91,15 @@ namespace PeriDeal
       mesh = build_mesh(scene, communicator, record->notes);
       set_material_ids(*mesh, scene.material.phases.all());
     }
+    progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::build()
+  {
+    if (!mesh)
+      build_mesh_of_run();
     if (!scene.cracks.tips.empty())
       {
         const CrackHistory<dim> history = scene.crack_history();
@@ -78,13 +110,13 @@ namespace PeriDeal
           "; bonds are cut too early or too late by at most the time that it needs for half of that ('Growth step' in section "
           "'Cracks').");
       }
-    progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
     unsigned int n_own_cells = 0;
     for (const auto &cell : mesh->active_cell_iterators())
       n_own_cells += cell->is_locally_owned() ? 1 : 0;
     AssertThrow(Utilities::MPI::min(n_own_cells, communicator) > 0,
                 UserError("A mesh of " + std::to_string(mesh->n_global_active_cells()) +
-                          " cells leaves some of the " + std::to_string(n_proc) +
+                          " cells leaves some of the " +
+                          std::to_string(Utilities::MPI::n_mpi_processes(communicator)) +
                           " processes without any. Use fewer processes or more 'Cells' (section "
                           "'Domain')."));
     with_formulas([&] { check_sides(); });
@@ -364,16 +396,19 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                     \
-  template Simulation<dim>::Simulation(const Scene<dim> &,            \
-                                       const SceneText &,             \
-                                       const MPI_Comm,                \
-                                       const bool);                   \
-  template Simulation<dim>::~Simulation();                            \
-  template void                Simulation<dim>::build();              \
-  template void                Simulation<dim>::make_evaluators();    \
-  template std::vector<double> Simulation<dim>::output_times() const; \
-  template void                Simulation<dim>::run();
+#define PERIDEAL_INSTANTIATE(dim)                                                            \
+  template Simulation<dim>::Simulation(const Scene<dim> &,                                   \
+                                       const SceneText &,                                    \
+                                       const MPI_Comm,                                       \
+                                       const bool);                                          \
+  template Simulation<dim>::~Simulation();                                                   \
+  template void Simulation<dim>::build();                                                    \
+  template void Simulation<dim>::build_on(const std::shared_ptr<Triangulation<dim>> &);      \
+  template const ModelRun<dim>            &Simulation<dim>::model(const unsigned int) const; \
+  template const std::vector<std::string> &Simulation<dim>::notes() const;                   \
+  template void                            Simulation<dim>::make_evaluators();               \
+  template std::vector<double>             Simulation<dim>::output_times() const;            \
+  template void                            Simulation<dim>::run();
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -86,7 +86,8 @@ namespace PeriDeal
                                                          von_mises(stress[i]);
             columns.push_back(reader.evaluate(values));
           }
-        std::vector<double> rows;
+        const std::vector<double> change = changes_at_points(reader);
+        std::vector<double>       rows;
         for (std::size_t k = 0; k < points.size(); ++k)
           {
             double                values[dim];
@@ -97,6 +98,8 @@ namespace PeriDeal
               at_point.access_raw_entry(c) = columns[dim + c][k];
             append_row(values, at_point, dim, rows);
             rows.back() = columns.back()[k];
+            if (!change.empty())
+              rows.push_back(change[k] + scene.elasticity.reference_temperature);
           }
         return rows;
       }
@@ -112,6 +115,7 @@ namespace PeriDeal
           list.add_vector("velocity", this->velocity);
         list.add_stress(nodal_stress(tensors));
         list.add_strain(tensors.strain);
+        list.add_temperature(states->temperature_change(), scene);
         list.add("dilatation", [&](const unsigned int i) { return theta[i]; });
         if (states->brittle() || !scene.cracks.cracks.empty())
           {
@@ -172,9 +176,27 @@ namespace PeriDeal
       std::vector<SymmetricTensor<2, 3>> nodal_stress(const NodalTensors<dim> &tensors) const
       {
         std::vector<SymmetricTensor<2, 3>> stress;
+        const Vector                      &change = states->temperature_change();
         for (unsigned int i = 0; i < node_set->n_owned(); ++i)
-          stress.push_back(full_stress(tensors.stress[i], scene, node_set->position(i)));
+          {
+            const Point<dim> &p = node_set->position(i);
+            stress.push_back(full_stress(tensors.stress[i],
+                                         scene,
+                                         p,
+                                         change.size() > 0 ?
+                                           change.local_element(i) :
+                                           scene.elasticity.temperature_change.value(p)));
+          }
         return stress;
+      }
+
+      /** Of the temperature where it is computed, else none. */
+      std::vector<double> changes_at_points(const PointEvaluator<dim> &reader) const
+      {
+        if (states->temperature_change().size() == 0)
+          return {};
+        const Vector change(states->temperature_change());
+        return reader.evaluate(change);
       }
 
       const Scene<dim>                   &scene;

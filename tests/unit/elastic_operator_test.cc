@@ -284,6 +284,69 @@ TEST(ElasticOperator, free_thermal_expansion)
 }
 
 
+namespace
+{
+  /** The loads and the energy of a temperature at nodes, and those of the same as a formula; it has been another one before. */
+  template <int dim>
+  void warm_nodes(const Model model, const Settings &more)
+  {
+    const Settings expands =
+      box<dim>() + Settings{{"Material/Thermal expansion", "0.1*(1 + x)"}} + more;
+    const std::string formula = dim == 1 ? "2 - 3*x" : dim == 2 ? "2 - 3*x + y" : "2 - 3*x + y - z";
+    const Body<dim>   by_formula(expands + Settings{{"Elasticity/Temperature change", formula}},
+                               model),
+      at_nodes(expands, model);
+    ElasticOperator &op = at_nodes.op();
+    Vector           change, u = at_nodes.values(bumpy_vector<dim>), found(u), wanted(u);
+    EXPECT_EQ(op.temperature_change().size(), 0);
+    op.initialize_nodal_vector(change);
+    change = -7.;
+    op.set_temperature_change(change);
+    for (unsigned int i = 0; i < change.locally_owned_size(); ++i)
+      {
+        const auto &p = at_nodes.position(i);
+        change.local_element(i) =
+          2. - 3. * p[0] + (dim > 1 ? p[1 % dim] : 0.) - (dim > 2 ? p[2 % dim] : 0.);
+      }
+    op.set_temperature_change(change);
+    EXPECT_EQ(op.temperature_change().size(), change.size());
+    op.residual(found, u, 0.);
+    by_formula.op().residual(wanted, u, 0.);
+    const double size = wanted.linfty_norm();
+    found -= wanted;
+    EXPECT_LT(found.linfty_norm(), 1e-13 * size);
+    const double energy = by_formula.op().energy(u);
+    EXPECT_NEAR(op.energy(u), energy, 1e-13 * energy);
+    // Cold again: as if it had never been warm.
+    change = 0.;
+    op.set_temperature_change(change);
+    const Body<dim> cold(expands, model);
+    op.residual(found, u, 0.);
+    cold.op().residual(wanted, u, 0.);
+    found -= wanted;
+    EXPECT_LT(found.linfty_norm(), 1e-13 * size);
+    EXPECT_NEAR(op.energy(u), cold.op().energy(u), 1e-13 * energy);
+  }
+} // namespace
+
+
+TEST(ElasticOperator, temperature_at_nodes_is_that_of_the_formula)
+{
+  for (const Model model : {Model::finite_elements, Model::peridynamics})
+    {
+      warm_nodes<1>(model, {});
+      warm_nodes<2>(model, {{"Elasticity/Plane", "strain"}});
+      warm_nodes<3>(model, {});
+    }
+  warm_nodes<2>(Model::finite_elements, {{"Finite elements/Degree", "2"}});
+  warm_nodes<2>(Model::peridynamics, {{"Domain/Nodes", "cell centers"}});
+  warm_nodes<2>(Model::peridynamics,
+                {{"Elasticity/Kinematics", "full"}, {"Elasticity/Solver", "conjugate gradients"}});
+  warm_nodes<2>(Model::peridynamics, {{"Material/Critical stretch", "0.1"}});
+  warm_nodes<2>(Model::coupled, {{"Coupling/Zone", "x - 0.5"}});
+}
+
+
 TEST(ElasticOperator, linear_solver_says_why_it_stopped)
 {
   for (const Model model : {Model::finite_elements, Model::peridynamics})

@@ -22,7 +22,7 @@ namespace PeriDeal
 {
   /**
    * Linear elasticity with finite elements Qp: K_ab = int lambda grad_a (x) grad_b + mu (grad_b (x) grad_a + grad_a . grad_b I), in 2D with the lambda of plane
-   * stress or plane strain, in 1D with Young's modulus. Material, thermal strain and loads are evaluated at quadrature points. The thermal strain
+   * stress or plane strain, in 1D with Young's modulus. Material, thermal strain and loads are evaluated at quadrature points, a temperature at nodes interpolated there. The thermal strain
    * alpha dT (in plane strain (1 + nu) alpha dT) makes the load int grad_a (dim lambda + 2 mu) alpha dT.
    *
    * One scalar DoFHandler numbers the nodes; each has dim unknowns, interleaved.
@@ -65,6 +65,8 @@ namespace PeriDeal
     void                multiply(Vector &y, const Vector &x) const override;
     void                unbalanced(Vector &r, const Vector &u, const double t) const override;
     void                mechanical_loads(Vector &loads, const double t) const override;
+    void                initialize_nodal_vector(Vector &vector) const override;
+    void                set_temperature_change(const Vector &nodal) override;
 
     /** Place of a node of this process, by local number. */
     const dealii::Point<dim> &position(const unsigned int node) const;
@@ -109,7 +111,10 @@ namespace PeriDeal
     void   add_thermal_bonds();
     void   count_bonds();
     double bond_factor(const unsigned int i, const unsigned int j) const;
-    double thermal_strain(const dealii::Point<dim> &p) const;
+    double temperature_change_at(const unsigned int node) const;
+    double thermal_strain(const dealii::Point<dim> &p, const double temperature_change) const;
+    void   add_thermal(const CellData &data, double &energy);
+    void   finish_thermal(const double energy);
     void   throw_if_isolated() const;
     void   assemble_loads(Vector &loads, const double t) const;
     template <typename Visit>

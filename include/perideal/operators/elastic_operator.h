@@ -47,6 +47,18 @@ namespace PeriDeal
     /** As residual(), but of all unknowns: of those that are prescribed it is minus the force of the support. Collective. */
     virtual void unbalanced(Vector &r, const Vector &u, const double t) const = 0;
 
+    /** Gives a vector the layout of one number for each node. Not collective. */
+    virtual void initialize_nodal_vector(Vector &vector) const = 0;
+
+    /** Let the body be warmer at its nodes by so much than when it is unstressed; K stays as it is. A new equilibrium is to be found. Collective. */
+    virtual void set_temperature_change(const Vector &nodal) = 0;
+
+    /** What set_temperature_change() was given, with up-to-date ghosts; empty: the formula of the scene holds. */
+    const Vector &temperature_change() const
+    {
+      return nodal_change;
+    }
+
     /** Tractions and body forces at time t, all unknowns; thermal strain loads nothing. Collective. */
     virtual void mechanical_loads(Vector &loads, const double t) const = 0;
 
@@ -124,5 +136,11 @@ namespace PeriDeal
   protected:
     /** Numbers that look random but depend on the unknowns' places alone. Not collective. */
     virtual void fill_noise(Vector &vector) const = 0;
+
+    /** Keeps what temperature_change() gives. Collective. */
+    void keep_temperature_change(const Vector &nodal);
+
+  private:
+    Vector nodal_change;
   };
 } // namespace PeriDeal

@@ -84,6 +84,8 @@ namespace PeriDeal
     void                multiply(Vector &y, const Vector &x) const override;
     void                unbalanced(Vector &r, const Vector &u, const double t) const override;
     void                mechanical_loads(Vector &loads, const double t) const override;
+    void                initialize_nodal_vector(Vector &vector) const override;
+    void                set_temperature_change(const Vector &nodal) override;
     void                damping_force(Vector &y, const Vector &v) const override;
     double              damping_bound() const override;
     bool                nonlinear() const override;

@@ -62,12 +62,14 @@ namespace PeriDeal
      * only.
      * @param hole      whether there is a side `hole` (boundary id 6).
      * @param physics   elasticity has displacements and tractions, all others have values and fluxes.
+     * @param with_heat elasticity with a computed temperature, which has both.
      * Throws UserError: unknown sides, sides named twice, conditions that contradict each other on
      * a side, wrong formulas, conditions of another physics.
      */
     void parse(const bool    box_sides,
-               const bool    hole    = false,
-               const Physics physics = Physics::heat);
+               const bool    hole      = false,
+               const Physics physics   = Physics::heat,
+               const bool    with_heat = false);
 
   private:
     dealii::types::boundary_id side_id(const std::string &name,
@@ -85,7 +87,7 @@ namespace PeriDeal
                                                const bool         box_sides,
                                                const bool         hole) const;
 
-    void refuse_other_physics(const Physics physics) const;
+    void refuse_other_physics(const Physics physics, const bool with_heat) const;
 
     /** Contradictions between values, fluxes and symmetry; and between displacements, tractions and symmetry. */
     void check_scalar_conditions() const;

@@ -22,9 +22,11 @@ namespace PeriDeal
     PlaneState   plane      = PlaneState::stress; // two dimensions only
     Kinematics   kinematics = Kinematics::linear;
     Expression
-      temperature_change; // of x, y, z; what strains the body is this times `Thermal expansion`
-    ElasticSolver solver    = ElasticSolver::linear;
-    bool          multigrid = true; // entry `Preconditioner`
+                  temperature_change; // of x, y, z; what strains the body is this times `Thermal expansion`; 0 where it is computed
+    bool          computes_temperature  = false; // by the heat problem of the same scene
+    double        reference_temperature = 0.;    // of the unstressed body, where it is computed
+    ElasticSolver solver                = ElasticSolver::linear;
+    bool          multigrid             = true; // entry `Preconditioner`
 
     /** All solvers but `dynamics` find the equilibrium, in which there is no time. */
     bool is_static() const;
@@ -33,8 +35,8 @@ namespace PeriDeal
     const std::string &solver_name() const;
 
     /**
-     * Throws UserError: a `Plane` where there is none, full kinematics by the linear solver, a temperature change that depends on t, and
-     * with another physics any entry that is given.
+     * Throws UserError: a `Plane` where there is none, full kinematics by the linear solver, a temperature change that depends on t or is computed for a body in
+     * motion, and with another physics any entry that is given.
      */
     void parse(const Physics physics = Physics::elasticity, const unsigned int dim = 2);
   };

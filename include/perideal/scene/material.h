@@ -97,6 +97,9 @@ namespace PeriDeal
     std::vector<Expression> initial_displacement,
       initial_velocity; // of x, y, z per component, or none
 
-    void parse(const Physics physics = Physics::heat, const unsigned int dim = 2);
+    /** @param with_heat elasticity with a computed temperature, which has an initial value and a source, too */
+    void parse(const Physics      physics   = Physics::heat,
+               const unsigned int dim       = 2,
+               const bool         with_heat = false);
   };
 } // namespace PeriDeal

@@ -15,6 +15,7 @@
 
 #include <mpi.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,9 @@ namespace PeriDeal
     Reference               reference;
     Units                   units;
 
+    /** The heat problem of `Temperature change = computed`: this scene with `Physics = heat` and without what elasticity alone has; else null. */
+    std::shared_ptr<const Scene<dim>> heat;
+
     /**
      * The horizon as a length: `Horizon`, or `Horizon ratio` times the smallest spacing of the
      * lattice.
@@ -90,8 +94,11 @@ namespace PeriDeal
      */
     CrackHistory<dim> crack_history() const;
 
-    /** An elastic body in equilibrium at each time, under loads that depend on time. */
+    /** An elastic body in equilibrium at each time, under loads or with a temperature that depend on time. */
     bool is_loaded_slowly() const;
+
+    /** An elastic body whose temperature is computed and changes in time. */
+    bool warms_slowly() const;
 
     /** All sections in the order of a scene file. */
     std::vector<SceneSection *> sections();
@@ -110,6 +117,9 @@ namespace PeriDeal
 
     /** What elasticity needs of the other sections. */
     void check_elasticity() const;
+
+    /** Finds `heat`. Throws UserError as a scene of heat does. */
+    void make_heat_problem();
   };
 
 

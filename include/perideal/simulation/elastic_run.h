@@ -45,7 +45,7 @@ namespace PeriDeal
     /** Place of an owned node. Not collective. */
     virtual dealii::Point<dim> position(const unsigned int node) const = 0;
 
-    /** Displacement and stress at points, in the order of elastic_columns(), one point after the other. */
+    /** Displacement, stress and a computed temperature at points, in the order of elastic_columns(), one point after the other. */
     virtual std::vector<double> at_points(const PointEvaluator<dim>              &reader,
                                           const std::vector<std::vector<double>> &points) const = 0;
 
@@ -77,8 +77,9 @@ namespace PeriDeal
   };
 
 
-  /** ux, uy, uz, then the components of the stress and `von_mises`: the columns of probes.csv and line.csv. */
-  std::vector<std::string> elastic_columns(const unsigned int dim);
+  /** ux, uy, uz, then the components of the stress and `von_mises`, and a computed `temperature`: the columns of probes.csv and line.csv. */
+  template <int dim>
+  std::vector<std::string> elastic_columns(const Scene<dim> &scene);
 
   /** Builds a model's nodes and operator. The time goes into its timings. */
   template <int dim>

@@ -9,6 +9,7 @@
 #include <perideal/base/progress.h>
 #include <perideal/output/result_files.h>
 #include <perideal/simulation/elastic_run.h>
+#include <perideal/simulation/simulation.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -21,7 +22,8 @@ namespace PeriDeal
   struct ResultRecord;
 
   /**
-   * Owns and wires the members of a run with `Physics = elasticity`: mesh, models, solvers, output. All models of the scene are solved one after the other, or
+   * Owns and wires the members of a run with `Physics = elasticity`: mesh, models, solvers, output, and with `Temperature change = computed` the heat problem
+   * that each model solves with its own nodes before it finds its equilibrium. All models of the scene are solved one after the other, or
    * move from one output time to the next together, and are compared. No discretisation here. All functions are collective and throw UserError.
    */
   template <int dim>
@@ -43,6 +45,8 @@ namespace PeriDeal
 
   private:
     void                   build();
+    void                   build_heat();
+    void                   warm_until(const double t);
     void                   load();
     void                   begin_loading(ElasticRun<dim> &model);
     void                   load_until(const double now, const double t);
@@ -62,10 +66,12 @@ namespace PeriDeal
     const Scene<dim>                                 &scene;
     const SceneText                                  &text;
     MPI_Comm                                          communicator;
+    const bool                                        quiet;
     mutable Progress                                  progress;
     Timings                                           timings;
-    std::unique_ptr<dealii::Triangulation<dim>>       mesh;
+    std::shared_ptr<dealii::Triangulation<dim>>       mesh;
     std::vector<std::unique_ptr<ElasticRun<dim>>>     models;
+    std::unique_ptr<Simulation<dim>>                  heat; // null: no temperature is computed
     PointTable                                        probes, line;
     std::unique_ptr<ResultRecord>                     record;
     std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers; // of the models

@@ -41,8 +41,21 @@ namespace PeriDeal
     /** Build everything, say what a run would need, compute and write nothing. */
     void dry_run();
 
+    /** Build everything on a mesh of the same scene, which others use too, for advance_to(). Nothing is written then. */
+    void build_on(const std::shared_ptr<dealii::Triangulation<dim>> &given_mesh);
+
+    /** From the time reached so far, at first 0, to time t; where the scene is steady the steady state, whatever t. */
+    void advance_to(const double t);
+
+    /** In the order of `Models`. Not collective. */
+    const ModelRun<dim> &model(const unsigned int number) const;
+
+    /** What the user should know. Not collective. */
+    const std::vector<std::string> &notes() const;
+
   private:
     void build();
+    void build_mesh_of_run();
     void with_formulas(const std::function<void()> &action) const;
     void make_steppers();
     void make_stepper_of(ModelRun<dim> &model);
@@ -53,7 +66,6 @@ namespace PeriDeal
     void make_evaluators();
     void make_writers();
     void make_reference();
-    void advance_to(const double t);
     void advance_through_events(ModelRun<dim> &model, const double t_begin, const double t_end);
     void write_output(const double t);
     void add_points(const double t);
@@ -74,7 +86,7 @@ namespace PeriDeal
     MPI_Comm                                          communicator;
     mutable Progress                                  progress;
     Timings                                           timings;
-    std::unique_ptr<dealii::Triangulation<dim>>       mesh;
+    std::shared_ptr<dealii::Triangulation<dim>>       mesh;
     std::vector<std::unique_ptr<ModelRun<dim>>>       models;
     std::vector<std::unique_ptr<FieldWriter<dim>>>    writers;
     std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers, grid_readers;

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// The heat problem that an elastic scene describes beside its equilibrium.
+
+#include <perideal/scene/scene.h>
+
+namespace PeriDeal
+{
+  template <int dim>
+  void Scene<dim>::make_heat_problem()
+  {
+    heat.reset();
+    if (general.physics != Physics::elasticity || !elasticity.computes_temperature)
+      return;
+    const auto                        problem = std::make_shared<Scene<dim>>();
+    const std::vector<SceneSection *> from = sections(), to = problem->sections();
+    for (unsigned int k = 0; k < from.size(); ++k)
+      if (from[k] != &elasticity && from[k] != &output && from[k] != &reference)
+        for (const Entry &entry : from[k]->entries())
+          to[k]->set(entry.name, entry.text);
+    problem->general.set("Physics", names_of(Physics::heat).physics);
+    for (const char *const entry : {"Displacement", "Traction", "Traction layer"})
+      problem->boundary_conditions.set(entry, "");
+    for (const char *const entry : {"Body force", "Initial displacement", "Initial velocity"})
+      problem->initial_and_source.set(entry, "");
+    // Both share the mesh.
+    problem->cracks.set("Mesh", cracks.mesh == CrackMesh::faces ? "faces" : "removed");
+    problem->domain.scene_folder = domain.scene_folder;
+    problem->domain.communicator = domain.communicator;
+    problem->parse_and_validate();
+    heat = problem;
+  }
+
+
+  template <int dim>
+  bool Scene<dim>::warms_slowly() const
+  {
+    return heat && !heat->time.steady;
+  }
+
+
+  template void Scene<1>::make_heat_problem();
+  template void Scene<2>::make_heat_problem();
+  template void Scene<3>::make_heat_problem();
+  template bool Scene<1>::warms_slowly() const;
+  template bool Scene<2>::warms_slowly() const;
+  template bool Scene<3>::warms_slowly() const;
+} // namespace PeriDeal
