@@ -27,7 +27,8 @@ namespace PeriDeal
       "false",
       "",
       "Solve for the steady state; all other entries of this section are ignored then. So they are in elastic equilibrium, by any "
-      "`Solver` in section `Elasticity` but `dynamics`, unless a load depends on t: then it is found at one time after the other.");
+      "`Solver` in section `Elasticity` but `dynamics`, unless a load depends on t: then it is found at one time after the other. With `Temperature change = "
+      "computed` in that section all entries tell of the heat problem.");
     declare(
       "Stepper",
       EntryType::choice,
