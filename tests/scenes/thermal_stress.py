@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Elastic bodies whose temperature is computed: prm/elasticity/thermal_stress.prm and small plates against closed forms and against the same temperature as a formula.
 
-    thermal_stress.py free | held | formula | strip | cooling | others | ranks | mistakes
+    thermal_stress.py free | held | formula | strip | cooling | ranks | mistakes
 
 Bounds that follow from no theory are at most 1.5 times the gap that was measured; the comment beside them gives it.
 """
@@ -33,7 +33,7 @@ subsection Material
   set Conductivity      = 7
 end
 subsection Boundary conditions
-  set Displacement = left: -1e-5*100*y^2/2, 0
+  set Displacement = left: -1e-5*100*y^2/2, 1e-5*50*y
   set Dirichlet    = left: 100; right: 300
 end
 subsection Elasticity
@@ -52,6 +52,7 @@ end
 """
 # What makes the same temperature of it by a formula.
 FORMULA = {"Elasticity/Temperature change": "50 + 100*x", "Elasticity/Reference temperature": "0", "Boundary conditions/Dirichlet": ""}
+CLAMPED = {"Boundary conditions/Displacement": "left: 0, 0"}
 COLUMNS = ("ux", "uy", "sxx", "syy", "szz", "sxy", "von_mises")
 
 
@@ -68,7 +69,7 @@ def free():
     table = Comparison("Free plate, temperature linear in x")
     alpha, start, slope = 1e-5, 50, 100
     end = alpha * (2 * start + 2 * slope)
-    for number, bound in (("40, 20", 1), ("80, 40", 1)):
+    for number in ("40, 20", "80, 40"):
         run = run_plate({"Domain/Cells": number})
         for model in (FEM, PD):
             gaps, stresses = [], []
@@ -77,12 +78,10 @@ def free():
                 gaps += [row["ux"] - alpha * (start * x + slope * (x * x - y * y) / 2), row["uy"] - alpha * (start + slope * x) * y]
                 stresses += [row[c] for c in COLUMNS[2:]]
                 table.add(f"{number} cells, {model}: temperature at ({x}, {y})", row["temperature"], 100 + 100 * x, relative=1e-9)
-            table.add_limit(f"{number} cells, {model}: displacement, largest gap / that of the end", max(map(abs, gaps)) / end, 1e-9 if model == FEM else FREE_PD[number][0])
-            table.add_limit(f"{number} cells, {model}: stress, largest / E alpha times the difference of temperatures", max(map(abs, stresses)) / (200 * alpha * 200), 1e-8 if model == FEM else FREE_PD[number][1])
+            # Measured: 6.5e-12 and 2.1e-12, peridynamics 2.5e-13 and 3.0e-13: the extension of a bond of a quadratic displacement is that of its middle.
+            table.add_limit(f"{number} cells, {model}: displacement, largest gap / that of the end", max(map(abs, gaps)) / end, 1e-11)
+            table.add_limit(f"{number} cells, {model}: stress, largest / E alpha times the difference of temperatures", max(map(abs, stresses)) / (200 * alpha * 200), 1e-11)
     table.show()
-
-
-FREE_PD = {"40, 20": (1, 1), "80, 40": (1, 1)}
 
 
 def held():
@@ -90,41 +89,57 @@ def held():
     table = Comparison("Held plates, temperature linear in x")
     bar = {"Dimension": "1", "Domain/Lower corner": "0", "Domain/Upper corner": "2", "Domain/Cells": "40", "Boundary conditions/Displacement": "left: 0; right: 0",
            "Output/Probes": "0.5 ; 1 ; 1.5"}
-    sides = {"Boundary conditions/Displacement": "", "Boundary conditions/Symmetry": "bottom, top", "Boundary conditions/Displacement": "left: 0, free; right: 0, free"}
+    sides = {"Boundary conditions/Symmetry": "bottom, top", "Boundary conditions/Displacement": "left: 0, free; right: 0, free"}
     alpha, start, slope = 1e-5, 50, 100
-    for what, more, stress, factor in (("bar", bar, -200 * alpha * 150, 1), ("plate", sides, -200 * alpha * 150 / 0.7, 1.3)):
-        run = run_plate(more)
-        for model in (FEM, PD):
-            for row in run.rows(model):
-                x = row["x"]
-                if model == PD and x > 1.9:
-                    continue  # at the end
-                table.add(f"{what}, {model}: sxx at x = {x}", row["sxx"], stress, relative=1e-9 if model == FEM else HELD_PD[what][0])
-                table.add(f"{what}, {model}: ux at x = {x}", row["ux"], factor * alpha * slope * (x * x - 2 * x) / 2, absolute=(1e-9 if model == FEM else HELD_PD[what][1]) * factor * alpha * slope / 2)
+    # Measured: bar 3.5 and 5.2 %, on cells of half the size 1.8 and 2.6 %; plate 7.5 and 8.1 %, then 3.9 and 4.4 %. Families of the outermost nodes are cut, an error of first order.
+    for what, more, finer, stress, factor, bounds in (("bar", bar, "80", -200 * alpha * 150, 1, ((0.052, 0.078), (0.0264, 0.0395))),
+                                                      ("plate", sides, "80, 40", -200 * alpha * 150 / 0.7, 1.3, ((0.113, 0.121), (0.0585, 0.066)))):
+        for cells, bound in (({}, bounds[0]), ({"Domain/Cells": finer}, bounds[1])):
+            run = run_plate({**more, **cells})
+            for model in (FEM, PD):
+                of_stress, of_place = [], []
+                for row in run.rows(model):
+                    x = row["x"]
+                    if x < 1.9:  # not at the end itself
+                        of_stress.append(abs(row["sxx"] / stress - 1))
+                        of_place.append(abs(row["ux"] / (factor * alpha * slope / 2) - (x * x - 2 * x)))
+                name = f"{what} {cells.get('Domain/Cells', '')}, {model}"
+                table.add_limit(f"{name}: sxx, largest gap / stress", max(of_stress), 1e-10 if model == FEM else bound[0])
+                table.add_limit(f"{name}: ux, largest gap / that of the middle", max(of_place), 1e-10 if model == FEM else bound[1])
     table.show()
 
 
-HELD_PD = {"bar": (1, 1), "plate": (1, 1)}
-
-
 def formula():
-    """The same temperature computed and as a formula: to the tolerance of the solvers."""
+    """The same temperature computed and as a formula in a clamped plate: to the tolerance of the solvers."""
     coupled = {"Models": "coupled", "Coupling/Zone": "x - 1", "Finite elements/Degree": "1"}
     full = {"Models": PD, "Elasticity/Kinematics": "full", "Elasticity/Solver": "conjugate gradients", "Material/Thermal expansion": "1e-3"}
     brittle = {"Models": PD, "Boundary conditions/Displacement": "left: 0, 0; right: 0, free", "Material/Thermal expansion": "-1e-5", "Material/Critical stretch": "2.2e-3"}
-    for what, more in (("plane stress", {}), ("plane strain", {"Elasticity/Plane": "strain"}), ("cell centres", {"Models": PD, "Domain/Nodes": "cell centers"}),
-                       ("linear elements", {"Finite elements/Degree": "1"}), ("coupled", coupled), ("full kinematics", full), ("brittle", brittle)):
+    for what, more in (("plane stress", {}), ("plane strain", {"Elasticity/Plane": "strain"}), ("linear elements", {"Finite elements/Degree": "1"}), ("coupled", coupled), ("full kinematics", full), ("brittle", brittle)):
+        more = {**CLAMPED, **more}
         computed, given = run_plate(more), run_plate({**more, **FORMULA})
         for model in given.summary["models"]:
             for columns in (("ux", "uy"), COLUMNS[2:]):
                 a, b = (numbers(run, model, columns) for run in (given, computed))
-                check_close(b, a, absolute=2e-9 * max(max(map(abs, a)), 200 * 1e-3), what=f"{what}, {model}: {', '.join(columns)}")
+                size = max(map(abs, a)) if columns[0] == "ux" else 200 * 1e-5 * 200
+                check_close(b, a, absolute=(FORMULA_PD if model == PD or columns[0] == "ux" else FORMULA_FEM) * size, what=f"{what}, {model}: {', '.join(columns)}")
             energies = [run.model(model)["strain energy"] for run in (given, computed)]
-            print(what, model, energies, [max(abs(x - y) for x, y in zip(numbers(given, model, c), numbers(computed, model, c))) for c in (("ux", "uy"), COLUMNS[2:])])
-            check_close(energies[1], energies[0], absolute=1e-9, what=f"{what}, {model}: strain energy")
+            check_close(energies[1], energies[0], relative=1e-10, what=f"{what}, {model}: strain energy")
         if what == "brittle":
             broken = [run.model(PD)["energy balance"]["broken bonds"] for run in (given, computed)]
             check(broken[0] == broken[1] > 0, f"bonds broken: {broken}")
+
+
+    # At time 0 the temperature is the initial value, also at cell centres; Dirichlet conditions would hold the outermost of those.
+    start = {**CLAMPED, "Time/Steady": "false", "Time/End time": "1e-3", "Output/Write at": "0", "Initial and source/Initial value": "100 + 100*x", "Boundary conditions/Dirichlet": "",
+             "Models": PD, "Domain/Nodes": "cell centers"}
+    computed, given = run_plate(start), run_plate({**CLAMPED, "Models": PD, "Domain/Nodes": "cell centers", **FORMULA})
+    for columns in (("ux", "uy"), COLUMNS[2:]):
+        a, b = ([row[c] for row in run.rows(PD, time=0) for c in columns] for run in (given, computed))
+        check_close(b, a, absolute=FORMULA_PD * max(map(abs, a)), what=f"cell centres: {', '.join(columns)}")
+
+
+# Measured: 1.05e-11, full kinematics. Elements: stresses are read a hair inside the cell, the temperature at the point itself; 3.1e-8.
+FORMULA_PD, FORMULA_FEM = 1.5e-11, 4.6e-8
 
 
 # Half of a plate, thickness 20 mm, in thermal_stress.prm.
@@ -155,8 +170,8 @@ def cooling():
         for model in (FEM, PD):
             of_stress, of_temperature, crosswise = [], [], []
             for row in run.rows(model, time=t, table="line.csv"):
-                if model == PD and row["x"] > HALF - 0.8:
-                    continue  # cut families
+                if model == PD and not 1 <= row["x"] <= HALF - 1:
+                    continue  # cut families, also at the plane of symmetry
                 here, mean = cooled(row["x"], t)
                 of_temperature.append(abs(row["temperature"] - 20 - here))
                 of_stress.append(abs(row["syy"] - YOUNG * EXPANSION * (mean - here)))
@@ -164,13 +179,11 @@ def cooling():
             table.add_limit(f"t = {t}, {model}: temperature, largest gap / 100", max(of_temperature) / 100, COOLING[model][0])
             table.add_limit(f"t = {t}, {model}: syy, largest gap / (E alpha 100)", max(of_stress) / most, COOLING[model][1])
             table.add_limit(f"t = {t}, {model}: sxx and sxy / (E alpha 100)", max(crosswise) / most, COOLING[model][2])
-        print(t, [(x, YOUNG * EXPANSION * (cooled(x, t)[1] - cooled(x, t)[0])) for x in (0, 5, 8.5, 10)])
-        face = run.rows(FEM, point=(10, 10), time=t, table="line.csv")[0]["syy"]
-        print(t, face, run.rows(PD, point=(10, 10), time=t, table="line.csv")[0]["syy"])
     table.show()
 
 
-COOLING = {FEM: (1, 1, 1), PD: (1, 1, 1)}
+# Measured: 1.4e-5, 8.0e-4 (the end at the top), 3.1e-4; peridynamics 4.3e-4 (at 5 s, then 1.1e-4), 1.4e-3, 2.4e-3.
+COOLING = {FEM: (2.1e-5, 1.2e-3, 4.6e-4), PD: (6.5e-4, 2e-3, 3.5e-3)}
 
 
 def strip():
@@ -183,8 +196,8 @@ def strip():
     for model in (FEM, PD):
         of_stress, of_temperature = [], []
         for row in run.rows(model, table="line.csv"):
-            if model == PD and row["x"] > HALF - 0.8:
-                continue
+            if model == PD and not 1 <= row["x"] <= HALF - 1:
+                continue  # cut families
             here = top * (1 - (row["x"] / HALF) ** 2)
             of_temperature.append(abs(row["temperature"] - 20 - here))
             of_stress.append(abs(row["syy"] - YOUNG * EXPANSION * (2 / 3 * top - here)))
@@ -193,23 +206,23 @@ def strip():
     table.show()
 
 
-STRIP = {FEM: (1, 1), PD: (1, 1)}
+# Measured: 1.6e-13, 1.8e-3 (the end at the top); peridynamics 1.5e-4, 2.6e-3.
+STRIP = {FEM: (1e-12, 2.7e-3), PD: (2.1e-4, 3.9e-3)}
 
 
 def ranks():
     """The same on 1, 2 and 4 processes."""
     small = {**QUIET, "Domain/Cells": "20, 80", "Models": "finite elements, peridynamics"}
-    for what, scene, more in (("cooling", SCENE, small), ("steady", PLATE, QUIET), ("coupled", PLATE, {**QUIET, "Models": "coupled", "Coupling/Zone": "x - 1", "Finite elements/Degree": "1"})):
+    for what, scene, more in (("cooling", SCENE, small), ("steady", PLATE, {**QUIET, **CLAMPED}), ("coupled", PLATE, {**QUIET, **CLAMPED, "Models": "coupled", "Coupling/Zone": "x - 1", "Finite elements/Degree": "1"})):
         alone, two, four = (run_scene(scene, more, ranks=n) for n in (1, 2, 4))
         for columns in (("ux", "uy"), ("sxx", "syy", "szz", "sxy", "von_mises"), ("temperature",)):
             a, b, c = ([row[k] for row in run.probes for k in columns] for run in (alone, two, four))
             size = max(map(abs, a))
-            print(what, columns, max(abs(x - y) for x, y in zip(a, b)) / size, max(abs(x - y) for x, y in zip(a, c)) / size)
             check_close(b, a, absolute=RANKS * size, what=f"{what}: {', '.join(columns)} on two processes")
             check_close(c, a, absolute=RANKS * size, what=f"{what}: {', '.join(columns)} on four processes")
 
 
-RANKS = 1e-8
+RANKS = 2.3e-10  # measured: 1.5e-10, stresses of the steady plate, which are small at the probes; else 6.4e-12
 
 
 def mistakes():
@@ -217,7 +230,7 @@ def mistakes():
     for more, words in (({"Boundary conditions/Dirichlet": ""}, ("Steady", "Dirichlet", "Convection")),
                         ({"Material/Conductivity": "-1"}, ("Conductivity", "greater than 0")),
                         ({"Elasticity/Solver": "dynamics"}, ("Temperature change", "computed", "dynamics")),
-                        ({"Elasticity/Temperature change": "1"}, ("Dirichlet", "Temperature change = computed")),
+                        ({"Elasticity/Temperature change": "1", "Elasticity/Reference temperature": "0"}, ("Dirichlet", "Temperature change = computed")),
                         ({"Boundary conditions/Dirichlet": "left: log(-1)"}, ("Dirichlet",))):
         for ranks in (1, 2):
             check_message(run_plate(more, ranks=ranks, expect_error=True), *words)

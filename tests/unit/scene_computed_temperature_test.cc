@@ -109,7 +109,7 @@ subsection Boundary conditions
                      scene);
       EXPECT_FALSE(scene.time.steady);
       EXPECT_TRUE(scene.warms_slowly());
-      EXPECT_EQ(scene.output.write_times.size(), 4);
+      EXPECT_EQ(scene.output.write_times.size(), 3);
     }
     expect(elastic_fault(with({"Time/Steady=true", b + "Dirichlet=", b + "Convection="})),
            "Time/Steady",
