@@ -83,6 +83,10 @@ namespace PeriDeal
     template <int dim>
     void check_other_sections(const Scene<dim> &scene)
     {
+      if (scene.domain.has_extra_layers() && scene.elasticity.computes_temperature)
+        entry_error(
+          scene.domain.where("Extra layers"),
+          "cannot be used with 'Temperature change = computed' in section 'Elasticity', whose heat would flow through them. Use 0, or a formula there.");
       if (scene.finite_elements.consistent_capacity && !scene.elasticity.computes_temperature)
         entry_error(
           scene.finite_elements.where("Capacity"),

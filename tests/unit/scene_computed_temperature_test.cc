@@ -122,6 +122,9 @@ subsection Boundary conditions
     expect(elastic_fault(with({e + "Solver=dynamics"})),
            e + "Temperature change",
            {"bodies at rest", "'dynamics'"});
+    expect(elastic_fault(with({"Domain/Extra layers=3"})),
+           "Domain/Extra layers",
+           {"'Temperature change = computed'"});
     expect(elastic_fault(with({"Time/Stepper=verlet"})), "Time/Stepper", {"is for motion"});
     expect(elastic_fault(with({m + "Thermal expansion=0"})),
            e + "Temperature change",
