@@ -28,6 +28,8 @@ namespace PeriDeal
       reason = "with 'Kinematics = full' each bond has its own direction";
     else if (scene.material.fracture_energy || scene.material.critical_stretch)
       reason = "bonds may break";
+    else if (scene.peridynamics.corrects_elastic_bonds())
+      reason = "with 'Surface correction' bonds have factors of their own";
     AssertThrow(
       wanted != OperatorForm::lattice || reason.empty(),
       UserError("'Operator form = lattice' in section 'Peridynamics' is not possible here: " +
@@ -155,8 +157,45 @@ namespace PeriDeal
 
 
   template <int dim>
+  void StateOperator<dim>::correct_surface()
+  {
+    // Springs still are W x^2.
+    const SurfaceFactors factors =
+      surface_factors(bonds, scene.peridynamics, {starts, neighbors, springs});
+    std::string message;
+    for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
+      {
+        const StateLaw &law = laws[i].law;
+        if (message.empty() && volumetric &&
+            law.extension + law.volumetric * law.dilatation * factors.ratio[i] <= 0.)
+          message =
+            "'Surface correction' in section 'Peridynamics': with this Poisson ratio the energy of the node at " +
+            place_of(dim * i) + " would not be positive. Use 'moments' or 'none'.";
+      }
+    throw_on_all_if_any(bonds.nodes().communicator(), message);
+    for (std::size_t k = 0; k < neighbors.size(); ++k)
+      {
+        moments[k] *= factors.dilatation[k];
+        springs[k] *= factors.dilatation[k] * factors.dilatation[k] / factors.extension[k];
+      }
+    weighted        = factors.q;
+    n_not_corrected = factors.n_left;
+    weighted.update_ghost_values();
+  }
+
+
+  template <int dim>
+  unsigned long long StateOperator<dim>::n_uncorrected_nodes() const
+  {
+    return n_not_corrected;
+  }
+
+
+  template <int dim>
   void StateOperator<dim>::find_springs()
   {
+    if (scene.peridynamics.corrects_elastic_bonds())
+      correct_surface();
     for (const unsigned int i : stored_nodes)
       for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
         {
@@ -244,9 +283,10 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                        \
-  template void        StateOperator<dim>::find_bonds(); \
-  template std::size_t StateOperator<dim>::n_stored_bonds() const;
+#define PERIDEAL_INSTANTIATE(dim)                                         \
+  template void               StateOperator<dim>::find_bonds();           \
+  template std::size_t        StateOperator<dim>::n_stored_bonds() const; \
+  template unsigned long long StateOperator<dim>::n_uncorrected_nodes() const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

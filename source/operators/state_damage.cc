@@ -67,17 +67,15 @@ namespace PeriDeal
     std::string        message;
     breaks = true;
     critical.resize(nodes.n_local());
-    stiffness.resize(nodes.n_local());
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
         const Point<dim> &p    = nodes.position(i);
         const StateLaw   &law  = laws[i].law;
         const double      unit = law.extension * sums.bonds +
                             (volumetric ? law.volumetric * law.dilatation * sums.dilatations : 0.);
-        stiffness[i] = law.extension / weighted.local_element(i);
-        critical[i]  = material.critical_stretch ?
-                         material.critical_stretch->value(p) :
-                         std::sqrt(material.fracture_energy->value(p) / unit);
+        critical[i] = material.critical_stretch ?
+                        material.critical_stretch->value(p) :
+                        std::sqrt(material.fracture_energy->value(p) / unit);
         if (message.empty() && !(critical[i] > 0.))
           {
             std::ostringstream where;
@@ -114,10 +112,12 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
         {
-          // W x e times (b_i/q_i + b_j/q_j)/(W x^2); the same digits at both ends of a bond.
-          const unsigned int j = neighbors[k];
-          const double limit   = (stiffness[i] + stiffness[j]) * std::min(critical[i], critical[j]);
-          const double found   = springs[k] * extension_moment(u.begin(), i, stored_bond(k));
+          // W x e and W x^2; the same digits at both ends of a bond.
+          const unsigned int   j     = neighbors[k];
+          const Tensor<1, dim> xi    = bonds.bond_vector(i, j);
+          const double         all   = full ? lengths[k] * xi.norm() : moments[k] * xi;
+          const double         limit = all * std::min(critical[i], critical[j]);
+          const double         found = extension_moment(u.begin(), i, stored_bond(k));
           if (found <= limit)
             continue;
           breaking.push_back({k, found / limit});

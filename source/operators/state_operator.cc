@@ -47,6 +47,7 @@ namespace PeriDeal
     source.reinit(nodes.partitioner());
     tau.reinit(nodes.partitioner());
     weighted.reinit(nodes.partitioner());
+    tractions = traction_shares(nodes, scene.boundary_conditions);
     find_laws();
     find_bonds();
     find_critical_stretches();
@@ -343,13 +344,12 @@ namespace PeriDeal
         visit(numbers::internal_face_boundary_id,
               dim * i + d,
               nodes.volume(i) * force[d].value(nodes.position(i), t));
-    for (const VectorCondition &condition : scene.boundary_conditions.traction)
-      for (const BoundaryShare &share : nodes.boundary_shares())
-        if (share.id == condition.id)
-          for (unsigned int d = 0; d < dim; ++d)
-            visit(condition.id,
-                  dim * share.node + d,
-                  share.area * condition.values[d]->value(nodes.position(share.node), t));
+    for (const TractionShare<dim> &share : tractions)
+      {
+        const auto &values = find_condition(scene.boundary_conditions.traction, share.side)->values;
+        for (unsigned int d = 0; d < dim; ++d)
+          visit(share.side, dim * share.node + d, share.area * values[d]->value(share.place, t));
+      }
   }
 
 

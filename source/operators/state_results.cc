@@ -178,12 +178,14 @@ namespace PeriDeal
           gradient += weight * outer_product(eta, xi);
           shape += weight * outer_product(xi, xi);
           // V_i V_j t/x, of this end or the mean of both
-          const double         own   = laws[i].law.extension / weighted.local_element(i);
-          const double         force = several_phases ?
-                                         0.5 * (weight * (tau.local_element(i) + tau.local_element(j)) +
-                                        bond.spring * weight * product) :
-                                         weight * tau.local_element(i) + own * product / x2;
-          const Tensor<1, dim> y     = xi + eta;
+          const double own   = laws[i].law.extension / weighted.local_element(i);
+          const double other = laws[j].law.extension / weighted.local_element(j);
+          const double force =
+            several_phases ?
+              0.5 * (weight * (tau.local_element(i) + tau.local_element(j)) +
+                     bond.spring * weight * product) :
+              weight * (tau.local_element(i) + bond.spring * product * own / (own + other));
+          const Tensor<1, dim> y = xi + eta;
           if (full)
             stress += force * std::sqrt(x2) / y.norm() * outer_product(y, y);
           else

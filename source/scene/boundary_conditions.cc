@@ -104,7 +104,8 @@ namespace PeriDeal
       EntryType::text,
       "",
       "length",
-      "Depth over which peridynamics spreads tractions as body forces. Empty: the outermost row of nodes.");
+      "Depth over which peridynamics spreads tractions as body forces traction/depth, in each column of nodes behind the side; their sum stays that of the "
+      "tractions. Empty: the outermost row of nodes.");
   }
 
 

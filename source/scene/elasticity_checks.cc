@@ -46,21 +46,19 @@ namespace PeriDeal
              "Flux treatment",
              no_effect,
              "use 'natural'.");
-      refuse(pd.surface_correction == SurfaceCorrection::energy ||
-               (pd.surface_correction == SurfaceCorrection::crack_scaling &&
-                !runs(scene, Model::coupled)),
+      refuse(pd.surface_correction == SurfaceCorrection::crack_scaling &&
+               !runs(scene, Model::coupled),
              "Surface correction",
-             pd.surface_correction == SurfaceCorrection::energy ?
-               "'energy' is not defined" :
-               "'crack scaling' without 'Models = coupled' " + no_effect,
+             "'crack scaling' without 'Models = coupled' " + no_effect,
+             "use 'none', 'volume', 'energy' or 'moments'.");
+      refuse(pd.corrects_elastic_bonds() && !runs(scene, Model::peridynamics),
+             "Surface correction",
+             "without 'Models = peridynamics' " + no_effect,
              "use 'none'.");
-      refuse(pd.treatment != BoundaryTreatment::none &&
-               pd.treatment != BoundaryTreatment::automatic,
-             "Boundary treatment",
-             pd.treatment == BoundaryTreatment::exchange ?
-               "'exchange' has no place for a nonlocal dilatation" :
-               "fictitious nodes and layers are not defined",
-             "use 'none'.");
+      refuse(pd.correction_direction != CorrectionDirection::both,
+             "Correction direction",
+             no_effect,
+             "use 'both'.");
       if (pd.form != OperatorForm::lattice)
         return;
       const std::string not_lattice = "'lattice' is not defined", use = "use 'auto'.";
@@ -115,6 +113,37 @@ namespace PeriDeal
         entry_error(
           scene.elasticity.where("Kinematics"),
           "'full' is not for 'Models = coupled', whose coefficients are those of the undeformed body.");
+    }
+
+
+    /** Which bodies and sides tractions can be spread in. */
+    template <int dim>
+    void check_traction_layer(const Scene<dim> &scene)
+    {
+      const BoundaryConditions<dim> &conditions = scene.boundary_conditions;
+      if (conditions.traction_layer <= 0.)
+        return;
+      const std::string where = conditions.where("Traction layer");
+      if (!runs(scene, Model::peridynamics))
+        entry_error(where,
+                    "has no effect without 'Models = peridynamics': finite elements have "
+                    "tractions on their faces. Leave it empty.");
+      if (scene.domain.shape == Shape::mesh_file)
+        entry_error(
+          where,
+          "needs nodes in rows along the side, which 'Shape = mesh file' in section 'Domain' does not have. Leave it empty.");
+      for (const VectorCondition &condition : conditions.traction)
+        {
+          if (condition.id >= 2 * dim)
+            entry_error(where, "needs flat sides, and 'Traction' names 'hole'. Leave it empty.");
+          const double width =
+            scene.domain.upper[condition.id / 2] - scene.domain.lower[condition.id / 2];
+          if (conditions.traction_layer > width)
+            entry_error(where,
+                        "found " + number_text(conditions.traction_layer) +
+                          ", wider than the body behind the side '" + condition.name + "', " +
+                          number_text(width) + ".");
+        }
     }
 
 
@@ -231,16 +260,7 @@ namespace PeriDeal
       entry_error(
         cracks.where(cracks.contact_conductance < 0. ? "Transmission" : "Contact conductance"),
         "is for what diffuses; cracks transmit no force with 'Physics = elasticity'.");
-    if (boundary_conditions.traction_layer > 0. && domain.shape != Shape::mesh_file)
-      {
-        double longest = 0.;
-        for (unsigned int d = 0; d < dim; ++d)
-          longest = std::max(longest, domain.upper[d] - domain.lower[d]);
-        if (boundary_conditions.traction_layer > longest)
-          entry_error(boundary_conditions.where("Traction layer"),
-                      "found " + number_text(boundary_conditions.traction_layer) +
-                        ", wider than the body, " + number_text(longest) + ".");
-      }
+    check_traction_layer(*this);
     check_time(*this);
     check_fracture(*this);
     check_peridynamics(*this);

@@ -36,11 +36,12 @@ namespace PeriDeal
             "Shape k(r) of the micro-conductivity within the horizon delta: 1, 1 - r/delta, or "
             "exp(-(2 r/delta)^2).",
             {"constant", "conical", "gaussian"});
-    declare("Kernel exponent",
-            EntryType::text,
-            "auto",
-            "1",
-            "n of the pair law k(r)/r^n: 0, 1 or 2. `auto` is 2, and 0 with `Physics = elasticity`, where bonds of equal weight keep the moduli best.");
+    declare(
+      "Kernel exponent",
+      EntryType::text,
+      "auto",
+      "1",
+      "n of the pair law k(r)/r^n: 0, 1 or 2. `auto` is 2, and 0 with `Physics = elasticity`, where bonds of equal weight keep the moduli best.");
     declare(
       "Volume fraction",
       EntryType::choice,
@@ -115,8 +116,9 @@ namespace PeriDeal
       "",
       "Factors of bonds that make up for missing ones: beside cracks only (`crack scaling`, for finite elements with "
       "`Mesh = pairs`, too); or wherever the energy of a unit gradient is not that of the classical body (`energy`), at sides, cracks and "
-      "voids.",
-      {"none", "crack scaling", "energy"});
+      "voids. Elasticity has `energy`, of stretches along the axes, `volume`, by the volumes of both ends' families, and `moments`, the smallest change of bonds "
+      "with which a uniform strain has its dilatation, stress and energy at each node where positive factors can do it.",
+      {"none", "crack scaling", "energy", "volume", "moments"});
     declare(
       "Correction direction",
       EntryType::choice,
@@ -171,8 +173,21 @@ namespace PeriDeal
     flux_treatment       = choice<FluxTreatment>("Flux treatment");
     surface_correction   = choice<SurfaceCorrection>("Surface correction");
     correction_direction = choice<CorrectionDirection>("Correction direction");
-    across_voids         = choice<BondsAcrossVoids>("Bonds across voids");
-    form                 = choice<OperatorForm>("Operator form");
+    if (physics != Physics::elasticity && (surface_correction == SurfaceCorrection::volume ||
+                                           surface_correction == SurfaceCorrection::moments))
+      error("Surface correction",
+            "'" + text("Surface correction") +
+              "' is for 'Physics = elasticity'; use 'none', 'crack scaling' or 'energy'.");
+    across_voids = choice<BondsAcrossVoids>("Bonds across voids");
+    form         = choice<OperatorForm>("Operator form");
+  }
+
+
+  bool Peridynamics::corrects_elastic_bonds() const
+  {
+    return surface_correction == SurfaceCorrection::volume ||
+           surface_correction == SurfaceCorrection::energy ||
+           surface_correction == SurfaceCorrection::moments;
   }
 
 

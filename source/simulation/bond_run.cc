@@ -209,6 +209,10 @@ namespace PeriDeal
          "none" :
        p.surface_correction == SurfaceCorrection::crack_scaling ?
          "crack scaling" :
+       p.surface_correction == SurfaceCorrection::volume ?
+         "volume" :
+       p.surface_correction == SurfaceCorrection::moments ?
+         "moments" :
        p.correction_direction == CorrectionDirection::both ?
          "energy, each direction" :
          std::string("energy, direction ") + "xyz"[static_cast<int>(p.correction_direction)]}};

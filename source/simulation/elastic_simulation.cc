@@ -67,9 +67,6 @@ namespace PeriDeal
         "'Scheme' in section 'Coupling' has to be 'exchange' with 'Physics = elasticity' so far.");
       require(scene.domain.coarsening == 0,
               "'Coarsening' in section 'Domain' cannot be used with 'Physics = elasticity' yet.");
-      require(
-        scene.boundary_conditions.traction_layer < 0.,
-        "'Traction layer' in section 'Boundary conditions' cannot be used yet; leave it empty.");
       require(scene.reference.solution.empty(),
               "'Solution' in section 'Reference' cannot be used with 'Physics = elasticity' yet.");
     }
@@ -132,6 +129,8 @@ namespace PeriDeal
         if (size.bonds > 0)
           line += ", " + readable_count(size.bonds) + " bonds";
         line += ", " + readable_count(size.nonzeros) + " stored numbers";
+        for (const std::string &note : model.notes())
+          record->notes.push_back(note);
         const double memory = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
         progress.line(line + ", " + readable_bytes(memory));
       }

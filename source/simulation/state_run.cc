@@ -172,6 +172,17 @@ namespace PeriDeal
         return list;
       }
 
+      std::vector<std::string> notes() const override
+      {
+        const unsigned long long n = states->n_uncorrected_nodes();
+        if (n == 0)
+          return {};
+        return {
+          "'Surface correction = moments' in section 'Peridynamics' leaves " + std::to_string(n) +
+          " of " + std::to_string(node_set->n_global()) +
+          " nodes as they are: no positive factors give their bonds the moments of a complete family, as in convex corners and beside the ends of cracks."};
+      }
+
     private:
       std::vector<SymmetricTensor<2, 3>> nodal_stress(const NodalTensors<dim> &tensors) const
       {

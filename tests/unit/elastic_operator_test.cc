@@ -205,6 +205,20 @@ TEST(ElasticOperator, symmetric_and_without_resultant)
                     Model::peridynamics);
   check_operator<2>({{"Domain/Cells", "8, 6"}, {"Domain/Nodes", "cell centers"}},
                     Model::peridynamics);
+  for (const std::string law : {"volume", "energy", "moments"})
+    for (const std::string nodes : {"vertices", "cell centers"})
+      {
+        const Settings corrected{{"Peridynamics/Surface correction", law}, {"Domain/Nodes", nodes}};
+        check_operator<1>(corrected, Model::peridynamics);
+        for (const std::string nu : {"-0.4", "0.45"})
+          check_operator<2>(corrected +
+                              Settings{{"Domain/Cells", "8, 6"}, {"Material/Poisson ratio", nu}},
+                            Model::peridynamics);
+        check_operator<2>(
+          corrected + Settings{{"Domain/Cells", "8, 6"}, {"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}},
+          Model::peridynamics);
+        check_operator<3>(corrected + Settings{{"Domain/Cells", "4, 3, 2"}}, Model::peridynamics);
+      }
 }
 
 
@@ -239,6 +253,17 @@ TEST(ElasticOperator, same_on_all_processes)
     same_on_all<2>(warm, model, 1e-13);
   same_on_all<2>({{"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}}, Model::peridynamics, 1e-13);
   same_on_all<3>({}, Model::peridynamics, 1e-13);
+  for (const std::string law : {"none", "volume", "energy", "moments"})
+    for (const std::string nodes : {"vertices", "cell centers"})
+      {
+        const Settings surface{{"Peridynamics/Surface correction", law},
+                               {"Boundary conditions/Traction layer", "0.2"},
+                               {"Domain/Nodes", nodes}};
+        same_on_all<2>(surface + warm, Model::peridynamics, 1e-13);
+        same_on_all<3>(surface + Settings{{"Boundary conditions/Traction", "right: 1, 2, y"}},
+                       Model::peridynamics,
+                       1e-13);
+      }
 }
 
 

@@ -447,9 +447,13 @@ end
     expect(elastic_fault({pd + "Flux treatment=extrapolation"}),
            pd + "Flux treatment",
            {"has no effect", "'natural'"});
-    expect(elastic_fault({pd + "Surface correction=energy"}),
-           pd + "Surface correction",
-           {"'energy'", "'none'"});
+    for (const char *const law : {"volume", "energy", "moments"})
+      {
+        EXPECT_EQ(elastic_fault({pd + "Surface correction=" + law}), "");
+        expect(elastic_fault({pd + "Surface correction=" + law, "Models=finite elements"}),
+               pd + "Surface correction",
+               {"has no effect"});
+      }
     expect(elastic_fault({pd + "Surface correction=crack scaling"}),
            pd + "Surface correction",
            {"has no effect", "coupled"});

@@ -8,6 +8,8 @@
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/displacement_conditions.h>
 #include <perideal/operators/elastic_operator.h>
+#include <perideal/operators/surface_factors.h>
+#include <perideal/operators/traction_layer.h>
 
 #include <memory>
 #include <utility>
@@ -34,6 +36,8 @@ namespace PeriDeal
    *
    *   q_i = sum_j W_ij x^2 / V_i,  theta_i = d sum_j W_ij x e_ij / (V_i q_i)
    *   F_i = sum_j W_ij [ (c_i theta_i/q_i + c_j theta_j/q_j) x + (b_i/q_i + b_j/q_j) e_ij ] M
+   *
+   * `Surface correction` multiplies W by a bond's factor a in theta and in the forces from it, by s in those of e, and changes q (surface_factors.h).
    *
    * with d, c, b the factors dilatation, volumetric and extension of StateLaw. The prefactor of omega drops out. An application takes two passes over
    * the bonds, the dilatations first. On a lattice, with linear kinematics and where nothing breaks, nodes without cut bonds store none (StateLattice). Other
@@ -106,6 +110,9 @@ namespace PeriDeal
     /** How many of this process's bonds are stored, each counted at both ends. */
     std::size_t n_stored_bonds() const;
 
+    /** Of all processes: those that `Surface correction = moments` leaves as they are. */
+    unsigned long long n_uncorrected_nodes() const;
+
     /** Of the owned nodes and their ghosts; empty where bonds do not break. */
     const std::vector<double> &critical_stretches() const;
 
@@ -167,6 +174,7 @@ namespace PeriDeal
                          const std::vector<typename Families<dim>::Bond> &family,
                          std::string                                     &message);
     void     find_springs();
+    void     correct_surface();
     void     make_lattice();
     StateLaw reference_law() const;
     void     find_thermal_loads();
@@ -223,12 +231,13 @@ namespace PeriDeal
     std::vector<double>                 springs; // (b_i/q_i + b_j/q_j)/(W x^2)
     std::vector<double>                 lengths,
       across; // full kinematics: W x, and the tangent's stiffness across the bond
-    bool                full       = false;
-    bool                volumetric = false, any_thermal = false, several_phases = false;
-    double              n_bonds = 0., released = 0.;
-    unsigned long long  n_broken = 0;
-    std::vector<double> critical;  // stretch, of owned nodes and ghosts; empty: nothing breaks
-    std::vector<double> stiffness; // b/q of owned nodes and ghosts, where bonds break
+    bool                            full       = false;
+    bool                            volumetric = false, any_thermal = false, several_phases = false;
+    double                          n_bonds = 0., released = 0.;
+    unsigned long long              n_broken        = 0;
+    unsigned long long              n_not_corrected = 0;
+    std::vector<TractionShare<dim>> tractions;
+    std::vector<double> critical; // stretch, of owned nodes and ghosts; empty: nothing breaks
     std::vector<std::pair<std::size_t, double>>
                    breaking;       // overstretched bonds: place, stretch over critical stretch
     bool           breaks = false; // some bond may, on any process

@@ -64,7 +64,9 @@ namespace PeriDeal
   {
     none,
     crack_scaling,
-    energy
+    energy,
+    volume, // this and the next: elasticity
+    moments
   };
 
   enum class CorrectionDirection

@@ -33,6 +33,9 @@ namespace PeriDeal
     BondsAcrossVoids    across_voids         = BondsAcrossVoids::automatic;
     OperatorForm form = OperatorForm::automatic; // entry `Operator form` = auto | lattice | stored
 
+    /** The surface correction is one of the linear peridynamic solid. */
+    bool corrects_elastic_bonds() const;
+
     /** Throws UserError for values out of range and contradicting entries. */
     void parse(const Physics physics = Physics::heat);
 

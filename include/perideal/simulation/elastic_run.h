@@ -67,6 +67,12 @@ namespace PeriDeal
     /** What was chosen, for the report: name and value. */
     virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
 
+    /** What the user should know of this model in this scene. Not collective. */
+    virtual std::vector<std::string> notes() const
+    {
+      return {};
+    }
+
     Vector                         displacement;
     Vector                         velocity;          // of a motion
     std::unique_ptr<MotionStepper> stepper;           // null in equilibrium

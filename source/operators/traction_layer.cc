@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/operators/traction_layer.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** The columns of a lattice behind one side of a box, numbered across the side. */
+    template <int dim>
+    class Columns
+    {
+    public:
+      Columns(const Lattice<dim> &lattice, const types::boundary_id side)
+        : lattice(lattice)
+        , axis(side / 2)
+        , at_upper(side % 2 == 1)
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          if (d != axis)
+            count *= lattice.n_sites[d];
+      }
+
+      std::size_t size() const
+      {
+        return count;
+      }
+
+      std::size_t column_of(const Point<dim> &p) const
+      {
+        const typename Lattice<dim>::Index site   = lattice.index(p);
+        std::size_t                        column = 0;
+        for (unsigned int d = dim; d-- > 0;)
+          if (d != axis)
+            column = column * lattice.n_sites[d] + site[d];
+        return column;
+      }
+
+      /** The part of a node's cell that lies in the layer. */
+      double part_of(const Point<dim> &p, const double depth) const
+      {
+        const double half     = 0.5 * lattice.spacing[axis],
+                     width    = lattice.upper[axis] - lattice.lower[axis],
+                     distance = at_upper ? lattice.upper[axis] - p[axis] :
+                                           p[axis] - lattice.lower[axis];
+        return part_within(std::max(0., distance - half), std::min(width, distance + half), depth);
+      }
+
+      /** The place of the column's node on the side. */
+      Point<dim> outermost(const Point<dim> &p) const
+      {
+        typename Lattice<dim>::Index site = lattice.index(p);
+        site[axis]                        = at_upper ? lattice.n_sites[axis] - 1 : 0;
+        return lattice.position(site);
+      }
+
+    private:
+      const Lattice<dim> &lattice;
+      const unsigned int  axis;
+      const bool          at_upper;
+      std::size_t         count = 1;
+    };
+
+
+    template <int dim>
+    void spread(const Nodes<dim>                &nodes,
+                const types::boundary_id         side,
+                const double                     depth,
+                std::vector<TractionShare<dim>> &shares)
+    {
+      const Columns<dim>  columns(*nodes.lattice(), side);
+      std::vector<double> areas(columns.size(), 0.), volumes(columns.size(), 0.);
+      for (const BoundaryShare &share : nodes.boundary_shares())
+        if (share.id == side)
+          areas[columns.column_of(nodes.position(share.node))] += share.area;
+      std::vector<double> part(nodes.n_owned());
+      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        {
+          part[i] = nodes.volume(i) * columns.part_of(nodes.position(i), depth);
+          volumes[columns.column_of(nodes.position(i))] += part[i];
+        }
+      Utilities::MPI::sum(areas, nodes.communicator(), areas);
+      Utilities::MPI::sum(volumes, nodes.communicator(), volumes);
+      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        {
+          const Point<dim> &p      = nodes.position(i);
+          const std::size_t column = columns.column_of(p);
+          if (part[i] > 0. && areas[column] > 0.)
+            shares.push_back(
+              {i, side, areas[column] * part[i] / volumes[column], columns.outermost(p)});
+        }
+    }
+  } // namespace
+
+
+  double part_within(const double lower, const double upper, const double depth)
+  {
+    return std::max(0., std::min(upper, depth) - lower) / (upper - lower);
+  }
+
+
+  template <int dim>
+  std::vector<TractionShare<dim>> traction_shares(const Nodes<dim>              &nodes,
+                                                  const BoundaryConditions<dim> &conditions)
+  {
+    std::vector<TractionShare<dim>> shares;
+    for (const VectorCondition &condition : conditions.traction)
+      if (conditions.traction_layer > 0.)
+        {
+          Assert(nodes.lattice() && condition.id < 2 * dim,
+                 ExcInternalError()); // the scene was checked
+          spread(nodes, condition.id, conditions.traction_layer, shares);
+        }
+      else
+        for (const BoundaryShare &share : nodes.boundary_shares())
+          if (share.id == condition.id)
+            shares.push_back({share.node, share.id, share.area, nodes.position(share.node)});
+    return shares;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                              \
+  template std::vector<TractionShare<dim>> traction_shares(const Nodes<dim> &, \
+                                                           const BoundaryConditions<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
