@@ -59,6 +59,13 @@ namespace PeriDeal
              "Correction direction",
              no_effect,
              "use 'both'.");
+      refuse(
+        pd.treatment != BoundaryTreatment::none && pd.treatment != BoundaryTreatment::automatic,
+        "Boundary treatment",
+        pd.treatment == BoundaryTreatment::exchange ?
+          "'exchange' has no place for a nonlocal dilatation" :
+          "fictitious nodes and layers are not defined",
+        "use 'none'; 'Surface correction' and 'Traction layer' are for the surfaces of elastic bodies.");
       if (pd.form != OperatorForm::lattice)
         return;
       const std::string not_lattice = "'lattice' is not defined", use = "use 'auto'.";
