@@ -3,9 +3,11 @@
 
 // K of the state-based operator as a matrix, on request.
 
-#include <perideal/operators/state_operator.h>
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
 
-#include <algorithm>
+#include <perideal/operators/state_operator.h>
 
 #include "state_lattice.h"
 
@@ -73,7 +75,7 @@ namespace PeriDeal
           Tensor<2, dim> block = bond.spring * outer_product(bond.moment, bond.moment);
           if (full && bond.length > 0.)
             block += across[starts[i] + k - 1] *
-                     (unit_symmetric_tensor<dim>() -
+                     (Tensor<2, dim>(unit_symmetric_tensor<dim>()) -
                       outer_product(bond.moment, bond.moment) / (bond.length * bond.length));
           for (unsigned int d = 0; d < dim; ++d)
             for (unsigned int e = 0; e < dim; ++e)
