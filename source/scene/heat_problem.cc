@@ -24,6 +24,9 @@ namespace PeriDeal
       problem->boundary_conditions.set(entry, "");
     for (const char *const entry : {"Body force", "Initial displacement", "Initial velocity"})
       problem->initial_and_source.set(entry, "");
+    // Corrections of elastic bonds are none of those that conduct.
+    if (peridynamics.surface_correction != SurfaceCorrection::crack_scaling)
+      problem->peridynamics.set("Surface correction", "none");
     // Both share the mesh.
     problem->cracks.set("Mesh", cracks.mesh == CrackMesh::faces ? "faces" : "removed");
     problem->domain.scene_folder = domain.scene_folder;

@@ -93,6 +93,14 @@ subsection Boundary conditions
       EXPECT_EQ(scene.heat->peridynamics.kernel_exponent, 2);
       EXPECT_EQ(scene.peridynamics.kernel_exponent, 0);
     }
+    for (const std::string correction : {"energy", "volume", "moments"})
+      {
+        Scene<2> scene;
+        parse_scene<2>(elastic_scene<2>(with(
+                         {"Time/Steady=true", "Peridynamics/Surface correction=" + correction})),
+                       scene);
+        EXPECT_EQ(scene.heat->peridynamics.surface_correction, SurfaceCorrection::none);
+      }
     {
       Scene<2> scene; // slow loads and a steady temperature
       parse_scene<2>(elastic_scene<2>(with({"Time/Steady=true", b + "Traction=right: t, 0"})),
