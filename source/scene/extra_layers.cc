@@ -49,7 +49,7 @@ namespace PeriDeal
       "Extra layers",
       EntryType::list,
       "0",
-      "",
+      "1",
       "Rows of cells that are added outside the sides of the body and left out of the results (elasticity): a number for all sides, or "
       "`left: 10; right: 10`. Boundary conditions act on their outer sides; forces on sides and energies are those of the whole.");
     declare(

@@ -212,17 +212,14 @@ namespace PeriDeal
 
   TEST(Image, extra_layers)
   {
-    const Image    image(small);
-    const Settings elastic = {{"General/Physics", "elasticity"},
-                              {"Material/Young modulus", "1"},
-                              {"Material/Poisson ratio", "0.3"},
-                              {"Boundary conditions/Displacement", "left: 0, 0 ; right: 0.1, free"}};
-    Scene<2>       plain, nearest, named;
-    fill(plain, image.settings(elastic));
-    fill(nearest, image.settings(elastic + Settings{{"Domain/Extra layers", "left: 2 ; top: 1"}}));
+    const Image image(small);
+    Scene<2>    plain, nearest, named;
+    fill(plain, image.settings(elastic()));
+    fill(nearest,
+         image.settings(elastic() + Settings{{"Domain/Extra layers", "left: 2 ; top: 1"}}));
     fill(named,
-         image.settings(elastic + Settings{{"Domain/Extra layers", "1"},
-                                           {"Domain/Extra layers phase", "fibre"}}));
+         image.settings(elastic() + Settings{{"Domain/Extra layers", "1"},
+                                             {"Domain/Extra layers phase", "fibre"}}));
     EXPECT_EQ(nearest.domain.cells, (std::array<unsigned int, 2>{{6, 4}}));
     EXPECT_EQ(nearest.domain.lower, Point<2>(-2., 0.));
     EXPECT_EQ(nearest.domain.upper, Point<2>(4., 4.));
@@ -250,7 +247,7 @@ namespace PeriDeal
     EXPECT_EQ(nearest.domain.image->at(-1.5, 3.5), map.at(0.5, 2.5));
     for (const Point<2> &p : {Point<2>(-0.5, 1.5), Point<2>(4.5, 3.5), Point<2>(1.5, -0.5)})
       EXPECT_EQ(named.domain.image->at(p[0], p[1]), 1);
-    const auto with = [&](const Settings &more) { return fault(image.settings(elastic + more)); };
+    const auto with = [&](const Settings &more) { return fault(image.settings(elastic(more))); };
     expect_parts(with({{"Domain/Extra layers", "-1"}}), {"'Extra layers' in section 'Domain'"});
     expect_parts(with({{"Domain/Extra layers", "lef: 1"}}),
                  {"'Extra layers' in section 'Domain'", "'lef'", "'left'"});
