@@ -145,7 +145,8 @@ namespace PeriDeal
           const double       length = along.norm();
           double             room   = 0.5 * length;
           for (unsigned int d = 0; d < 2; ++d)
-            room = std::min({room, end[d] - scene.domain.lower[d], scene.domain.upper[d] - end[d]});
+            room = std::min(
+              {room, end[d] - scene.domain.body_lower[d], scene.domain.body_upper[d] - end[d]});
           for (unsigned int other = 0; other < cracks.size(); ++other)
             if (other != k)
               room = std::min(room, distance_to_piece(cracks[other], end));

@@ -180,7 +180,15 @@ namespace PeriDeal
       }
     weighted        = factors.q;
     n_not_corrected = factors.n_left;
+    moments_gap     = factors.gap;
     weighted.update_ghost_values();
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::gap_of_moments() const
+  {
+    return moments_gap;
   }
 
 
@@ -283,10 +291,11 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                         \
-  template void               StateOperator<dim>::find_bonds();           \
-  template std::size_t        StateOperator<dim>::n_stored_bonds() const; \
-  template unsigned long long StateOperator<dim>::n_uncorrected_nodes() const;
+#define PERIDEAL_INSTANTIATE(dim)                                              \
+  template void               StateOperator<dim>::find_bonds();                \
+  template std::size_t        StateOperator<dim>::n_stored_bonds() const;      \
+  template unsigned long long StateOperator<dim>::n_uncorrected_nodes() const; \
+  template double             StateOperator<dim>::gap_of_moments() const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

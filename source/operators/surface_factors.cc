@@ -199,7 +199,7 @@ namespace PeriDeal
             do
               iterate(1e-3);
             while (leave_negative());
-            iterate(1e-13);
+            remaining = iterate(1e-13);
           }
         while (leave_negative());
       }
@@ -218,6 +218,11 @@ namespace PeriDeal
       bool is_left(const unsigned int node) const
       {
         return left.local_element(node) > 0.;
+      }
+
+      double gap_left() const
+      {
+        return remaining;
       }
 
     private:
@@ -292,9 +297,9 @@ namespace PeriDeal
 
       /**
        * The c of all nodes by Chebyshev's iteration with the nodes' own matrices, which needs no sums over all nodes, so that numbers do not depend on the processes. Eigenvalues lie
-       * between 0 and 2, the lowest near 0.04 for m = 2; modes below 0.02 would take longer. Stops when the largest gap is below the tolerance times a complete family's moments. Collective.
+       * between 0 and 2, the lowest near 0.04 for m = 2; modes below 0.02 would take longer. Stops when the largest gap is below the tolerance times a complete family's moments, and returns 0, or what is left of it after as many steps as are allowed. Collective.
        */
-      void iterate(const double tolerance)
+      double iterate(const double tolerance)
       {
         constexpr double       lowest = 0.02, highest = 2.02;
         constexpr unsigned int most = 500;
@@ -302,7 +307,8 @@ namespace PeriDeal
         const double           size = std::sqrt(scalar_product<dim>(complete, complete));
         std::vector<FourthMoments<dim>> steps(nodes.n_owned());
         double                          rho = half / mean, keep = 0., take = 1. / mean;
-        c = 0.;
+        double                          left_over = 0.;
+        c                                         = 0.;
         for (unsigned int n_steps = 0; n_steps < most; ++n_steps)
           {
             double worst = 0.;
@@ -318,8 +324,12 @@ namespace PeriDeal
                   steps[i][a] = keep * steps[i][a] + take * step[a];
               }
             c.zero_out_ghost_values();
-            if (std::sqrt(Utilities::MPI::max(worst, nodes.communicator())) < tolerance * size)
-              break;
+            left_over = std::sqrt(Utilities::MPI::max(worst, nodes.communicator())) / size;
+            if (left_over < tolerance)
+              {
+                left_over = 0.;
+                break;
+              }
             for (unsigned int i = 0; i < nodes.n_owned(); ++i)
               for (unsigned int a = 0; a < n; ++a)
                 c.local_element(n * i + a) += steps[i][a];
@@ -329,6 +339,7 @@ namespace PeriDeal
             rho               = next;
           }
         c.update_ghost_values();
+        return left_over;
       }
 
       /**
@@ -376,6 +387,7 @@ namespace PeriDeal
       std::vector<FourthMoments<dim>> table;
       std::vector<unsigned int>       direction; // of the stored bonds, in the table
       FourthMoments<dim>              complete{};
+      double                          remaining = 0.;
     };
 
 
@@ -401,6 +413,7 @@ namespace PeriDeal
           ++result.n_left;
         }
       result.n_left    = Utilities::MPI::sum(result.n_left, nodes.communicator());
+      result.gap       = multipliers.gap_left();
       result.extension = result.dilatation;
     }
   } // namespace

@@ -6,6 +6,7 @@
 #include <perideal/operators/traction_layer.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace PeriDeal
 {
@@ -53,6 +54,20 @@ namespace PeriDeal
         return part_within(std::max(0., distance - half), std::min(width, distance + half), depth);
       }
 
+      /** How many sites lie between a node and the side. */
+      unsigned int row_of(const Point<dim> &p) const
+      {
+        const int k = lattice.index(p)[axis];
+        return at_upper ? lattice.n_sites[axis] - 1 - k : k;
+      }
+
+      /** Sites of a column that may have a part within the depth. */
+      unsigned int n_rows(const double depth) const
+      {
+        const double reach = std::ceil(depth / lattice.spacing[axis]) + 1.;
+        return static_cast<unsigned int>(std::min<double>(lattice.n_sites[axis], reach));
+      }
+
       /** The place of the column's node on the side. */
       Point<dim> outermost(const Point<dim> &p) const
       {
@@ -80,12 +95,25 @@ namespace PeriDeal
       for (const BoundaryShare &share : nodes.boundary_shares())
         if (share.id == side)
           areas[columns.column_of(nodes.position(share.node))] += share.area;
-      std::vector<double> part(nodes.n_owned());
+      // A column ends where a node is missing: what lies beyond a hole is not pulled.
+      const unsigned int        n_rows = columns.n_rows(depth);
+      std::vector<unsigned int> exists(columns.size() * n_rows, 0);
       for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-        {
-          part[i] = nodes.volume(i) * columns.part_of(nodes.position(i), depth);
-          volumes[columns.column_of(nodes.position(i))] += part[i];
-        }
+        if (const unsigned int row = columns.row_of(nodes.position(i)); row < n_rows)
+          exists[columns.column_of(nodes.position(i)) * n_rows + row] = 1;
+      Utilities::MPI::max(exists, nodes.communicator(), exists);
+      const auto is_reached = [&](const Point<dim> &p) {
+        const unsigned int row   = columns.row_of(p);
+        const auto         first = exists.begin() + columns.column_of(p) * n_rows;
+        return row < n_rows && std::find(first, first + row, 0u) == first + row;
+      };
+      std::vector<double> part(nodes.n_owned(), 0.);
+      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        if (is_reached(nodes.position(i)))
+          {
+            part[i] = nodes.volume(i) * columns.part_of(nodes.position(i), depth);
+            volumes[columns.column_of(nodes.position(i))] += part[i];
+          }
       Utilities::MPI::sum(areas, nodes.communicator(), areas);
       Utilities::MPI::sum(volumes, nodes.communicator(), volumes);
       for (unsigned int i = 0; i < nodes.n_owned(); ++i)

@@ -43,9 +43,9 @@ namespace PeriDeal
           pd.where("Flux treatment"),
           "makes slaves of nodes; use 'natural'");
       add(pd.self_term != SelfTerm::none, pd.where("Self term"), "is not 'none'");
-      add(pd.surface_correction == SurfaceCorrection::energy,
+      add(pd.corrects_elastic_bonds(),
           pd.where("Surface correction"),
-          "is 'energy', for bonds without finite elements; use 'none' or 'crack scaling'");
+          "is for bonds without finite elements; use 'none' or 'crack scaling'");
       add(pd.nodal_volume != NodalVolume::partial,
           pd.where("Nodal volume"),
           "is 'full'; use 'partial'");

@@ -175,6 +175,8 @@ namespace PeriDeal
     if (mesh == CrackMesh::automatic)
       mesh = physics == Physics::elasticity ? CrackMesh::removed : CrackMesh::pairs;
     through_tips = choice<ThroughTips>("Bonds through tips");
+    if (physics == Physics::elasticity && through_tips == ThroughTips::automatic)
+      through_tips = ThroughTips::cut; // whatever 'Surface correction' does
     parse_conductance();
     parse_growth();
     parse_paths();

@@ -55,6 +55,11 @@ namespace PeriDeal
              "Surface correction",
              "without 'Models = peridynamics' " + no_effect,
              "use 'none'.");
+      refuse(
+        pd.corrects_elastic_bonds() && scene.material.fracture_energy,
+        "Surface correction",
+        "with 'Fracture energy' in section 'Material' bonds at surfaces would break at another energy",
+        "use 'none', or give 'Critical stretch'.");
       refuse(pd.correction_direction != CorrectionDirection::both,
              "Correction direction",
              no_effect,
@@ -72,6 +77,10 @@ namespace PeriDeal
       refuse(!runs(scene, Model::peridynamics),
              "Operator form",
              not_lattice + " without 'Models = peridynamics'",
+             use);
+      refuse(pd.corrects_elastic_bonds(),
+             "Operator form",
+             not_lattice + " with 'Surface correction'",
              use);
       refuse(scene.elasticity.kinematics == Kinematics::full,
              "Operator form",
@@ -123,6 +132,25 @@ namespace PeriDeal
     }
 
 
+    /** A crack that opens at a side of the body would be closed by the layers beyond. */
+    template <int dim>
+    void check_extra_layers(const Scene<dim> &scene)
+    {
+      const Domain<dim> &domain = scene.domain;
+      for (const auto &crack : scene.cracks.cracks)
+        for (const Point<dim> &p : crack)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double slack = 1e-9 * (domain.body_upper[d] - domain.body_lower[d]);
+              if ((domain.extra_layers[2 * d] > 0 && p[d] < domain.body_lower[d] + slack) ||
+                  (domain.extra_layers[2 * d + 1] > 0 && p[d] > domain.body_upper[d] - slack))
+                entry_error(
+                  domain.where("Extra layers"),
+                  "a crack ends at a side of the body that has some, and would be closed by them. Leave them out at that side.");
+            }
+    }
+
+
     /** Which bodies and sides tractions can be spread in. */
     template <int dim>
     void check_traction_layer(const Scene<dim> &scene)
@@ -149,7 +177,18 @@ namespace PeriDeal
             entry_error(where,
                         "found " + number_text(conditions.traction_layer) +
                           ", wider than the body behind the side '" + condition.name + "', " +
-                          number_text(width) + ".");
+                          number_text(width) +
+                          (scene.domain.has_extra_layers() ? " with its extra layers." : "."));
+          const unsigned int axis = condition.id / 2;
+          for (const auto &crack : scene.cracks.cracks)
+            for (const Point<dim> &p : crack)
+              if ((condition.id % 2 == 0 ?
+                     p[axis] - scene.domain.lower[axis] :
+                     scene.domain.upper[axis] - p[axis]) < conditions.traction_layer)
+                entry_error(
+                  where,
+                  "a crack lies within it at the side '" + condition.name +
+                    "', and what is behind the crack would be pulled. Leave it empty, or make it thinner.");
         }
     }
 
@@ -268,6 +307,7 @@ namespace PeriDeal
         cracks.where(cracks.contact_conductance < 0. ? "Transmission" : "Contact conductance"),
         "is for what diffuses; cracks transmit no force with 'Physics = elasticity'.");
     check_traction_layer(*this);
+    check_extra_layers(*this);
     check_time(*this);
     check_fracture(*this);
     check_peridynamics(*this);

@@ -3,6 +3,7 @@
 
 // The heat problem that an elastic scene describes beside its equilibrium.
 
+#include <perideal/base/user_error.h>
 #include <perideal/scene/scene.h>
 
 namespace PeriDeal
@@ -27,11 +28,21 @@ namespace PeriDeal
     // Corrections of elastic bonds are none of those that conduct.
     if (peridynamics.surface_correction != SurfaceCorrection::crack_scaling)
       problem->peridynamics.set("Surface correction", "none");
+    problem->peridynamics.set("Operator form", "auto"); // that of elastic bonds is meant
     // Both share the mesh.
     problem->cracks.set("Mesh", cracks.mesh == CrackMesh::faces ? "faces" : "removed");
     problem->domain.scene_folder = domain.scene_folder;
     problem->domain.communicator = domain.communicator;
-    problem->parse_and_validate();
+    try
+      {
+        problem->parse_and_validate();
+      }
+    catch (const UserError &fault)
+      {
+        AssertThrow(
+          false,
+          UserError("The heat problem of 'Temperature change = computed': " + fault.message()));
+      }
     heat = problem;
   }
 

@@ -117,7 +117,7 @@ namespace PeriDeal
       "Factors of bonds that make up for missing ones: beside cracks only (`crack scaling`, for finite elements with "
       "`Mesh = pairs`, too); or wherever the energy of a unit gradient is not that of the classical body (`energy`), at sides, cracks and "
       "voids. Elasticity has `energy`, of stretches along the axes, `volume`, by the volumes of both ends' families, and `moments`, the smallest change of bonds "
-      "with which a uniform strain has its dilatation, stress and energy at each node where positive factors can do it.",
+      "with which a uniform strain has its dilatation, stress and energy at each node whose bonds do not get negative factors by it.",
       {"none", "crack scaling", "energy", "volume", "moments"});
     declare(
       "Correction direction",

@@ -213,6 +213,8 @@ namespace PeriDeal
          "volume" :
        p.surface_correction == SurfaceCorrection::moments ?
          "moments" :
+       scene.general.physics == Physics::elasticity ?
+         "energy" :
        p.correction_direction == CorrectionDirection::both ?
          "energy, each direction" :
          std::string("energy, direction ") + "xyz"[static_cast<int>(p.correction_direction)]}};

@@ -268,7 +268,7 @@ namespace PeriDeal
   {
     write_points(t);
     write_fields(t);
-    compare_displacements(models, t, record->comparison);
+    compare_displacements(models, scene.domain, t, record->comparison);
   }
 
 
@@ -319,8 +319,9 @@ namespace PeriDeal
           }
         if (model->loading && !scene.time.steady)
           {
-            entry["steps"]     = model->loading->n_steps();
-            entry["time step"] = load_step();
+            entry["steps"] = model->loading->n_steps();
+            if (!scene.warms_slowly()) // then equilibria are at times of output
+              entry["time step"] = load_step();
           }
         entry["operator applications"] = model->op().n_applications();
         entry["operator form"]         = size.form;

@@ -150,6 +150,7 @@ namespace PeriDeal
 
   template <int dim>
   void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &models,
+                             const Domain<dim>                                   &domain,
                              const double                                         t,
                              json                                                &comparison)
   {
@@ -172,6 +173,8 @@ namespace PeriDeal
         interpolate_to(fem->dofs(), of_fem, pd->dofs(), interpolant);
         for (unsigned int i = 0; i < n; ++i)
           {
+            if (!domain.shows(pd->nodes()->position(i)))
+              continue;
             const double value      = interpolant.local_element(i),
                          difference = of_pd.local_element(i) - value, v = pd->nodes()->volume(i);
             squares[i] += difference * difference;
@@ -197,6 +200,7 @@ namespace PeriDeal
                                 const Point<dim> &,                                          \
                                 const double);                                               \
   template void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &, \
+                                      const Domain<dim> &,                                   \
                                       const double,                                          \
                                       json &);
   PERIDEAL_INSTANTIATE(1)

@@ -33,6 +33,7 @@ namespace PeriDeal
    */
   template <int dim>
   void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &models,
+                             const Domain<dim>                                   &domain,
                              const double                                         t,
                              nlohmann::ordered_json                              &comparison);
 } // namespace PeriDeal

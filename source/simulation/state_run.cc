@@ -132,11 +132,10 @@ namespace PeriDeal
         SymmetricTensor<2, 3> sum;
         double                volume = 0.;
         for (unsigned int i = 0; i < stress.size(); ++i)
-          if (scene.domain.shows(node_set->position(i)))
-            {
-              sum += node_set->volume(i) * stress[i];
-              volume += node_set->volume(i);
-            }
+          {
+            sum += volume_in_body(i) * stress[i];
+            volume += volume_in_body(i);
+          }
         return Utilities::MPI::sum(sum, handler.get_communicator()) /
                Utilities::MPI::sum(volume, handler.get_communicator());
       }
@@ -146,10 +145,9 @@ namespace PeriDeal
         const auto                stress = nodal_stress(states->tensors(this->displacement));
         std::vector<StressSample> samples;
         for (unsigned int i = 0; i < stress.size(); ++i)
-          if (scene.domain.shows(node_set->position(i)))
-            samples.push_back({scene.material.phases.all().at(node_set->position(i)),
-                               node_set->volume(i),
-                               stress[i]});
+          if (const double volume = volume_in_body(i); volume > 0.)
+            samples.push_back(
+              {scene.material.phases.all().at(node_set->position(i)), volume, stress[i]});
         return samples;
       }
 
@@ -174,16 +172,41 @@ namespace PeriDeal
 
       std::vector<std::string> notes() const override
       {
-        const unsigned long long n = states->n_uncorrected_nodes();
-        if (n == 0)
-          return {};
-        return {
-          "'Surface correction = moments' in section 'Peridynamics' leaves " + std::to_string(n) +
-          " of " + std::to_string(node_set->n_global()) +
-          " nodes as they are: no positive factors give their bonds the moments of a complete family, as in convex corners and beside the ends of cracks."};
+        constexpr double  tolerable = 1e-8;
+        const std::string entry     = "'Surface correction = moments' in section 'Peridynamics' ";
+        const unsigned long long n  = states->n_uncorrected_nodes();
+        std::vector<std::string> list;
+        if (n > 0)
+          list.push_back(
+            entry + "leaves " + std::to_string(n) + " of " + std::to_string(node_set->n_global()) +
+            " nodes as they are, whose bonds would get negative factors, as in convex corners and beside the ends of cracks.");
+        if (states->gap_of_moments() > tolerable)
+          list.push_back(
+            entry +
+            "has not found all factors: moments of families differ from those of a complete one by up to " +
+            number_text(states->gap_of_moments()) + " of them.");
+        return list;
       }
 
     private:
+      /** Without what lies in extra layers: half of a vertex on a side of the body. */
+      double volume_in_body(const unsigned int i) const
+      {
+        const Domain<dim> &domain = scene.domain;
+        const Point<dim>  &p      = node_set->position(i);
+        double             volume = node_set->volume(i);
+        if (!domain.has_extra_layers())
+          return volume;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double slack = 1e-9 * (domain.upper[d] - domain.lower[d]);
+            if ((domain.extra_layers[2 * d] > 0 && p[d] < domain.body_lower[d] + slack) ||
+                (domain.extra_layers[2 * d + 1] > 0 && p[d] > domain.body_upper[d] - slack))
+              volume *= 0.5;
+          }
+        return domain.shows(p) ? volume : 0.;
+      }
+
       std::vector<SymmetricTensor<2, 3>> nodal_stress(const NodalTensors<dim> &tensors) const
       {
         std::vector<SymmetricTensor<2, 3>> stress;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/mpi.h>
+
 #include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/work_of_forces.h>
 
@@ -25,7 +27,9 @@ namespace PeriDeal
 
   void WorkOfForces::begin(const Vector &unbalanced, const double t)
   {
-    op.mechanical_loads(load, t);
+    if (!begun || op.depends_on_time())
+      op.mechanical_loads(load, t);
+    begun = true;
     find_forces(unbalanced);
     last_forces.swap(forces);
   }
@@ -36,8 +40,10 @@ namespace PeriDeal
     if (op.depends_on_time())
       op.mechanical_loads(load, t);
     find_forces(unbalanced);
-    const double work = 0.5 * (forces * du + last_forces * du);
+    double work = 0.;
+    for (unsigned int i = 0; i < held.size(); ++i)
+      work += 0.5 * (forces.local_element(i) + last_forces.local_element(i)) * du.local_element(i);
     last_forces.swap(forces);
-    return work;
+    return dealii::Utilities::MPI::sum(work, du.get_mpi_communicator());
   }
 } // namespace PeriDeal

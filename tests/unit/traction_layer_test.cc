@@ -30,13 +30,13 @@ namespace
               Model::peridynamics);
     const unsigned int axis = layered.scene.boundary_conditions.traction.front().id / 2;
     const double       side = layered.scene.domain.upper[axis];
-    // Sums over columns, by their place across the side, and the first moment about the side.
-    const auto sums = [&](const Body<dim> &body, double &moment, double &n_loaded) {
+    // Sums over columns, by their place across the side.
+    const auto sums = [&](const Body<dim> &body, double &n_loaded) {
       Vector loads;
       body.op().initialize_vector(loads);
       body.op().mechanical_loads(loads, 0.);
       std::map<std::array<double, dim>, double> local;
-      moment = n_loaded = 0.;
+      n_loaded = 0.;
       for (unsigned int k = 0; k < loads.locally_owned_size(); ++k)
         {
           std::array<double, dim> key;
@@ -44,24 +44,22 @@ namespace
             key[d] = d == axis ? k % dim : body.position(k / dim)[d];
           local[key] += loads.local_element(k);
           const double distance = side - body.position(k / dim)[axis];
-          moment += k % dim == axis ? loads.local_element(k) * distance : 0.;
           n_loaded += loads.local_element(k) != 0. ? 1. : 0.;
-          if (distance > depth + 0.1)
-            {
-              EXPECT_EQ(loads.local_element(k), 0.);
-            }
+          // Too deep, or beyond the hole.
+          if (distance > depth + 0.1 ||
+              (body.scene.domain.shape == Shape::plate_with_hole && distance > 0.15 &&
+               std::abs(body.position(k / dim)[1] - 0.4) < 0.03))
+            EXPECT_EQ(loads.local_element(k), 0.);
         }
       std::map<std::array<double, dim>, double> all;
       for (const auto &part : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, local))
         for (const auto &[key, value] : part)
           all[key] += value;
-      moment   = dealii::Utilities::MPI::sum(moment, MPI_COMM_WORLD);
       n_loaded = dealii::Utilities::MPI::sum(n_loaded, MPI_COMM_WORLD);
       return all;
     };
-    double     moment, layer_moment, n_loaded, n_in_layer;
-    const auto wanted = sums(plain, moment, n_loaded),
-               found  = sums(layered, layer_moment, n_in_layer);
+    double     n_loaded, n_in_layer;
+    const auto wanted = sums(plain, n_loaded), found = sums(layered, n_in_layer);
     ASSERT_EQ(wanted.size(), found.size());
     for (const auto &[key, value] : wanted)
       EXPECT_NEAR(found.at(key), value, 1e-14);

@@ -40,7 +40,7 @@ namespace PeriDeal
    * `Surface correction` multiplies W by a bond's factor a in theta and in the forces from it, by s in those of e, and changes q (surface_factors.h).
    *
    * with d, c, b the factors dilatation, volumetric and extension of StateLaw. The prefactor of omega drops out. An application takes two passes over
-   * the bonds, the dilatations first. On a lattice, with linear kinematics and where nothing breaks, nodes without cut bonds store none (StateLattice). Other
+   * the bonds, the dilatations first. On a lattice in 2D and 3D, with linear kinematics, where nothing breaks and no surface is corrected, nodes without cut bonds store none (StateLattice). Other
    * bonds are stored at both ends: W xi, one number, a column.
    *
    * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a rotation makes none. q is that of the undeformed body. The tangent
@@ -102,8 +102,8 @@ namespace PeriDeal
     const Families<dim> &families() const;
 
     /**
-     * K of multiply() as a matrix: with full kinematics the tangent of the last linearize(). Rows reach two horizons, so that it takes (2m + 1)^dim times
-     * the memory of a spring: for factorisations, eigenvalues and other programs. Collective.
+     * K of multiply() as a matrix: with full kinematics the tangent of the last linearize(). Rows reach two horizons, some (4m)^dim nodes (bond-based:
+     * one, (2m)^dim): for factorisations, eigenvalues and other programs. Collective.
      */
     void matrix(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
@@ -112,6 +112,9 @@ namespace PeriDeal
 
     /** Of all processes: those that `Surface correction = moments` leaves as they are. */
     unsigned long long n_uncorrected_nodes() const;
+
+    /** Of `Surface correction = moments`: SurfaceFactors::gap. */
+    double gap_of_moments() const;
 
     /** Of the owned nodes and their ghosts; empty where bonds do not break. */
     const std::vector<double> &critical_stretches() const;
@@ -236,6 +239,7 @@ namespace PeriDeal
     double                          n_bonds = 0., released = 0.;
     unsigned long long              n_broken        = 0;
     unsigned long long              n_not_corrected = 0;
+    double                          moments_gap     = 0.;
     std::vector<TractionShare<dim>> tractions;
     std::vector<double> critical; // stretch, of owned nodes and ghosts; empty: nothing breaks
     std::vector<std::pair<std::size_t, double>>

@@ -28,8 +28,8 @@ namespace PeriDeal
   /**
    * The shares of all sides in `Traction`. Without a layer those of the nodes on the side. With one the area of each column of nodes behind the side, that of its nodes on
    * the side, is distributed over the nodes of the column by the part of their volume within the depth of the layer. So each column carries
-   * what it carries without a layer, to round-off, whatever the depth, and moments about axes in the side stay; normalised for the side as a whole they would not where
-   * columns end at a hole. The traction is that at the column's node on the side. Collective.
+   * what it carries without a layer, to round-off, whatever the depth, and moments of normal tractions about axes in the side stay; normalised for the side as a whole they would not where
+   * columns end at a hole, as they do here, and nothing beyond it is pulled. The traction is that at the column's node on the side. Collective.
    */
   template <int dim>
   std::vector<TractionShare<dim>> traction_shares(const Nodes<dim>              &nodes,

@@ -36,6 +36,7 @@ namespace PeriDeal
 
     ElasticOperator        &op;
     const std::vector<bool> held; // prescribed unknowns
+    bool                    begun = false;
     Vector                  load, forces, last_forces;
   };
 } // namespace PeriDeal
