@@ -93,6 +93,7 @@ def certificate_rows(run):
                         ("Patch error, quadratic field", ("patch error", "quadratic")),
                         ("Patch error, cubic field", ("patch error", "cubic")),
                         ("Asymmetry of the matrix", ("asymmetry",)),
+                        ("Unbalanced forces", ("unbalanced forces",)),
                         ("Lowest eigenvalue", ("lowest eigenvalue",)),
                         ("Lowest eigenvalue of a cell", ("lowest eigenvalue of a cell",)),
                         ("Bonds of full peridynamics", ("full peridynamics", "bonds")),

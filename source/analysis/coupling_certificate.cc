@@ -2,20 +2,17 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/lac/solver_cg.h>
-#include <deal.II/lac/solver_gmres.h>
-#include <deal.II/lac/trilinos_precondition.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <perideal/analysis/coupling_certificate.h>
-#include <perideal/base/matrix_rows.h>
+#include <perideal/operators/spectrum.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <sstream>
 #include <utility>
+
+#include "held_system.h"
 
 namespace PeriDeal
 {
@@ -23,133 +20,59 @@ namespace PeriDeal
 
   namespace
   {
-    constexpr double       tolerance       = 1e-4; // of solutions that are errors
-    constexpr unsigned int most_iterations = 500;
-    constexpr unsigned int n_inverse_steps = 4;
-
-
-    /** K of the intact body with its whole surface held, and how to invert it. */
+    /** Smooth fields of all coordinates, of a size near one. */
     template <int dim>
-    class HeldSystem
+    class PatchFields
     {
     public:
-      HeldSystem(const FEMOperator<dim> &op, const bool symmetric)
-        : op(op)
-        , symmetric(symmetric)
+      /** Collective. */
+      explicit PatchFields(const Nodes<dim> &nodes)
       {
-        op.assemble_intact(matrix, true);
-        op.assemble_intact(elements, false);
-        op.initialize_vector(held);
-        for (const BoundaryShare &share : op.bonds().families().nodes().boundary_shares())
-          held.local_element(share.node) = 1.;
-        op.set_hanging(held, 1.);
-        inner.copy_from(matrix);
-        const Vector known = with_columns_as_ghosts(held, matrix);
-        for_each_entry(inner, [&](const unsigned int i, const auto column, double &value) {
-          const bool row_held = held.local_element(i) > 0.;
-          if (column == held.get_partitioner()->local_to_global(i))
-            value = row_held ? 1. : value;
-          else if (row_held || known(column) > 0.)
-            value = 0.;
-        });
-        TrilinosWrappers::PreconditionAMG::AdditionalData options;
-        options.elliptic              = symmetric;
-        options.aggregation_threshold = 0.02;
-        preconditioner.initialize(inner, options);
-      }
-
-      Vector vector() const
-      {
-        Vector v;
-        op.initialize_vector(v);
-        return v;
-      }
-
-      void clear_held(Vector &v) const
-      {
-        for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
-          if (held.local_element(i) > 0.)
-            v.local_element(i) = 0.;
-      }
-
-      /** x = K^{-1} b to a few digits. */
-      void solve(Vector &x, const Vector &b) const
-      {
-        x                 = 0.;
-        const double size = b.l2_norm();
-        if (size == 0.)
-          return;
-        SolverControl control(most_iterations, tolerance * size);
-        try
+        Point<dim> low, high;
+        for (unsigned int d = 0; d < dim; ++d)
           {
-            if (symmetric)
-              SolverCG<Vector>(control).solve(inner, x, b, preconditioner);
-            else
-              SolverGMRES<Vector>(control).solve(inner, x, b, preconditioner);
+            low[d]  = std::numeric_limits<double>::max();
+            high[d] = -std::numeric_limits<double>::max();
           }
-        catch (const SolverControl::NoConvergence &)
-          {} // as good as it gets: what is indefinite shows in the eigenvalue
-      }
-
-      double patch_error(const std::function<double(const Point<dim> &)> &field) const
-      {
-        const Nodes<dim> &nodes = op.bonds().families().nodes();
-        Vector            u = vector(), defect = vector(), error = vector();
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-          u.local_element(i) = field(nodes.position(i));
-        matrix.vmult(defect, u);
-        elements.vmult(error, u);
-        defect -= error;
-        clear_held(defect);
-        solve(error, defect);
-        return error.linfty_norm() / u.linfty_norm();
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              low[d]  = std::min(low[d], nodes.position(i)[d]);
+              high[d] = std::max(high[d], nodes.position(i)[d]);
+            }
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            low[d]    = Utilities::MPI::min(low[d], nodes.communicator());
+            high[d]   = Utilities::MPI::max(high[d], nodes.communicator());
+            middle[d] = 0.5 * (low[d] + high[d]);
+          }
+        size = low.distance(high);
       }
 
-      double asymmetry() const
+      /** Of degree 1, 2 or 3, another one for each component. */
+      double value(const Point<dim>  &p,
+                   const unsigned int degree,
+                   const unsigned int component) const
       {
-        Vector x = vector(), ahead = vector(), back = vector();
-        double largest = 0.;
-        for (unsigned int trial = 1; trial <= 3; ++trial)
-          {
-            x = op.noise();
-            for (double &value : x)
-              value = std::sin(trial * 10. * value);
-            matrix.vmult(ahead, x);
-            matrix.Tvmult(back, x);
-            const double size = std::max(ahead.linfty_norm(), back.linfty_norm());
-            back -= ahead;
-            largest = std::max(largest, back.linfty_norm() / size);
-          }
-        return largest;
-      }
-
-      /** Inverse iterations, with the Rayleigh quotient at the end. */
-      double lowest_eigenvalue() const
-      {
-        const Vector &capacity = op.lumped_capacity();
-        Vector        x = vector(), y = vector();
-        x = op.noise();
-        clear_held(x);
-        for (unsigned int k = 0; k < n_inverse_steps; ++k)
-          {
-            y = x;
-            y.scale(capacity);
-            solve(x, y);
-            x /= x.l2_norm();
-          }
-        inner.vmult(y, x);
-        const double energy = x * y;
-        y                   = x;
-        y.scale(capacity);
-        return energy / (x * y);
+        const double a = along(p, component), b = along(p, component + 1);
+        return degree == 1 ? a : degree == 2 ? a * b + a * a : a * a * b + b * b * b;
       }
 
     private:
-      const FEMOperator<dim>           &op;
-      const bool                        symmetric;
-      TrilinosWrappers::SparseMatrix    matrix, elements, inner;
-      TrilinosWrappers::PreconditionAMG preconditioner;
-      Vector                            held;
+      /** From -1/2 to 1/2 along the body, in a direction that is not that of any side. */
+      double along(const Point<dim> &p, const unsigned int k) const
+      {
+        constexpr double directions[3][3] = {{0.8, 0.5, -0.33},
+                                             {-0.4, 0.7, 0.59},
+                                             {0.3, -0.6, 0.74}};
+        double           sum              = 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          sum += directions[k % 3][d] * (p[d] - middle[d]) / size;
+        return sum;
+      }
+
+      Point<dim> middle;
+      double     size;
     };
 
 
@@ -193,65 +116,99 @@ namespace PeriDeal
       text << "the lowest eigenvalue is " << lowest_eigenvalue << ", below 0";
     else if (lowest_remainder < -1e-12)
       text << "what is left of a cell has the eigenvalue " << lowest_remainder
-           << " times its conductivity, below 0";
+           << " times its conductivity, or its shear modulus, below 0";
+    else if (unbalanced && *unbalanced > 1e-10)
+      text << "forces do not balance: what is left of their sum or moment is up to " << *unbalanced
+           << " of the sum of their sizes";
     return text.str();
   }
+
+
+  namespace
+  {
+    /** What is asked of any body; its K with bonds and without are those of the intact one, of n_components unknowns for each node. */
+    template <int dim, typename OperatorType>
+    CouplingCertificate examine(const OperatorType &op,
+                                const Vector       &held,
+                                const Vector       &noise,
+                                const bool          symmetric,
+                                const unsigned int  n_components)
+    {
+      CouplingCertificate            result;
+      const Families<dim>           &families = op.bonds().families();
+      const Nodes<dim>              &nodes    = families.nodes();
+      const PatchFields<dim>         fields(nodes);
+      TrilinosWrappers::SparseMatrix matrix, elements;
+      op.assemble_intact(matrix, true);
+      op.assemble_intact(elements, false);
+      const HeldSystem system(matrix, elements, held, symmetric, n_components);
+      const auto       patch_error = [&](const unsigned int degree) {
+        Vector u(held.get_partitioner());
+        for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+          for (unsigned int c = 0; c < n_components; ++c)
+            u.local_element(n_components * i + c) = fields.value(nodes.position(i), degree, c);
+        return system.patch_error(u);
+      };
+      result.linear                 = patch_error(1);
+      result.quadratic              = patch_error(2);
+      result.cubic                  = patch_error(3);
+      result.asymmetry              = system.asymmetry(noise);
+      result.lowest_eigenvalue      = system.lowest_eigenvalue(noise, op.lumped_capacity());
+      result.lowest_remainder       = symmetric ? op.lowest_remainder() :
+                                                  std::numeric_limits<double>::infinity();
+      result.zone_share             = op.bonds().zone_share();
+      const auto [n_nodes, n_bonds] = count_all_bonds(families);
+      result.n_bonds_of_full        = n_bonds;
+      result.n_nonzeros_of_full     = 2 * n_bonds + n_nodes;
+      if (n_components > 1)
+        {
+          Vector y(noise);
+          matrix.vmult(y, noise);
+          double largest = 0.;
+          for (const Vector &motion : op.near_null_space())
+            largest =
+              std::max(largest, std::abs(motion * y) / (motion.linfty_norm() * y.l1_norm()));
+          result.unbalanced = largest;
+        }
+      return result;
+    }
+  } // namespace
 
 
   template <int dim>
   CouplingCertificate examine_coupling(const FEMOperator<dim> &op, const bool symmetric)
   {
-    CouplingCertificate  result;
-    const Families<dim> &families = op.bonds().families();
-    const Nodes<dim>    &nodes    = families.nodes();
-    Point<dim>           low, high;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        low[d]  = std::numeric_limits<double>::max();
-        high[d] = -std::numeric_limits<double>::max();
-      }
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          low[d]  = std::min(low[d], nodes.position(i)[d]);
-          high[d] = std::max(high[d], nodes.position(i)[d]);
-        }
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        low[d]  = Utilities::MPI::min(low[d], nodes.communicator());
-        high[d] = Utilities::MPI::max(high[d], nodes.communicator());
-      }
-    const double size = low.distance(high);
-    // Coordinates from -1/2 to 1/2 along the body, in a direction that is not that of any side.
-    const auto along = [&](const Point<dim> &p, const std::array<double, 3> &direction) {
-      double sum = 0.;
-      for (unsigned int d = 0; d < dim; ++d)
-        sum += direction[d] * (p[d] - 0.5 * (low[d] + high[d])) / size;
-      return sum;
-    };
-    const std::array<double, 3> first{{0.8, 0.5, -0.33}}, second{{-0.4, 0.7, 0.59}};
-    const HeldSystem<dim>       system(op, symmetric);
-    result.linear    = system.patch_error([&](const Point<dim> &p) { return along(p, first); });
-    result.quadratic = system.patch_error([&](const Point<dim> &p) {
-      return along(p, first) * along(p, second) + std::pow(along(p, first), 2);
-    });
-    result.cubic     = system.patch_error([&](const Point<dim> &p) {
-      return std::pow(along(p, first), 2) * along(p, second) + std::pow(along(p, second), 3);
-    });
-    result.asymmetry = system.asymmetry();
-    result.lowest_eigenvalue      = system.lowest_eigenvalue();
-    result.lowest_remainder       = op.lowest_remainder();
-    result.zone_share             = op.bonds().zone_share();
-    result.kept_share             = op.bonds().kept_share();
-    const auto [n_nodes, n_bonds] = count_all_bonds(families);
-    result.n_bonds_of_full        = n_bonds;
-    result.n_nonzeros_of_full     = 2 * n_bonds + n_nodes;
+    Vector held;
+    op.initialize_vector(held);
+    for (const BoundaryShare &share : op.bonds().families().nodes().boundary_shares())
+      held.local_element(share.node) = 1.;
+    op.set_hanging(held, 1.);
+    CouplingCertificate result = examine<dim>(op, held, op.noise(), symmetric, 1);
+    result.kept_share          = op.bonds().kept_share();
     return result;
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim) \
-  template CouplingCertificate examine_coupling(const FEMOperator<dim> &, const bool);
+  template <int dim>
+  CouplingCertificate examine_coupling(const ElasticElements<dim> &op)
+  {
+    Vector held, noise;
+    op.initialize_vector(held);
+    op.initialize_vector(noise);
+    for (const BoundaryShare &share : op.bonds().families().nodes().boundary_shares())
+      for (unsigned int d = 0; d < dim; ++d)
+        held.local_element(dim * share.node + d) = 1.;
+    for (unsigned int i = 0; i < noise.locally_owned_size(); ++i)
+      noise.local_element(i) = position_noise(op.position(i / dim)) * (1. + i % dim);
+    CouplingCertificate result = examine<dim>(op, held, noise, op.symmetric(), dim);
+    result.n_nonzeros_of_full  = 0; // depends on whether a dilatation joins bonds
+    return result;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                      \
+  template CouplingCertificate examine_coupling(const FEMOperator<dim> &, const bool); \
+  template CouplingCertificate examine_coupling(const ElasticElements<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -83,7 +83,10 @@ namespace PeriDeal
             pattern.add_entries(row, data.unknowns.begin(), data.unknowns.end());
         }
     if (coupling)
-      add_bond_pattern(pattern);
+      {
+        add_bond_pattern(pattern);
+        add_family_pattern(pattern);
+      }
     pattern.compress();
     stiffness.reinit(pattern);
     if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling && coupling &&
@@ -104,6 +107,7 @@ namespace PeriDeal
     if (coupling)
       {
         add_bonds(stiffness, false);
+        add_families(stiffness, false);
         count_bonds();
       }
     finish_thermal(energy);
@@ -134,7 +138,10 @@ namespace PeriDeal
   {
     thermal_energy = Utilities::MPI::sum(energy, dofs.get_communicator());
     if (coupling)
-      add_thermal_bonds();
+      {
+        add_thermal_bonds();
+        add_thermal_families();
+      }
     thermal_loads.compress(VectorOperation::add);
   }
 

@@ -57,6 +57,22 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool ElasticElements<dim>::any_thermal() const
+  {
+    const Expression &change = scene.elasticity.temperature_change;
+    return this->temperature_change().size() > 0 || !change.is_constant() ||
+           change.value(Point<dim>()) != 0.;
+  }
+
+
+  template <int dim>
+  double ElasticElements<dim>::thermal_strain_at(const unsigned int node) const
+  {
+    return thermal_strain(positions[node], temperature_change_at(node));
+  }
+
+
+  template <int dim>
   double ElasticElements<dim>::thermal_strain(const Point<dim> &p,
                                               const double      temperature_change) const
   {
@@ -174,9 +190,7 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::add_thermal_bonds()
   {
-    const Expression &change = scene.elasticity.temperature_change;
-    if (this->temperature_change().size() == 0 && change.is_constant() &&
-        change.value(Point<dim>()) == 0.)
+    if (!any_thermal())
       return;
     std::vector<typename ElasticCoupling<dim>::Bond> bonds;
     double                                           energy = 0.;
@@ -187,34 +201,16 @@ namespace PeriDeal
           {
             if (bond.cut)
               continue;
-            const double         factor    = bond_factor(i, bond.neighbor);
-            const Tensor<1, dim> xi        = positions[bond.neighbor] - positions[i];
-            const auto           strain_at = [&](const unsigned int node) {
-              return thermal_strain(positions[node], temperature_change_at(node));
-            };
-            const double         strain = 0.5 * (strain_at(i) + strain_at(bond.neighbor));
-            const Tensor<1, dim> force  = factor * strain * (bond.block * xi);
+            const double         factor = bond_factor(i, bond.neighbor);
+            const Tensor<1, dim> xi     = positions[bond.neighbor] - positions[i];
+            const double strain = 0.5 * (thermal_strain_at(i) + thermal_strain_at(bond.neighbor));
+            const Tensor<1, dim> force = factor * strain * (bond.block * xi);
             for (unsigned int d = 0; d < dim; ++d)
               thermal_loads.local_element(dim * i + d) -= force[d];
             energy += 0.25 * strain * (force * xi); // each bond is seen from both of its ends
           }
       }
     thermal_energy += Utilities::MPI::sum(energy, dofs.get_communicator());
-  }
-
-
-  template <int dim>
-  void ElasticElements<dim>::count_bonds()
-  {
-    std::vector<typename ElasticCoupling<dim>::Bond> bonds;
-    unsigned long long                               n_ends = 0;
-    for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
-      {
-        coupling->bonds_of(i, bonds);
-        n_ends +=
-          std::count_if(bonds.begin(), bonds.end(), [](const auto &bond) { return !bond.cut; });
-      }
-    n_bonds = Utilities::MPI::sum(n_ends, dofs.get_communicator()) / 2;
   }
 
 
@@ -296,7 +292,10 @@ namespace PeriDeal
       data.add_stiffness_to(matrix);
     });
     if (with_bonds && coupling)
-      add_bonds(matrix, true);
+      {
+        add_bonds(matrix, true);
+        add_families(matrix, true);
+      }
     matrix.compress(VectorOperation::add);
   }
 
@@ -326,8 +325,9 @@ namespace PeriDeal
   template void ElasticElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &, const bool)      \
     const;                                                                                         \
   template double ElasticElements<dim>::thermal_strain(const Point<dim> &, const double) const;    \
+  template double ElasticElements<dim>::thermal_strain_at(const unsigned int) const;               \
+  template bool   ElasticElements<dim>::any_thermal() const;                                       \
   template void   ElasticElements<dim>::add_thermal_bonds();                                       \
-  template void   ElasticElements<dim>::count_bonds();                                             \
   template void   ElasticElements<dim>::find_crack_factors();                                      \
   template void   ElasticElements<dim>::throw_if_isolated() const;                                 \
   template double ElasticElements<dim>::lowest_remainder() const;                                  \

@@ -5,6 +5,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/operators/elastic_exchange.h>
+#include <perideal/operators/state_coupling.h>
 
 namespace PeriDeal
 {
@@ -21,6 +22,10 @@ namespace PeriDeal
   {
     Zone<dim> zone(scene.coupling, scene.horizon());
     zone.stay_in({{scene.domain.lower, scene.domain.upper}});
+    if (scene.coupling.scheme == CouplingScheme::splice)
+      return std::make_unique<StateSplice<dim>>(nodes, scene, zone);
+    if (scene.coupling.scheme == CouplingScheme::blending)
+      return std::make_unique<StateBlending<dim>>(nodes, scene, zone);
     return std::make_unique<ElasticExchange<dim>>(nodes, scene, zone);
   }
 

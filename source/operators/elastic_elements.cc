@@ -283,6 +283,12 @@ namespace PeriDeal
   }
 
   template <int dim>
+  bool ElasticElements<dim>::symmetric() const
+  {
+    return !coupling || coupling->symmetric();
+  }
+
+  template <int dim>
   unsigned int ElasticElements<dim>::n_components() const
   {
     return dim;

@@ -26,20 +26,11 @@ namespace PeriDeal
     double n_in_zone = 0.;
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
-        weights.push_back(weight_of(this->zone, nodes.position(i)));
-        weights_at_end.push_back(weight_of(at_end, nodes.position(i)));
+        weights.push_back(this->zone.weight(nodes.position(i), overlap));
+        weights_at_end.push_back(at_end.weight(nodes.position(i), overlap));
         n_in_zone += i < nodes.n_owned() && weights_at_end[i] > 0.;
       }
     throw_if_zone_empty(n_in_zone, nodes.communicator());
-  }
-
-
-  template <int dim>
-  double WeightedCoupling<dim>::weight_of(const Zone<dim> &in, const Point<dim> &p) const
-  {
-    if (overlap == 0.)
-      return in.contains(p) ? 1. : 0.;
-    return 1. - std::min(1., in.distance(p, overlap) / overlap);
   }
 
 
@@ -97,7 +88,7 @@ namespace PeriDeal
         if (std::any_of(changes.begin(),
                         changes.end(),
                         [&](const auto &box) { return box.point_inside(p); }) &&
-            weight_of(then, p) != weights[i])
+            then.weight(p, overlap) != weights[i])
           boxes.push_back({{p, p}});
       }
     return boxes;
@@ -111,7 +102,7 @@ namespace PeriDeal
     zone.set_cracks(bonds.crack_history().pieces(time));
     if (zone.follows_cracks())
       for (unsigned int i = 0; i < weights.size(); ++i)
-        weights[i] = weight_of(zone, bonds.nodes().position(i));
+        weights[i] = zone.weight(bonds.nodes().position(i), overlap);
   }
 
 

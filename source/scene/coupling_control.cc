@@ -16,7 +16,7 @@ namespace PeriDeal
       "",
       "How the model `coupled` joins peridynamics in the zone with finite elements elsewhere: each bond in exchange for what "
       "the elements conduct along it (symmetric, exact for linear fields); rows of either model side by side (not symmetric); or "
-      "both energies, weighted over the overlap.",
+      "both energies, weighted over the overlap. With elasticity the bonds of `exchange` carry what pairs of nodes can, those of the others are as `Model` in section `Elasticity` says.",
       {"exchange", "splice", "blending"});
     declare(
       "Zone",
@@ -44,7 +44,7 @@ namespace PeriDeal
       EntryType::boolean,
       "true",
       "",
-      "Examine the coupling before the run: linear, quadratic and cubic patch tests, symmetry, lowest eigenvalue. Costs about as "
+      "Examine the coupling before the run: linear, quadratic and cubic patch tests, symmetry, lowest eigenvalue, with elasticity the balance of forces and moments. Costs about as "
       "much as three steady solutions.");
     parse();
   }
@@ -73,6 +73,12 @@ namespace PeriDeal
   std::string CouplingControl::zone_text() const
   {
     return text("Zone");
+  }
+
+
+  std::string CouplingControl::scheme_text() const
+  {
+    return choice_name("Scheme");
   }
 
 

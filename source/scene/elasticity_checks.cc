@@ -129,6 +129,19 @@ namespace PeriDeal
         entry_error(
           scene.elasticity.where("Kinematics"),
           "'full' is not for 'Models = coupled', whose coefficients are those of the undeformed body.");
+      if (scene.coupling.scheme == CouplingScheme::exchange)
+        return;
+      const std::string scheme =
+        "'Scheme = " + scene.coupling.scheme_text() + "' in section 'Coupling'";
+      if (scene.peridynamics.surface_correction != SurfaceCorrection::none)
+        entry_error(scene.peridynamics.where("Surface correction"),
+                    "is for 'Scheme = exchange', not for " + scheme + "; use 'none'.");
+      if (scene.coupling.scheme == CouplingScheme::splice &&
+          scene.elasticity.solver != ElasticSolver::linear)
+        entry_error(scene.elasticity.where("Solver"),
+                    "'" + scene.elasticity.solver_name() +
+                      "' needs forces that have an energy, which those of " + scheme +
+                      " have not. Use 'linear', or 'Scheme = blending'.");
     }
 
 

@@ -184,6 +184,14 @@ namespace PeriDeal
   }
 
   template <int dim>
+  double Zone<dim>::weight(const Point<dim> &p, const double width_outside) const
+  {
+    if (width_outside == 0.)
+      return contains(p) ? 1. : 0.;
+    return 1. - std::min(1., distance(p, width_outside) / width_outside);
+  }
+
+  template <int dim>
   bool Zone<dim>::is_everywhere() const
   {
     return kind == ZoneKind::everywhere;

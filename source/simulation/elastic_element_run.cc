@@ -5,7 +5,11 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/vector_operation.h>
 
+#include <perideal/analysis/coupling_certificate.h>
+#include <perideal/base/user_error.h>
 #include <perideal/operators/elastic_elements.h>
+
+#include <optional>
 
 #include "elastic_fields.h"
 #include "model_runs.h"
@@ -43,6 +47,8 @@ namespace PeriDeal
             coupling = make_elastic_coupling(*node_set, scene);
           }
         elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
+        if (model == Model::coupled && scene.coupling.certificate)
+          examine();
       }
 
       std::string name() const override
@@ -197,7 +203,11 @@ namespace PeriDeal
           {"elements", "Q" + std::to_string(degree())}};
         if (model == Model::coupled)
           {
-            list.emplace_back("coupling", "exchange");
+            list.emplace_back("coupling", scene.coupling.scheme_text());
+            if (scene.coupling.scheme != CouplingScheme::exchange)
+              list.emplace_back("bonds",
+                                scene.elasticity.model == ElasticModel::bond_based ? "bond-based" :
+                                                                                     "state-based");
             list.emplace_back("zone", scene.coupling.zone_text());
             list.emplace_back("share of the body in the zone",
                               to_text(100. * elements->bonds().zone_share()) + " %");
@@ -213,7 +223,31 @@ namespace PeriDeal
         return list;
       }
 
+      std::vector<std::string> notes() const override
+      {
+        if (!certificate || certificate->fault().empty())
+          return {};
+        return {"'Scheme = " + scene.coupling.scheme_text() +
+                "' in section 'Coupling': " + certificate->fault() + "."};
+      }
+
+      const CouplingCertificate *examined() const override
+      {
+        return certificate ? &*certificate : nullptr;
+      }
+
     private:
+      /** Exchange that is not exact must not run; of the others the user is told how wrong they are. */
+      void examine()
+      {
+        Timings::Scope scope(this->timings, "certificate");
+        certificate             = examine_coupling(*elements);
+        const std::string fault = certificate->fault();
+        AssertThrow(fault.empty() || scene.coupling.scheme != CouplingScheme::exchange,
+                    UserError("The coupling of section 'Coupling' is not sound: " + fault +
+                              ". Choose another 'Zone'."));
+      }
+
       unsigned int degree() const
       {
         return model == Model::coupled ? 1 : scene.finite_elements.degree;
@@ -314,6 +348,7 @@ namespace PeriDeal
       DoFHandler<dim>                       handler;
       std::unique_ptr<Nodes<dim>>           node_set; // of the coupled model
       std::unique_ptr<ElasticElements<dim>> elements;
+      std::optional<CouplingCertificate>    certificate;
     };
   } // namespace
 

@@ -61,10 +61,6 @@ namespace PeriDeal
         "Leave them out, or use 'linear'.");
       require(scene.cracks.tips.empty(),
               "'Growth' in section 'Cracks' cannot be used with 'Physics = elasticity' yet.");
-      require(
-        std::find(models.begin(), models.end(), Model::coupled) == models.end() ||
-          scene.coupling.scheme == CouplingScheme::exchange,
-        "'Scheme' in section 'Coupling' has to be 'exchange' with 'Physics = elasticity' so far.");
       require(scene.domain.coarsening == 0,
               "'Coarsening' in section 'Domain' cannot be used with 'Physics = elasticity' yet.");
       require(scene.reference.solution.empty(),
@@ -79,8 +75,13 @@ namespace PeriDeal
                                 std::vector<std::string> &notes)
     {
       const auto &models = scene.general.models;
+      const auto  runs   = [&](const Model model) {
+        return std::find(models.begin(), models.end(), model) != models.end();
+      };
+      const bool in_zone = runs(Model::coupled) &&
+                           scene.coupling.scheme != CouplingScheme::exchange;
       if (dim == 1 || scene.elasticity.model != ElasticModel::bond_based ||
-          std::find(models.begin(), models.end(), Model::peridynamics) == models.end())
+          !(runs(Model::peridynamics) || in_zone))
         return;
       const double own    = bond_based_poisson(dim, scene.elasticity.plane);
       double       lowest = 1., highest = -1.;
@@ -133,6 +134,8 @@ namespace PeriDeal
           record->notes.push_back(note);
         const double memory = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
         progress.line(line + ", " + readable_bytes(memory));
+        if (const CouplingCertificate *certificate = model.examined())
+          progress.line(certificate_line(*certificate));
       }
     build_heat();
   }
@@ -328,6 +331,8 @@ namespace PeriDeal
         entry["settings"]              = json::object();
         for (const auto &[name, value] : model->settings())
           entry["settings"][name] = value;
+        if (const CouplingCertificate *certificate = model->examined())
+          entry["certificate"] = describe_certificate(*certificate);
         entry["wall time"] = model->timings.all();
         entry["memory"]    = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
         Utilities::System::MemoryStats stats;

@@ -222,8 +222,8 @@ namespace PeriDeal
             for (const auto &setting : bond_settings(scene, fem->bonds().families()))
               if (setting.first != "boundary treatment" || model == Model::peridynamics)
                 list.push_back(setting);
-            static const char *const schemes[] = {"exchange", "splice", "blending"};
-            list.emplace_back("coupling", schemes[static_cast<int>(scheme())]);
+            list.emplace_back("coupling",
+                              model == Model::coupled ? scene.coupling.scheme_text() : "exchange");
             list.emplace_back("zone",
                               model == Model::coupled ? scene.coupling.zone_text() : "everywhere");
             list.emplace_back("share of the body in the zone",

@@ -173,16 +173,8 @@ namespace PeriDeal
         progress.line("  form: " + value);
       else if (name == "calibration" && value.find("because") != std::string::npos)
         progress.line("  calibration: " + value);
-    if (const CouplingCertificate *c = model.examined())
-      {
-        std::ostringstream text;
-        text.precision(3);
-        text << "  coupling: " << 100. * c->zone_share << " % of the body; patch errors ";
-        text.precision(2);
-        text << c->linear << " (linear), " << c->quadratic << " (quadratic), " << c->cubic
-             << " (cubic)";
-        progress.line(text.str());
-      }
+    if (const CouplingCertificate *certificate = model.examined())
+      progress.line(certificate_line(*certificate));
   }
 
 

@@ -4,7 +4,6 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
-#include <perideal/analysis/coupling_certificate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/simulation/simulation.h>
 
@@ -49,22 +48,6 @@ namespace PeriDeal
       for (const auto side : conditions.symmetry)
         add(name_of_side(side, scene.domain.shape != Shape::mesh_file), "symmetry");
       return sides;
-    }
-
-
-    json describe_certificate(const CouplingCertificate &c)
-    {
-      json entry;
-      entry["patch error"] = {{"linear", c.linear}, {"quadratic", c.quadratic}, {"cubic", c.cubic}};
-      entry["asymmetry"]   = c.asymmetry;
-      entry["lowest eigenvalue"] = c.lowest_eigenvalue;
-      if (std::isfinite(c.lowest_remainder))
-        entry["lowest eigenvalue of a cell"] = c.lowest_remainder;
-      entry["share of the body"]             = c.zone_share;
-      entry["share of the conductance kept"] = c.kept_share;
-      entry["full peridynamics"]             = {{"bonds", c.n_bonds_of_full},
-                                                {"nonzeros", c.n_nonzeros_of_full}};
-      return entry;
     }
 
 

@@ -8,6 +8,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/output/result_files.h>
 
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -140,6 +141,37 @@ namespace PeriDeal
       write_files({{"image_as_read.png", encode_png(scene.domain.image_of_body().picture())}},
                   scene.general.output_directory,
                   communicator);
+  }
+
+
+  json describe_certificate(const CouplingCertificate &c)
+  {
+    json entry;
+    entry["patch error"] = {{"linear", c.linear}, {"quadratic", c.quadratic}, {"cubic", c.cubic}};
+    entry["asymmetry"]   = c.asymmetry;
+    if (c.unbalanced)
+      entry["unbalanced forces"] = *c.unbalanced;
+    entry["lowest eigenvalue"] = c.lowest_eigenvalue;
+    if (std::isfinite(c.lowest_remainder))
+      entry["lowest eigenvalue of a cell"] = c.lowest_remainder;
+    entry["share of the body"] = c.zone_share;
+    if (c.kept_share)
+      entry["share of the conductance kept"] = *c.kept_share;
+    entry["full peridynamics"] = {{"bonds", c.n_bonds_of_full}};
+    if (c.n_nonzeros_of_full > 0)
+      entry["full peridynamics"]["nonzeros"] = c.n_nonzeros_of_full;
+    return entry;
+  }
+
+
+  std::string certificate_line(const CouplingCertificate &c)
+  {
+    std::ostringstream text;
+    text.precision(3);
+    text << "  coupling: " << 100. * c.zone_share << " % of the body; patch errors ";
+    text.precision(2);
+    text << c.linear << " (linear), " << c.quadratic << " (quadratic), " << c.cubic << " (cubic)";
+    return text.str();
   }
 
 

@@ -5,6 +5,7 @@
 
 #include <deal.II/grid/tria.h>
 
+#include <perideal/analysis/coupling_certificate.h>
 #include <perideal/scene/scene.h>
 
 #include <nlohmann/json.hpp>
@@ -21,6 +22,10 @@ namespace PeriDeal
   /** With `Shape = image` write image_as_read.png into the output directory: one pixel per cell in the colours of the phases. Collective. */
   template <int dim>
   void write_image_as_read(const Scene<dim> &scene, const MPI_Comm communicator);
+
+  /** Of a coupled model, for summary.json and, in a line, for the progress. Not collective. */
+  nlohmann::ordered_json describe_certificate(const CouplingCertificate &certificate);
+  std::string            certificate_line(const CouplingCertificate &certificate);
 
   /** Write files of these names into a directory, on rank 0. Throws UserError everywhere if one cannot be written. Collective. */
   void write_files(const std::vector<std::pair<std::string, std::string>> &files,

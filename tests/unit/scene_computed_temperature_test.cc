@@ -3,9 +3,7 @@
 
 // Elastic scenes whose temperature is computed: the heat problem in them, and what is said about mistakes.
 
-#include <perideal/scene/scene_lines.h>
-
-#include "scene_test_tools.h"
+#include "elastic_scene_tools.h"
 
 namespace PeriDeal
 {
@@ -14,51 +12,7 @@ namespace PeriDeal
 
   namespace
   {
-    using Overrides = std::vector<std::string>;
-
     const std::string m = "Material/", b = "Boundary conditions/", e = "Elasticity/";
-
-
-    /** A body held at its left side. */
-    template <int dim>
-    SceneText elastic_scene(const Overrides &overrides)
-    {
-      const std::string zeros = dim == 1 ? "0" : dim == 2 ? "0, 0" : "0, 0, 0";
-      const std::string text  = "set Dimension = " + std::to_string(dim) + R"(
-set Physics = elasticity
-subsection Material
-  set Young modulus = 200
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Displacement = left: )" + zeros +
-                               "\nend\n";
-      return {"a.prm", apply_overrides(text, "a.prm", overrides)};
-    }
-
-
-    /** What is wrong with such a body when some entries are changed. */
-    template <int dim = 2>
-    std::string elastic_fault(const Overrides &overrides)
-    {
-      return message_of([&] {
-        Scene<dim> scene;
-        parse_scene<dim>(elastic_scene<dim>(overrides), scene);
-      });
-    }
-
-
-    /** The message names the entry, given as Section/Entry, and has the other words. */
-    void expect(const std::string              &message,
-                const std::string              &entry,
-                const std::vector<std::string> &parts = {})
-    {
-      const auto slash = entry.rfind('/');
-      expect_parts(
-        message,
-        {"'" + entry.substr(slash + 1) + "' in section '" + entry.substr(0, slash) + "'"});
-      expect_parts(message, parts);
-    }
   } // namespace
 
 

@@ -4,9 +4,8 @@
 // Scenes of elasticity: what their entries give, and what is said about mistakes.
 
 #include <perideal/scene/rigid_motions.h>
-#include <perideal/scene/scene_lines.h>
 
-#include "scene_test_tools.h"
+#include "elastic_scene_tools.h"
 
 namespace PeriDeal
 {
@@ -15,52 +14,8 @@ namespace PeriDeal
 
   namespace
   {
-    using Overrides = std::vector<std::string>;
-
     const std::string m = "Material/", p = "Material/Phases/", b = "Boundary conditions/",
                       e = "Elasticity/";
-
-
-    /** A body held at its left side. */
-    template <int dim>
-    SceneText elastic_scene(const Overrides &overrides)
-    {
-      const std::string zeros = dim == 1 ? "0" : dim == 2 ? "0, 0" : "0, 0, 0";
-      const std::string text  = "set Dimension = " + std::to_string(dim) + R"(
-set Physics = elasticity
-subsection Material
-  set Young modulus = 200
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Displacement = left: )" + zeros +
-                               "\nend\n";
-      return {"a.prm", apply_overrides(text, "a.prm", overrides)};
-    }
-
-
-    /** What is wrong with such a body when some entries are changed. */
-    template <int dim = 2>
-    std::string elastic_fault(const Overrides &overrides)
-    {
-      return message_of([&] {
-        Scene<dim> scene;
-        parse_scene<dim>(elastic_scene<dim>(overrides), scene);
-      });
-    }
-
-
-    /** The message names the entry, given as Section/Entry, and has the other words. */
-    void expect(const std::string              &message,
-                const std::string              &entry,
-                const std::vector<std::string> &parts = {})
-    {
-      const auto slash = entry.rfind('/');
-      expect_parts(
-        message,
-        {"'" + entry.substr(slash + 1) + "' in section '" + entry.substr(0, slash) + "'"});
-      expect_parts(message, parts);
-    }
   } // namespace
 
 
@@ -419,7 +374,7 @@ end
 
   TEST(ElasticScenes, contradicting_choices)
   {
-    const std::string pd = "Peridynamics/", t = "Time/", c = "Coupling/";
+    const std::string pd = "Peridynamics/", t = "Time/";
     expect(elastic_fault({e + "Model=bond base"}), e + "Model", {"Did you mean 'bond-based'?"});
     expect(elastic_fault({e + "Solver=conjugate gradient"}),
            e + "Solver",
@@ -474,9 +429,14 @@ end
     expect(elastic_fault({"Finite elements/Capacity=consistent"}),
            "Finite elements/Capacity",
            {"lumped"});
+  }
 
-    const Overrides coupled = {"Models=coupled", c + "Zone=x - 0.5"};
-    const auto      with    = [&](const Overrides &more) {
+
+  TEST(ElasticScenes, coupled)
+  {
+    const std::string pd = "Peridynamics/", c = "Coupling/";
+    const Overrides   coupled = {"Models=coupled", c + "Zone=x - 0.5"};
+    const auto        with    = [&](const Overrides &more) {
       Overrides overrides = coupled;
       overrides.insert(overrides.end(), more.begin(), more.end());
       return elastic_fault(overrides);
@@ -486,7 +446,15 @@ end
     expect(with({"Cracks/Segments=0.2,0.3 ; 0.6,0.3", "Cracks/Mesh=faces"}),
            "Cracks/Mesh",
            {"'removed'", "coupled"});
-    EXPECT_EQ(with({c + "Scheme=splice"}), "");
+    EXPECT_EQ(with({c + "Scheme=splice", c + "Overlap=1"}), "");
+    EXPECT_EQ(with({c + "Scheme=blending", e + "Solver=conjugate gradients"}), "");
+    expect(with({c + "Scheme=splice", e + "Solver=conjugate gradients"}),
+           e + "Solver",
+           {"'Scheme = splice'", "energy", "'linear'"});
+    expect(with({c + "Scheme=blending", pd + "Surface correction=crack scaling"}),
+           pd + "Surface correction",
+           {"'Scheme = exchange'", "blending"});
+    expect(with({c + "Overlap=1"}), c + "Overlap", {"splice", "'exchange'"});
     EXPECT_EQ(with({e + "Model=bond-based"}), "");
     expect(with({e + "Model=bond-based", e + "Kinematics=full", e + "Solver=conjugate gradients"}),
            e + "Kinematics",

@@ -6,10 +6,12 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
 
 #include <perideal/bonds/families.h>
 #include <perideal/scene/zone.h>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -19,8 +21,9 @@ namespace PeriDeal
    * How peridynamic bonds in a zone and finite elements Q1 share one elastic body: which forces the bonds exert, and what is left of each cell's matrix. Both
    * act on the same nodes, the vertices of the mesh; ElasticElements adds up
    *
-   *   force on i = sum_j B_ij (u_j - u_i) - (sum of cells R_c u)_i.
+   *   force on i = sum_j B_ij (u_j - u_i) - (sum of families K_f u)_i - (sum of cells R_c u)_i.
    *
+   * Bonds that act one by one are pairs; where a dilatation joins all bonds of a node, they are a family with a matrix over all of its nodes.
    * Every process asks for the bonds of its own nodes and for its own cells only. Not collective unless stated.
    */
   template <int dim>
@@ -36,10 +39,30 @@ namespace PeriDeal
       bool                   cut;   // some crack separates the nodes: the bond is broken
     };
 
+    /** What the family of a node adds to the body, or a part of it. */
+    struct Family
+    {
+      std::vector<unsigned int>  nodes;     // the node, and its neighbours
+      dealii::FullMatrix<double> stiffness; // K_f, rows and columns interleaved like the unknowns
+      dealii::Vector<double>     thermal;   // the load by thermal strains
+      double                     thermal_energy = 0.; // of a family that is held everywhere
+      unsigned int               n_bonds        = 0;  // unbroken
+    };
+
+    /** The thermal strain at a node, by its local number. */
+    using ThermalStrain = std::function<double(const unsigned int)>;
+
     virtual ~ElasticCoupling() = default;
 
-    /** What the rows of an owned node have of bonds, in a fixed order, broken bonds included. @p bonds is overwritten. */
+    /** What the rows of an owned node have of pairs, in a fixed order, broken bonds included. @p bonds is overwritten. */
     virtual void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const = 0;
+
+    /** Visit what the family of an owned node adds, also to rows of other processes. @p intact: as if no crack were there. */
+    virtual void visit_family(const unsigned int /*node*/,
+                              const bool /*intact*/,
+                              const ThermalStrain & /*strain*/,
+                              const std::function<void(const Family &)> & /*visit*/) const
+    {}
 
     /**
      * Turn the matrix K_c of an intact cell (rows and columns interleaved) into what is left of it, R_c; broken bonds count as whole ones. Returns whether anything has

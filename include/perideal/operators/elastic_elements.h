@@ -60,6 +60,7 @@ namespace PeriDeal
     std::string         place_of(const unsigned int local_index) const override;
     OperatorSize        size() const override;
     unsigned int        n_components() const override;
+    bool                symmetric() const override;
     ForceBalance        forces(const Vector &u, const double t) const override;
     double              energy(const Vector &u) const override;
     void                multiply(Vector &y, const Vector &x) const override;
@@ -99,16 +100,23 @@ namespace PeriDeal
     struct CellData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
-    void   find_positions();
-    void   find_conditions();
-    void   assemble();
-    void   assemble_cell(CellData &data) const;
-    void   change_cell(const Cell &cell, CellData &data) const;
-    void   find_cut_cells();
-    void   find_crack_factors();
-    void   add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
-    void   add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
-    void   add_thermal_bonds();
+    void find_positions();
+    void find_conditions();
+    void assemble();
+    void assemble_cell(CellData &data) const;
+    void change_cell(const Cell &cell, CellData &data) const;
+    void find_cut_cells();
+    void find_crack_factors();
+    void add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
+    void add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
+    void add_thermal_bonds();
+    void add_family_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
+    void add_families(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
+    void add_thermal_families();
+    template <typename Visit>
+    void   for_each_family(const bool intact, const Visit &visit) const;
+    bool   any_thermal() const;
+    double thermal_strain_at(const unsigned int node) const;
     void   count_bonds();
     double bond_factor(const unsigned int i, const unsigned int j) const;
     double temperature_change_at(const unsigned int node) const;

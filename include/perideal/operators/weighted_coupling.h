@@ -41,8 +41,6 @@ namespace PeriDeal
     double weight_at(const Cell &cell, const unsigned int vertex) const;
 
   private:
-    double weight_of(const Zone<dim> &zone, const dealii::Point<dim> &p) const;
-
     Families<dim>       bonds;
     Zone<dim>           zone;
     double              overlap;                 // a length

@@ -44,8 +44,9 @@ namespace PeriDeal
     /** Throws UserError for a zone that is none, a width or an overlap below 0, contradicting entries. */
     void parse();
 
-    /** The entry `Zone` as given. */
+    /** The entries `Zone` and `Scheme` as given. */
     std::string zone_text() const;
+    std::string scheme_text() const;
 
   private:
     void parse_zone();

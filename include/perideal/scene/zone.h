@@ -45,6 +45,9 @@ namespace PeriDeal
      */
     double distance(const dealii::Point<dim> &p, const double farthest) const;
 
+    /** 1 in the zone, falling linearly to 0 over a width outside of it. */
+    double weight(const dealii::Point<dim> &p, const double width_outside) const;
+
     bool is_everywhere() const;
 
     /** The zone changes with the cracks. */

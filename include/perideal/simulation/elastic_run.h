@@ -24,6 +24,8 @@
 
 namespace PeriDeal
 {
+  struct CouplingCertificate;
+
   /** One model of an elastic body during a run: its nodes on the shared mesh, its operator, its displacement. All functions are collective. */
   template <int dim>
   class ElasticRun
@@ -71,6 +73,12 @@ namespace PeriDeal
     virtual std::vector<std::string> notes() const
     {
       return {};
+    }
+
+    /** What is known of the coupling, or nullptr. Not collective. */
+    virtual const CouplingCertificate *examined() const
+    {
+      return nullptr;
     }
 
     Vector                         displacement;
