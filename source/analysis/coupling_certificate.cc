@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 #include "held_system.h"
@@ -110,16 +111,23 @@ namespace PeriDeal
   std::string CouplingCertificate::fault() const
   {
     std::ostringstream text;
-    if (!(linear <= 1e-10))
-      text << "a linear field comes out wrong by " << linear << " of its size";
-    else if (lowest_eigenvalue < 0.)
-      text << "the lowest eigenvalue is " << lowest_eigenvalue << ", below 0";
-    else if (lowest_remainder < -1e-12)
-      text << "what is left of a cell has the eigenvalue " << lowest_remainder
-           << " times its conductivity, or its shear modulus, below 0";
-    else if (unbalanced && *unbalanced > 1e-10)
-      text << "forces do not balance: what is left of their sum or moment is up to " << *unbalanced
-           << " of the sum of their sizes";
+    text.precision(2);
+    const auto add =
+      [&](const bool wrong, const std::string &what, const double value, const std::string &of) {
+        if (!wrong)
+          return;
+        text << (text.tellp() > 0 ? "; " : "") << what << value << of;
+      };
+    add(!(linear <= 1e-10), "a linear field comes out wrong by ", linear, " of its size");
+    add(lowest_eigenvalue < 0., "the lowest eigenvalue is ", lowest_eigenvalue, ", below 0");
+    add(lowest_remainder < -1e-12,
+        "what is left of a cell has the eigenvalue ",
+        lowest_remainder,
+        " times its conductivity, or its shear modulus, below 0");
+    add(unbalanced && *unbalanced > 1e-10,
+        "forces do not balance, their sum or moment is up to ",
+        unbalanced.value_or(0.),
+        " of the sum of their sizes");
     return text.str();
   }
 
@@ -160,16 +168,17 @@ namespace PeriDeal
       const auto [n_nodes, n_bonds] = count_all_bonds(families);
       result.n_bonds_of_full        = n_bonds;
       result.n_nonzeros_of_full     = 2 * n_bonds + n_nodes;
-      if (n_components > 1)
-        {
-          Vector y(noise);
-          matrix.vmult(y, noise);
-          double largest = 0.;
-          for (const Vector &motion : op.near_null_space())
-            largest =
-              std::max(largest, std::abs(motion * y) / (motion.linfty_norm() * y.l1_norm()));
-          result.unbalanced = largest;
-        }
+      if constexpr (std::is_same_v<OperatorType, ElasticElements<dim>>)
+        if (op.bonds().mirrors().empty()) // the other half of a body pulls at its nodes, too
+          {
+            Vector y(noise);
+            matrix.vmult(y, noise);
+            double largest = 0.;
+            for (const Vector &motion : op.near_null_space())
+              largest =
+                std::max(largest, std::abs(motion * y) / (motion.linfty_norm() * y.l1_norm()));
+            result.unbalanced = largest;
+          }
       return result;
     }
   } // namespace

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -34,7 +35,7 @@ namespace PeriDeal
     , symmetric(symmetric)
   {
     inner.copy_from(matrix);
-    hold(inner);
+    hold_unknowns(inner, held);
     TrilinosWrappers::PreconditionAMG::AdditionalData options;
     options.elliptic              = symmetric;
     options.aggregation_threshold = 0.02;
@@ -45,7 +46,7 @@ namespace PeriDeal
       }
     // Elements alone have much shorter rows, and differ from the whole by bounded factors.
     inner_elements.copy_from(elements);
-    hold(inner_elements);
+    hold_unknowns(inner_elements, held);
     options.elliptic = true;
     for (unsigned int c = 0; c < n_components; ++c)
       {
@@ -54,19 +55,6 @@ namespace PeriDeal
           options.constant_modes[c][i] = true;
       }
     preconditioner.initialize(inner_elements, options);
-  }
-
-
-  void HeldSystem::hold(TrilinosWrappers::SparseMatrix &whole) const
-  {
-    const Vector known = with_columns_as_ghosts(held, whole);
-    for_each_entry(whole, [&](const unsigned int i, const auto column, double &value) {
-      const bool row_held = held.local_element(i) > 0.;
-      if (column == held.get_partitioner()->local_to_global(i))
-        value = row_held ? 1. : value;
-      else if (row_held || known(column) > 0.)
-        value = 0.;
-    });
   }
 
 
@@ -138,12 +126,14 @@ namespace PeriDeal
         y = x;
         y.scale(capacity);
         solve(x, y);
-        x /= x.l2_norm();
+        if (const double size = x.l2_norm(); size > 0.)
+          x /= size;
       }
     inner.vmult(y, x);
     const double energy = x * y;
     y                   = x;
     y.scale(capacity);
-    return energy / (x * y);
+    const double size = x * y;
+    return size > 0. ? energy / size : std::numeric_limits<double>::infinity();
   }
 } // namespace PeriDeal

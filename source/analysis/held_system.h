@@ -32,11 +32,10 @@ namespace PeriDeal
     /** The largest |(K - K^T) x|/|K x| for some fields x. */
     double asymmetry(const Vector &noise) const;
 
-    /** Of C^{-1} K, by inverse iterations, with the Rayleigh quotient at the end. */
+    /** Of C^{-1} K, by inverse iterations, with the Rayleigh quotient at the end. Infinite if all unknowns are held. */
     double lowest_eigenvalue(const Vector &noise, const Vector &capacity) const;
 
   private:
-    void hold(dealii::TrilinosWrappers::SparseMatrix &inner) const;
     void clear_held(Vector &v) const;
     void solve(Vector &x, const Vector &b) const;
 

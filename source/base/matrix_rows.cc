@@ -25,4 +25,17 @@ namespace PeriDeal
     wide.update_ghost_values();
     return wide;
   }
+
+
+  void hold_unknowns(TrilinosWrappers::SparseMatrix &matrix, const Vector &marked)
+  {
+    const Vector known = with_columns_as_ghosts(marked, matrix);
+    for_each_entry(matrix, [&](const unsigned int i, const auto column, double &value) {
+      const bool row_held = marked.local_element(i) > 0.;
+      if (column == marked.get_partitioner()->local_to_global(i))
+        value = row_held ? 1. : value;
+      else if (row_held || known(column) > 0.)
+        value = 0.;
+    });
+  }
 } // namespace PeriDeal

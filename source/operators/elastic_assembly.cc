@@ -67,14 +67,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticElements<dim>::assemble()
+  TrilinosWrappers::SparsityPattern ElasticElements<dim>::element_pattern() const
   {
     const IndexSet owned    = unknowns->locally_owned_range();
     IndexSet       relevant = unknowns->ghost_indices();
     relevant.add_indices(owned);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
-    cell_data      = std::make_unique<CellData>(dofs.get_fe());
-    CellData &data = *cell_data;
+    CellData                         &data = *cell_data;
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -82,6 +81,15 @@ namespace PeriDeal
           for (const auto row : data.unknowns)
             pattern.add_entries(row, data.unknowns.begin(), data.unknowns.end());
         }
+    return pattern;
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::assemble()
+  {
+    cell_data                                 = std::make_unique<CellData>(dofs.get_fe());
+    TrilinosWrappers::SparsityPattern pattern = element_pattern();
     if (coupling)
       {
         add_bond_pattern(pattern);
@@ -107,8 +115,7 @@ namespace PeriDeal
     if (coupling)
       {
         add_bonds(stiffness, false);
-        add_families(stiffness, false);
-        count_bonds();
+        count_bonds(add_families(stiffness, false));
       }
     finish_thermal(energy);
     stiffness.compress(VectorOperation::add);
@@ -236,8 +243,12 @@ namespace PeriDeal
     initialize_vector(reactions);
     assemble_loads(loads, t);
     stiffness.vmult(reactions, u);
-    reactions -= loads;
     std::map<types::boundary_id, Tensor<1, dim>> sums;
+    if (coupling)
+      for (const types::boundary_id side : coupling->mirrors())
+        for (unsigned int i = side / 2; i < reactions.locally_owned_size(); i += dim)
+          sums[side][side / 2] -= reactions.local_element(i) - thermal_loads.local_element(i);
+    reactions -= loads;
     conditions->add_reactions(reactions, sums);
     for_each_load(t, [&](const auto side, const auto, const unsigned int d, const double value) {
       sums[side][d] += value;
@@ -246,12 +257,13 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                             \
-  template void         ElasticElements<dim>::assemble_cell(CellData &) const;                \
-  template void         ElasticElements<dim>::assemble();                                     \
-  template void         ElasticElements<dim>::set_temperature_change(const Vector &);         \
-  template void         ElasticElements<dim>::assemble_loads(Vector &, const double) const;   \
-  template void         ElasticElements<dim>::mechanical_loads(Vector &, const double) const; \
+#define PERIDEAL_INSTANTIATE(dim)                                                                   \
+  template void                              ElasticElements<dim>::assemble_cell(CellData &) const; \
+  template TrilinosWrappers::SparsityPattern ElasticElements<dim>::element_pattern() const;         \
+  template void                              ElasticElements<dim>::assemble();                      \
+  template void         ElasticElements<dim>::set_temperature_change(const Vector &);               \
+  template void         ElasticElements<dim>::assemble_loads(Vector &, const double) const;         \
+  template void         ElasticElements<dim>::mechanical_loads(Vector &, const double) const;       \
   template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -272,11 +272,19 @@ namespace PeriDeal
     const double largest = stiffness_diagonal.linfty_norm();
     std::string  message;
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size() && message.empty(); ++i)
-      if (!(stiffness_diagonal.local_element(i) > 1e-13 * largest))
-        message =
-          "The node at " + place_of(i) +
-          " is isolated: cracks cut all cells around it, and no bond holds it. Use 'Models = coupled' with a zone around the "
-          "cracks, or 'Mesh = faces' in section 'Cracks'.";
+      {
+        const std::string fault = coupling && i % dim == 0 ? coupling->fault_of(i / dim) : "";
+        if (!fault.empty())
+          message =
+            "The node at " + place_of(i) + fault +
+            " Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
+        else if (!(stiffness_diagonal.local_element(i) > 1e-13 * largest))
+          message = "The node at " + place_of(i) +
+                    " is isolated: cracks cut all cells around it, and no bond holds it. Use " +
+                    (coupling ? "a wider 'Zone' in section 'Coupling'." :
+                                "'Models = coupled' with a zone around the cracks, or 'Mesh = "
+                                "faces' in section 'Cracks'.");
+      }
     throw_on_all_if_any(dofs.get_communicator(), message);
   }
 
@@ -285,7 +293,14 @@ namespace PeriDeal
   void ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &matrix,
                                              const bool                      with_bonds) const
   {
-    matrix.reinit(stiffness);
+    if (with_bonds)
+      matrix.reinit(stiffness);
+    else
+      {
+        TrilinosWrappers::SparsityPattern pattern = element_pattern();
+        pattern.compress();
+        matrix.reinit(pattern);
+      }
     for_each_own_cell([&](const Cell &cell, CellData &data) {
       if (with_bonds && coupling)
         coupling->change_cell(cell, data.stiffness);
@@ -303,7 +318,7 @@ namespace PeriDeal
   template <int dim>
   double ElasticElements<dim>::lowest_remainder() const
   {
-    double lowest = std::numeric_limits<double>::max();
+    double lowest = std::numeric_limits<double>::infinity();
     if (coupling)
       for_each_own_cell([&](const Cell &cell, CellData &data) {
         if (coupling->change_cell(cell, data.stiffness))

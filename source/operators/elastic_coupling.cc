@@ -30,10 +30,20 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                    \
-  template class ElasticCoupling<dim>;                                               \
-  template std::unique_ptr<ElasticCoupling<dim>> make_elastic_coupling(Nodes<dim> &, \
-                                                                       const Scene<dim> &);
+  template <int dim>
+  std::unique_ptr<ElasticCoupling<dim>> make_families_everywhere(Nodes<dim>       &nodes,
+                                                                 const Scene<dim> &scene)
+  {
+    return std::make_unique<StateBlending<dim>>(nodes, scene, Zone<dim>());
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                           \
+  template class ElasticCoupling<dim>;                                                      \
+  template std::unique_ptr<ElasticCoupling<dim>> make_elastic_coupling(Nodes<dim> &,        \
+                                                                       const Scene<dim> &); \
+  template std::unique_ptr<ElasticCoupling<dim>> make_families_everywhere(Nodes<dim> &,     \
+                                                                          const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

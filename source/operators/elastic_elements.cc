@@ -233,14 +233,7 @@ namespace PeriDeal
     Vector marked;
     initialize_vector(marked);
     conditions->mask(marked, 1.);
-    marked.update_ghost_values();
-    for_each_entry(matrix, [&](const unsigned int i, const auto column, double &value) {
-      const bool is_held = marked.local_element(i) > 0.;
-      if (column == unknowns->local_to_global(i))
-        value = is_held ? 1. : value;
-      else if (is_held || marked(column) > 0.)
-        value = 0.;
-    });
+    hold_unknowns(matrix, marked);
   }
 
   template <int dim>

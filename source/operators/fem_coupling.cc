@@ -232,7 +232,7 @@ namespace PeriDeal
   double FEMOperator<dim>::lowest_remainder() const
   {
     CellData &data   = *cell_data;
-    double    lowest = std::numeric_limits<double>::max();
+    double    lowest = std::numeric_limits<double>::infinity();
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned() && assemble_whole_cell(cell, data))
         lowest = std::min(lowest,

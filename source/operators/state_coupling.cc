@@ -15,26 +15,47 @@ namespace PeriDeal
                                     const Scene<dim> &scene,
                                     const Zone<dim>  &given_zone)
     : bonds(nodes, scene, HaloAround::cells)
-    , volumetric(scene.elasticity.model == ElasticModel::state_based && dim > 1)
+    , node_weights(nodes, given_zone, scene.coupling.overlap * bonds.horizon())
   {
-    const double             overlap = scene.coupling.overlap * bonds.horizon();
     const CrackHistory<dim> &history = bonds.crack_history();
     Zone<dim>                zone    = given_zone;
     zone.set_cracks(history.pieces(history.representative(0.)));
-    double n_in_zone = 0.;
-    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+    node_weights.set(zone);
+    throw_if_zone_empty(node_weights.n_owned_in_zone(), nodes.communicator());
+    if (scene.peridynamics.completes_families())
       {
-        weights.push_back(zone.weight(nodes.position(i), overlap));
-        n_in_zone += i < nodes.n_owned() && weights[i] > 0.;
+        symmetry_sides = scene.boundary_conditions.symmetry;
+        extension.emplace(bonds, symmetry_sides);
       }
-    throw_if_zone_empty(n_in_zone, nodes.communicator());
+    find_nodes_that_act();
+    laws.resize(nodes.n_owned());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        const Moduli moduli = scene.material.moduli(nodes.position(i));
-        laws.push_back(scene.elasticity.model == ElasticModel::bond_based ?
-                         bond_law(moduli, dim, scene.elasticity.plane) :
-                         state_law(moduli, dim, scene.elasticity.plane));
-      }
+      if (acts[i])
+        laws[i] = state_law(scene.material.moduli(nodes.position(i)), dim, scene.elasticity.plane);
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::find_nodes_that_act()
+  {
+    // A family reaches the zone if its node is in one of the zone's families.
+    const Nodes<dim> &nodes = bonds.nodes();
+    acts.assign(nodes.n_owned(), false);
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      if (node_weights[i] > 0.)
+        {
+          if (i < nodes.n_owned())
+            acts[i] = true;
+          const auto center = site_of(i);
+          for (const FamilyMember<dim> &member : bonds.lattice_members())
+            {
+              auto site = center;
+              for (unsigned int d = 0; d < dim; ++d)
+                site[d] += member.offset[d];
+              if (const unsigned int j = bonds.node_at(site); j < nodes.n_owned())
+                acts[j] = true;
+            }
+        }
   }
 
 
@@ -51,63 +72,212 @@ namespace PeriDeal
                                         const ThermalStrain                       &strain,
                                         const std::function<void(const Family &)> &visit) const
   {
-    if (family_weight(node) == 0.)
+    std::vector<BondOfFamily> list;
+    Family                    family;
+    if (!find_family(node, intact, strain, family.nodes, list))
       return;
-    std::vector<typename Families<dim>::Bond> members;
-    bonds.bonds_of(node, members, false);
+    double q = 0.;
+    for (const BondOfFamily &bond : list)
+      q += bond.square / bonds.nodes().volume(node);
+    const double spring = family_weight(node) * laws[node].extension / q;
+    if (dim == 1) // no dilatation: rows of single bonds reach one horizon, not two
+      {
+        for (BondOfFamily &bond : list)
+          {
+            Family alone;
+            for (Part &part : bond.parts)
+              {
+                alone.nodes.push_back(family.nodes[part.place]);
+                part.place = alone.nodes.size() - 1;
+              }
+            set_size(alone);
+            add_bond(bond, spring, alone);
+            scale_rows(alone);
+            visit(alone);
+          }
+        return;
+      }
+    set_size(family);
+    for (const BondOfFamily &bond : list)
+      add_bond(bond, spring, family);
+    add_dilatation(list,
+                   family_weight(node) * laws[node].volumetric * laws[node].dilatation /
+                     (bonds.nodes().volume(node) * q * q),
+                   family);
+    scale_rows(family);
+    visit(family);
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::visit_nodes_of_family(
+    const unsigned int                         node,
+    const std::function<void(const Family &)> &visit) const
+  {
+    std::vector<BondOfFamily> list;
+    Family                    family;
+    if (!find_family(node, true, {}, family.nodes, list))
+      return;
+    for (const unsigned int j : family.nodes)
+      family.has_row.push_back(row_weight(j) > 0.);
+    visit(family);
+  }
+
+
+  template <int dim>
+  bool StateCoupling<dim>::find_family(const unsigned int         node,
+                                       const bool                 intact,
+                                       const ThermalStrain       &strain,
+                                       std::vector<unsigned int> &nodes,
+                                       std::vector<BondOfFamily> &list) const
+  {
+    if (!acts[node] || family_weight(node) == 0.)
+      return false;
+    nodes.assign(1, node);
+    add_neighbors(intact, strain, nodes, list);
+    if (extension)
+      add_fictitious(strain, nodes, list);
+    return !list.empty() && std::any_of(nodes.begin(), nodes.end(), [&](const unsigned int j) {
+      return row_weight(j) > 0.;
+    });
+  }
+
+
+  template <int dim>
+  std::string StateCoupling<dim>::fault_of(const unsigned int node) const
+  {
+    if (dim == 1 || node_weights[node] < 1.)
+      return {};
     std::vector<BondOfFamily> list;
     std::vector<unsigned int> nodes{node};
-    double                    q = 0.;
+    add_neighbors(false, {}, nodes, list);
+    SymmetricTensor<2, dim> shape;
+    for (const BondOfFamily &bond : list)
+      shape += symmetrize(outer_product(bond.parts[1].moment, bond.parts[1].moment)) / bond.square;
+    if (list.empty())
+      return " is isolated: no bond of it is left.";
+    if (eigenvalues(shape)[dim - 1] < 1e-9 * trace(shape))
+      return " has bonds in one line or plane only, across which nothing holds it.";
+    return {};
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::add_neighbors(const bool                 intact,
+                                         const ThermalStrain       &strain,
+                                         std::vector<unsigned int> &nodes,
+                                         std::vector<BondOfFamily> &list) const
+  {
+    const unsigned int                        own        = nodes[0];
+    const double                              own_strain = strain ? strain(own) : 0.;
+    std::vector<typename Families<dim>::Bond> members;
+    bonds.bonds_of(own, members, false);
+    typename FictitiousExtension<dim>::Site site;
     for (const auto &member : members)
       {
         const unsigned int j = member.neighbor;
         if (member.intact == 0. || (member.cut && !intact))
           continue;
-        const Tensor<1, dim> xi = bonds.bond_vector(node, j);
-        const double         w  = member.intact / bonds.bond_conductivity(node, j);
+        const Tensor<1, dim> xi = bonds.bond_vector(own, j);
+        double               w  = member.intact / bonds.bond_conductivity(own, j);
+        if (extension && extension->find(site_of(j), site))
+          w *= site.volume / bonds.nodes().volume(j); // with what is missing of a node on a side
+        list.push_back({{{0, -w * xi}, {static_cast<unsigned int>(nodes.size()), w * xi}},
+                        w * xi.norm_square(),
+                        strain ? 0.5 * (own_strain + strain(j)) : 0.,
+                        node_weights[own] == 0. ? 0. :
+                        node_weights[j] == 0.   ? 1. :
+                                                  0.5});
         nodes.push_back(j);
-        list.push_back({w * xi, w * xi.norm_square(), 0.5 * (strain(node) + strain(j))});
-        q += w * xi.norm_square() / bonds.nodes().volume(node);
       }
-    if (list.empty() || std::all_of(nodes.begin(), nodes.end(), [&](const unsigned int j) {
-          return row_weight(j) == 0.;
-        }))
-      return;
-    const double extension = family_weight(node) * laws[node].extension / q;
-    Family       family;
-    const auto   pass_on = [&]() {
-      scale_rows(family);
-      visit(family);
-    };
-    if (!volumetric)
-      {
-        for (unsigned int k = 0; k < list.size(); ++k)
-          {
-            set_nodes({node, nodes[k + 1]}, family);
-            add_bond(list[k], 1, extension, family);
-            pass_on();
-          }
-        return;
-      }
-    set_nodes(nodes, family);
-    add_dilatation(list,
-                   family_weight(node) * laws[node].volumetric * laws[node].dilatation /
-                     (bonds.nodes().volume(node) * q * q),
-                   family);
-    for (unsigned int k = 0; k < list.size(); ++k)
-      add_bond(list[k], k + 1, extension, family);
-    pass_on();
   }
 
 
   template <int dim>
-  void StateCoupling<dim>::set_nodes(const std::vector<unsigned int> &nodes, Family &family)
+  void StateCoupling<dim>::add_fictitious(const ThermalStrain       &strain,
+                                          std::vector<unsigned int> &nodes,
+                                          std::vector<BondOfFamily> &list) const
   {
-    family.nodes          = nodes;
-    family.n_bonds        = nodes.size() - 1;
-    family.thermal_energy = 0.;
-    family.stiffness.reinit(dim * nodes.size(), dim * nodes.size());
-    family.thermal.reinit(dim * nodes.size());
+    const unsigned int                      own        = nodes[0];
+    const double                            own_strain = strain ? strain(own) : 0.;
+    const auto                              center     = site_of(own);
+    const Lattice<dim>                     &lattice    = *bonds.nodes().lattice();
+    typename FictitiousExtension<dim>::Site site;
+    for (const FamilyMember<dim> &member : bonds.lattice_members())
+      {
+        auto index   = center;
+        bool outside = false;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            index[d] += member.offset[d];
+            outside = outside || index[d] < 0 || index[d] >= lattice.n_sites[d];
+          }
+        if (!outside || !extension->find(index, site))
+          continue;
+        const double   w = bonds.nodes().volume(own) * site.volume * member.weight;
+        Tensor<1, dim> xi;
+        for (unsigned int d = 0; d < dim; ++d)
+          xi[d] = member.offset[d] * lattice.spacing[d];
+        BondOfFamily bond{{{0, -w * xi}}, w * xi.norm_square(), 0.5 * own_strain, 0.};
+        bool reached = true; // no crack separates the node from those that the other one follows
+        for (unsigned int k = 0; k < site.n_terms && reached; ++k)
+          {
+            const auto &term  = site.terms[k];
+            const auto  place = std::find(nodes.begin(), nodes.end(), term.node);
+            Part        part{static_cast<unsigned int>(place - nodes.begin()), w * xi};
+            for (unsigned int d = 0; d < dim; ++d)
+              part.moment[d] *= term.of_component[d];
+            bond.parts.push_back(part);
+            if (strain)
+              bond.strain += 0.5 * term.factor * strain(term.node);
+            reached = place != nodes.end();
+          }
+        if (reached)
+          list.push_back(bond);
+      }
+  }
+
+
+  template <int dim>
+  typename Lattice<dim>::Index StateCoupling<dim>::site_of(const unsigned int node) const
+  {
+    return bonds.nodes().lattice()->index(bonds.nodes().position(node));
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::set_size(Family &family)
+  {
+    const unsigned int n = dim * family.nodes.size();
+    family.stiffness.reinit(n, n);
+    family.thermal.reinit(n);
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::add_square(const std::vector<Part> &parts,
+                                      const double             factor,
+                                      const double             thermal,
+                                      Family                  &family)
+  {
+    for (const Part &row : parts)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          family.thermal(dim * row.place + d) += factor * thermal * row.moment[d];
+          for (const Part &column : parts)
+            for (unsigned int e = 0; e < dim; ++e)
+              family.stiffness(dim * row.place + d, dim * column.place + e) +=
+                factor * row.moment[d] * column.moment[e];
+        }
+    family.thermal_energy += 0.5 * factor * thermal * thermal;
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::add_bond(const BondOfFamily &bond, const double factor, Family &family)
+  {
+    add_square(bond.parts, factor / bond.square, bond.square * bond.strain, family);
+    family.n_bonds += bond.count;
   }
 
 
@@ -116,48 +286,17 @@ namespace PeriDeal
                                           const double                     factor,
                                           Family                          &family)
   {
-    Tensor<1, dim> own;
-    double         thermal = 0.; // g . u of a free expansion
+    std::vector<Part> sum(family.nodes.size());
+    for (unsigned int k = 0; k < sum.size(); ++k)
+      sum[k].place = k;
+    double thermal = 0.;
     for (const BondOfFamily &bond : list)
       {
-        own -= bond.moment;
+        for (const Part &part : bond.parts)
+          sum[part.place].moment += part.moment;
         thermal += bond.square * bond.strain;
       }
-    const auto g = [&](const unsigned int row) {
-      return row < dim ? own[row] : list[row / dim - 1].moment[row % dim];
-    };
-    for (unsigned int a = 0; a < family.thermal.size(); ++a)
-      {
-        family.thermal(a) += factor * thermal * g(a);
-        for (unsigned int b = 0; b < family.thermal.size(); ++b)
-          family.stiffness(a, b) += factor * g(a) * g(b);
-      }
-    family.thermal_energy += 0.5 * factor * thermal * thermal;
-  }
-
-
-  template <int dim>
-  void StateCoupling<dim>::add_bond(const BondOfFamily &bond,
-                                    const unsigned int  place,
-                                    const double        factor,
-                                    Family             &family)
-  {
-    const unsigned int far = dim * place;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        const double force = factor * bond.strain * bond.moment[d];
-        family.thermal(d) -= force;
-        family.thermal(far + d) += force;
-        for (unsigned int e = 0; e < dim; ++e)
-          {
-            const double stiffness = factor * bond.moment[d] * bond.moment[e] / bond.square;
-            family.stiffness(d, e) += stiffness;
-            family.stiffness(far + d, far + e) += stiffness;
-            family.stiffness(d, far + e) -= stiffness;
-            family.stiffness(far + d, e) -= stiffness;
-          }
-      }
-    family.thermal_energy += 0.5 * factor * bond.square * bond.strain * bond.strain;
+    add_square(sum, factor, thermal, family);
   }
 
 
@@ -165,6 +304,8 @@ namespace PeriDeal
   void StateCoupling<dim>::scale_rows(Family &family) const
   {
     family.thermal_energy *= row_weight(family.nodes[0]);
+    for (const unsigned int j : family.nodes)
+      family.has_row.push_back(row_weight(j) > 0.);
     for (unsigned int a = 0; a < family.thermal.size(); ++a)
       {
         const double factor = row_weight(family.nodes[a / dim]);
@@ -176,21 +317,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  double StateCoupling<dim>::weight(const unsigned int node) const
+  std::vector<types::boundary_id> StateCoupling<dim>::mirrors() const
   {
-    return weights[node];
+    return symmetry_sides;
   }
 
   template <int dim>
-  double StateCoupling<dim>::weight_at(const Cell &cell, const unsigned int vertex) const
+  const NodeWeights<dim> &StateCoupling<dim>::weights() const
   {
-    return weights[bonds.nodes().partitioner()->global_to_local(cell->vertex_dof_index(vertex, 0))];
+    return node_weights;
   }
 
   template <int dim>
   bool StateCoupling<dim>::in_zone(const unsigned int node) const
   {
-    return weights[node] > 0.;
+    return node_weights[node] > 0.;
   }
 
   template <int dim>
@@ -202,7 +343,7 @@ namespace PeriDeal
   template <int dim>
   std::size_t StateCoupling<dim>::memory_consumption() const
   {
-    return bonds.memory_consumption() + weights.capacity() * sizeof(double) +
+    return bonds.memory_consumption() + node_weights.memory_consumption() +
            laws.capacity() * sizeof(StateLaw);
   }
 
@@ -210,9 +351,7 @@ namespace PeriDeal
   template <int dim>
   bool StateBlending<dim>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
   {
-    double mean = 0.;
-    for (const unsigned int v : cell->vertex_indices())
-      mean += this->weight_at(cell, v) / cell->n_vertices();
+    const double mean = this->weights().mean(cell);
     if (mean == 0.)
       return false;
     stiffness *= std::max(0., 1. - mean);
@@ -222,7 +361,7 @@ namespace PeriDeal
   template <int dim>
   double StateBlending<dim>::family_weight(const unsigned int node) const
   {
-    return this->weight(node);
+    return this->weights()[node];
   }
 
   template <int dim>
@@ -243,7 +382,7 @@ namespace PeriDeal
   {
     bool changed = false;
     for (const unsigned int v : cell->vertex_indices())
-      if (const double taken = this->weight_at(cell, v); taken > 0.)
+      if (const double taken = this->weights().at(cell, v); taken > 0.)
         {
           changed = true;
           for (unsigned int d = 0; d < dim; ++d)
@@ -262,7 +401,7 @@ namespace PeriDeal
   template <int dim>
   double StateSplice<dim>::row_weight(const unsigned int node) const
   {
-    return this->weight(node);
+    return this->weights()[node];
   }
 
   template <int dim>

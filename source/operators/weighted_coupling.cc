@@ -18,19 +18,16 @@ namespace PeriDeal
     : bonds(nodes, scene, HaloAround::cells)
     , zone(zone)
     , overlap(scene.coupling.overlap * bonds.horizon())
+    , weights_now(nodes, zone, overlap)
+    , weights_at_end(weights_now)
   {
     const CrackHistory<dim> &history = bonds.crack_history();
     Zone<dim>                at_end  = zone;
     at_end.set_cracks(history.pieces(scene.cracks.end_time));
     this->zone.set_cracks(history.pieces(history.representative(0.)));
-    double n_in_zone = 0.;
-    for (unsigned int i = 0; i < nodes.n_local(); ++i)
-      {
-        weights.push_back(this->zone.weight(nodes.position(i), overlap));
-        weights_at_end.push_back(at_end.weight(nodes.position(i), overlap));
-        n_in_zone += i < nodes.n_owned() && weights_at_end[i] > 0.;
-      }
-    throw_if_zone_empty(n_in_zone, nodes.communicator());
+    weights_now.set(this->zone);
+    weights_at_end.set(at_end);
+    throw_if_zone_empty(weights_at_end.n_owned_in_zone(), nodes.communicator());
   }
 
 
@@ -41,7 +38,7 @@ namespace PeriDeal
     unsigned int n_kept = 0;
     for (Bond &bond : list)
       {
-        const double weight = bond_weight(weights[node], weights[bond.neighbor]);
+        const double weight = bond_weight(weights_now[node], weights_now[bond.neighbor]);
         bond.weight *= weight;
         bond.intact *= weight;
         if (weight > 0.)
@@ -65,13 +62,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  double WeightedCoupling<dim>::weight_at(const Cell &cell, const unsigned int vertex) const
-  {
-    return weights[bonds.nodes().partitioner()->global_to_local(cell->vertex_dof_index(vertex, 0))];
-  }
-
-
-  template <int dim>
   std::vector<BoundingBox<dim>> WeightedCoupling<dim>::joining_by(const double time) const
   {
     std::vector<BoundingBox<dim>> boxes;
@@ -82,13 +72,13 @@ namespace PeriDeal
     auto changes = bonds.crack_history().changes(bonds.cracks_now(), time);
     for (BoundingBox<dim> &box : changes)
       box.extend(zone.width() + overlap + bonds.nodes().smallest_spacing());
-    for (unsigned int i = 0; i < weights.size(); ++i)
+    for (unsigned int i = 0; i < bonds.nodes().n_local(); ++i)
       {
         const Point<dim> &p = bonds.nodes().position(i);
         if (std::any_of(changes.begin(),
                         changes.end(),
                         [&](const auto &box) { return box.point_inside(p); }) &&
-            then.weight(p, overlap) != weights[i])
+            then.weight(p, overlap) != weights_now[i])
           boxes.push_back({{p, p}});
       }
     return boxes;
@@ -101,15 +91,20 @@ namespace PeriDeal
     bonds.set_cracks_of(time);
     zone.set_cracks(bonds.crack_history().pieces(time));
     if (zone.follows_cracks())
-      for (unsigned int i = 0; i < weights.size(); ++i)
-        weights[i] = zone.weight(bonds.nodes().position(i), overlap);
+      weights_now.set(zone);
   }
 
 
   template <int dim>
+  const NodeWeights<dim> &WeightedCoupling<dim>::weights() const
+  {
+    return weights_now;
+  }
+
+  template <int dim>
   bool WeightedCoupling<dim>::in_zone(const unsigned int node) const
   {
-    return weights[node] > 0.;
+    return weights_now[node] > 0.;
   }
 
   template <int dim>
@@ -121,17 +116,15 @@ namespace PeriDeal
   template <int dim>
   std::size_t WeightedCoupling<dim>::memory_consumption() const
   {
-    return bonds.memory_consumption() +
-           (weights.capacity() + weights_at_end.capacity()) * sizeof(double);
+    return bonds.memory_consumption() + weights_now.memory_consumption() +
+           weights_at_end.memory_consumption();
   }
 
 
   template <int dim>
   bool Blending<dim>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
   {
-    double mean = 0.;
-    for (const unsigned int v : cell->vertex_indices())
-      mean += this->weight_at(cell, v) / cell->n_vertices();
+    const double mean = this->weights().mean(cell);
     if (mean == 0.)
       return false;
     stiffness *= std::max(0., 1. - mean);
@@ -162,7 +155,7 @@ namespace PeriDeal
   {
     for (const unsigned int v : cell->vertex_indices())
       {
-        const double weight = 1. - this->weight_at(cell, v);
+        const double weight = 1. - this->weights().at(cell, v);
         for (unsigned int b = 0; b < stiffness.n(); ++b)
           stiffness(v, b) *= weight;
       }

@@ -16,7 +16,7 @@ namespace PeriDeal
       "",
       "How the model `coupled` joins peridynamics in the zone with finite elements elsewhere: each bond in exchange for what "
       "the elements conduct along it (symmetric, exact for linear fields); rows of either model side by side (not symmetric); or "
-      "both energies, weighted over the overlap. With elasticity the bonds of `exchange` carry what pairs of nodes can, those of the others are as `Model` in section `Elasticity` says.",
+      "both energies, weighted over the overlap. With elasticity the bonds of `exchange` carry what pairs of nodes can, those of the others are state-based.",
       {"exchange", "splice", "blending"});
     declare(
       "Zone",

@@ -23,6 +23,65 @@ namespace PeriDeal
     }
 
 
+    /** What families that go on beyond the sides cannot have. */
+    template <int dim>
+    void check_fictitious_nodes(const Scene<dim> &scene)
+    {
+      const Peridynamics &pd = scene.peridynamics;
+      if (!pd.completes_families())
+        return;
+      const auto refuse =
+        [&](const bool given, const std::string &what, const std::string &remedy) {
+          if (given)
+            entry_error(pd.where("Surface correction"), "'fictitious nodes' " + what + remedy);
+        };
+      const std::string other = " Use another correction, or ";
+      const bool        alone = runs(scene, Model::peridynamics);
+      refuse(!alone && !runs(scene, Model::coupled),
+             "has no effect without 'Models = peridynamics' or 'coupled'.",
+             " Use 'none'.");
+      refuse(runs(scene, Model::coupled) && scene.coupling.scheme == CouplingScheme::exchange,
+             "is not for 'Scheme = exchange', whose bonds need no correction.",
+             " Use 'none', or 'splice' or 'blending'.");
+      refuse(
+        scene.domain.nodes != NodePlacement::vertices,
+        "continues the displacement from nodes on the sides, and 'Nodes' in section 'Domain' is 'cell centers'.",
+        other + "'vertices'.");
+      refuse(scene.domain.shape == Shape::mesh_file || scene.domain.shape == Shape::image,
+             "needs flat sides of a lattice, which this 'Shape' in section 'Domain' has not.",
+             other + "'box'.");
+      refuse(pd.nodal_volume != NodalVolume::partial,
+             "needs 'Nodal volume = partial'.",
+             other + "that.");
+      refuse(scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty(),
+             "is not for cracks with 'Mesh = faces', where two nodes are at one place.",
+             other + "'removed'.");
+      refuse(scene.elasticity.kinematics == Kinematics::full,
+             "is not for 'Kinematics = full'.",
+             other + "'linear'.");
+      const auto &symmetry = scene.boundary_conditions.symmetry;
+      for (const types::boundary_id side : symmetry)
+        refuse(
+          side % 2 == 0 && std::count(symmetry.begin(), symmetry.end(), side + 1) > 0,
+          "knows one plane of symmetry along each axis, and 'Symmetry' in section 'Boundary conditions' has '" +
+            name_of_side(side, true) + "' and '" + name_of_side(side + 1, true) + "'.",
+          " Hold one of these sides by 'Displacement'.");
+      refuse(scene.material.fracture_energy || scene.material.critical_stretch,
+             "is not for bonds that may break.",
+             other + "leave 'Fracture energy' and 'Critical stretch' out.");
+      refuse(
+        scene.boundary_conditions.traction_layer > 0.,
+        "lets tractions act on the sides themselves; 'Traction layer' in section 'Boundary conditions' has no effect.",
+        " Leave that out.");
+      refuse(dim > 1 && scene.elasticity.model == ElasticModel::bond_based,
+             "is for 'Model = state-based' in section 'Elasticity'.",
+             other + "that.");
+      refuse(pd.form == OperatorForm::lattice,
+             "makes a matrix; 'Operator form' is 'lattice'.",
+             other + "'auto'.");
+    }
+
+
     /** Entries of section `Peridynamics` that elasticity does not have. */
     template <int dim>
     void check_peridynamics(const Scene<dim> &scene)
@@ -60,6 +119,7 @@ namespace PeriDeal
         "Surface correction",
         "with 'Fracture energy' in section 'Material' bonds at surfaces would break at another energy",
         "use 'none', or give 'Critical stretch'.");
+      check_fictitious_nodes(scene);
       refuse(pd.correction_direction != CorrectionDirection::both,
              "Correction direction",
              no_effect,
@@ -133,9 +193,16 @@ namespace PeriDeal
         return;
       const std::string scheme =
         "'Scheme = " + scene.coupling.scheme_text() + "' in section 'Coupling'";
-      if (scene.peridynamics.surface_correction != SurfaceCorrection::none)
+      if (scene.peridynamics.surface_correction != SurfaceCorrection::none &&
+          !scene.peridynamics.completes_families())
         entry_error(scene.peridynamics.where("Surface correction"),
-                    "is for 'Scheme = exchange', not for " + scheme + "; use 'none'.");
+                    "is for 'Scheme = exchange', not for " + scheme +
+                      "; use 'none' or 'fictitious nodes'.");
+      if (dim > 1 && scene.elasticity.model == ElasticModel::bond_based)
+        entry_error(
+          scene.elasticity.where("Model"),
+          "'bond-based' is not for " + scheme +
+            ": its zone would have a Poisson ratio of its own. Use 'state-based', or 'Scheme = exchange'.");
       if (scene.coupling.scheme == CouplingScheme::splice &&
           scene.elasticity.solver != ElasticSolver::linear)
         entry_error(scene.elasticity.where("Solver"),

@@ -117,8 +117,9 @@ namespace PeriDeal
       "Factors of bonds that make up for missing ones: beside cracks only (`crack scaling`, for finite elements with "
       "`Mesh = pairs`, too); or wherever the energy of a unit gradient is not that of the classical body (`energy`), at sides, cracks and "
       "voids. Elasticity has `energy`, of stretches along the axes, `volume`, by the volumes of both ends' families, and `moments`, the smallest change of bonds "
-      "with which a uniform strain has its dilatation, stress and energy at each node whose bonds do not get negative factors by it.",
-      {"none", "crack scaling", "energy", "volume", "moments"});
+      "with which a uniform strain has its dilatation, stress and energy at each node whose bonds do not get negative factors by it; and `fictitious nodes` beyond flat sides, "
+      "which continue the displacement linearly and complete the families inside.",
+      {"none", "crack scaling", "energy", "volume", "moments", "fictitious nodes"});
     declare(
       "Correction direction",
       EntryType::choice,
@@ -173,8 +174,9 @@ namespace PeriDeal
     flux_treatment       = choice<FluxTreatment>("Flux treatment");
     surface_correction   = choice<SurfaceCorrection>("Surface correction");
     correction_direction = choice<CorrectionDirection>("Correction direction");
-    if (physics != Physics::elasticity && (surface_correction == SurfaceCorrection::volume ||
-                                           surface_correction == SurfaceCorrection::moments))
+    if (physics != Physics::elasticity &&
+        (surface_correction == SurfaceCorrection::volume ||
+         surface_correction == SurfaceCorrection::moments || completes_families()))
       error("Surface correction",
             "'" + text("Surface correction") +
               "' is for 'Physics = elasticity'; use 'none', 'crack scaling' or 'energy'.");
@@ -188,6 +190,12 @@ namespace PeriDeal
     return surface_correction == SurfaceCorrection::volume ||
            surface_correction == SurfaceCorrection::energy ||
            surface_correction == SurfaceCorrection::moments;
+  }
+
+
+  bool Peridynamics::completes_families() const
+  {
+    return surface_correction == SurfaceCorrection::fictitious_nodes;
   }
 
 

@@ -24,7 +24,7 @@ namespace PeriDeal
     class ElementRun : public ElasticRun<dim>
     {
     public:
-      /** @param model finite elements or coupled */
+      /** @param model finite elements, coupled, or peridynamics with fictitious nodes, which has elements for what is beside bonds: loads, masses, stresses */
       ElementRun(const Model model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
         : scene(scene)
         , model(model)
@@ -33,20 +33,23 @@ namespace PeriDeal
         {
           Timings::Scope scope(this->timings, "unknowns");
           handler.distribute_dofs(FE_Q<dim>(degree()));
-          if (model == Model::coupled)
+          if (model != Model::finite_elements)
             number_along_lattice(handler, scene.domain);
         }
-        Timings::Scope                        scope(this->timings, "operator");
-        std::unique_ptr<ElasticCoupling<dim>> coupling;
-        if (model == Model::coupled)
-          {
-            node_set = std::make_unique<Nodes<dim>>(handler,
-                                                    scene.domain,
-                                                    scene.cracks,
-                                                    NodalVolume::partial);
-            coupling = make_elastic_coupling(*node_set, scene);
-          }
-        elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
+        {
+          Timings::Scope                        scope(this->timings, "operator");
+          std::unique_ptr<ElasticCoupling<dim>> coupling;
+          if (model != Model::finite_elements)
+            {
+              node_set = std::make_unique<Nodes<dim>>(handler,
+                                                      scene.domain,
+                                                      scene.cracks,
+                                                      NodalVolume::partial);
+              coupling = model == Model::coupled ? make_elastic_coupling(*node_set, scene) :
+                                                   make_families_everywhere(*node_set, scene);
+            }
+          elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
+        }
         if (model == Model::coupled && scene.coupling.certificate)
           examine();
       }
@@ -74,6 +77,11 @@ namespace PeriDeal
       Point<dim> position(const unsigned int node) const override
       {
         return elements->position(node);
+      }
+
+      double volume(const unsigned int node) const override
+      {
+        return elements->volume(node);
       }
 
       std::vector<double> at_points(const PointEvaluator<dim>              &reader,
@@ -199,24 +207,25 @@ namespace PeriDeal
 
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
-        std::vector<std::pair<std::string, std::string>> list{
-          {"elements", "Q" + std::to_string(degree())}};
+        std::vector<std::pair<std::string, std::string>> list;
+        if (model != Model::peridynamics)
+          list.emplace_back("elements", "Q" + std::to_string(degree()));
         if (model == Model::coupled)
           {
             list.emplace_back("coupling", scene.coupling.scheme_text());
-            if (scene.coupling.scheme != CouplingScheme::exchange)
-              list.emplace_back("bonds",
-                                scene.elasticity.model == ElasticModel::bond_based ? "bond-based" :
-                                                                                     "state-based");
             list.emplace_back("zone", scene.coupling.zone_text());
             list.emplace_back("share of the body in the zone",
                               to_text(100. * elements->bonds().zone_share()) + " %");
+          }
+        if (model != Model::finite_elements)
+          {
             list.emplace_back("horizon", to_text(scene.horizon()));
             list.emplace_back("surface correction",
+                              scene.peridynamics.completes_families() ? "fictitious nodes" :
                               scene.peridynamics.surface_correction ==
                                   SurfaceCorrection::crack_scaling ?
-                                "crack scaling" :
-                                "none");
+                                                                        "crack scaling" :
+                                                                        "none");
           }
         if (!scene.cracks.cracks.empty())
           list.emplace_back("cracks", scene.cracks.mesh == CrackMesh::faces ? "faces" : "removed");
@@ -227,8 +236,10 @@ namespace PeriDeal
       {
         if (!certificate || certificate->fault().empty())
           return {};
-        return {"'Scheme = " + scene.coupling.scheme_text() +
-                "' in section 'Coupling': " + certificate->fault() + "."};
+        return {
+          "'Scheme = " + scene.coupling.scheme_text() +
+          "' in section 'Coupling': " + certificate->fault() +
+          ". A zone that stays more than two horizons clear of the sides, and a wider 'Overlap', make it less; 'exchange' has none of it."};
       }
 
       const CouplingCertificate *examined() const override
@@ -250,7 +261,7 @@ namespace PeriDeal
 
       unsigned int degree() const
       {
-        return model == Model::coupled ? 1 : scene.finite_elements.degree;
+        return model == Model::finite_elements ? scene.finite_elements.degree : 1;
       }
 
       /** Call visit(values, point, indices of the nodes, gradient of the displacement) at the points of all own cells. */

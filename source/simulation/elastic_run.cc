@@ -50,8 +50,10 @@ namespace PeriDeal
                                                     const Triangulation<dim> &mesh,
                                                     const Scene<dim>         &scene)
   {
-    return model == Model::peridynamics ? make_state_run(mesh, scene) :
-                                          make_elastic_element_run(model, mesh, scene);
+    // With fictitious nodes peridynamics is the coupled model without elements.
+    return model == Model::peridynamics && !scene.peridynamics.completes_families() ?
+             make_state_run(mesh, scene) :
+             make_elastic_element_run(model, mesh, scene);
   }
 
 

@@ -75,13 +75,8 @@ namespace PeriDeal
                                 std::vector<std::string> &notes)
     {
       const auto &models = scene.general.models;
-      const auto  runs   = [&](const Model model) {
-        return std::find(models.begin(), models.end(), model) != models.end();
-      };
-      const bool in_zone = runs(Model::coupled) &&
-                           scene.coupling.scheme != CouplingScheme::exchange;
       if (dim == 1 || scene.elasticity.model != ElasticModel::bond_based ||
-          !(runs(Model::peridynamics) || in_zone))
+          std::find(models.begin(), models.end(), Model::peridynamics) == models.end())
         return;
       const double own    = bond_based_poisson(dim, scene.elasticity.plane);
       double       lowest = 1., highest = -1.;

@@ -160,9 +160,9 @@ namespace PeriDeal
         fem = model.get();
       else if (model->name() == to_string(Model::peridynamics))
         pd = model.get();
-    if (fem == nullptr || pd == nullptr || pd->nodes() == nullptr)
+    if (fem == nullptr || pd == nullptr)
       return;
-    const unsigned int  n = pd->nodes()->n_owned();
+    const unsigned int  n = pd->displacement.locally_owned_size() / dim;
     std::vector<double> squares(n);
     double              square = 0., reference = 0., largest = 0.;
     for (unsigned int d = 0; d < dim; ++d)
@@ -173,10 +173,10 @@ namespace PeriDeal
         interpolate_to(fem->dofs(), of_fem, pd->dofs(), interpolant);
         for (unsigned int i = 0; i < n; ++i)
           {
-            if (!domain.shows(pd->nodes()->position(i)))
+            if (!domain.shows(pd->position(i)))
               continue;
             const double value      = interpolant.local_element(i),
-                         difference = of_pd.local_element(i) - value, v = pd->nodes()->volume(i);
+                         difference = of_pd.local_element(i) - value, v = pd->volume(i);
             squares[i] += difference * difference;
             square += v * difference * difference;
             reference += v * value * value;

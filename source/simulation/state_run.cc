@@ -69,6 +69,11 @@ namespace PeriDeal
         return node_set->position(node);
       }
 
+      double volume(const unsigned int node) const override
+      {
+        return node_set->volume(node);
+      }
+
       std::vector<double> at_points(const PointEvaluator<dim>              &reader,
                                     const std::vector<std::vector<double>> &points) const override
       {

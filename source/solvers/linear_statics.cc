@@ -11,7 +11,7 @@ namespace PeriDeal
 {
   namespace
   {
-    /** One linear system by conjugate gradients with multigrid. */
+    /** One linear system by conjugate gradients with multigrid, by GMRES where the forces have no energy. */
     class LinearStatics : public StaticSolver
     {
     public:

@@ -1,88 +1,31 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-
 #include <perideal/analysis/coupling_certificate.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include <cmath>
 
-#include "elastic_test_tools.h"
+#include "elastic_coupling_tools.h"
 
 using namespace PeriDeal;
 using namespace PeriDeal::OperatorTests;
 
 namespace
 {
-  template <int dim>
-  dealii::Tensor<1, dim> linear_field(const dealii::Point<dim> &p)
-  {
-    return some_gradient<dim>() * p;
-  }
-
-
-  template <int dim>
-  Settings zoned(const std::string &zone, const double nu, const std::string &plane = "stress")
-  {
-    const char *const corners[] = {"", "1.6", "1.4, 1.2", "0.8, 0.7, 0.6"};
-    const char *const counts[]  = {"", "16", "14, 12", "8, 7, 6"};
-    Settings          settings  = box<dim>() + Settings{{"Domain/Upper corner", corners[dim]},
-                                              {"Domain/Cells", counts[dim]},
-                                              {"Material/Poisson ratio", std::to_string(nu)},
-                                              {"Coupling/Zone", zone}};
-    if (dim == 2)
-      settings.push_back({"Elasticity/Plane", plane});
-    return settings;
-  }
-
-
   /** Linear patch, symmetry, momentum and moment of momentum, positive remainders. */
   template <int dim>
   void check_patch(const Settings &settings)
   {
-    const Body<dim>                        body(settings, Model::coupled);
-    dealii::TrilinosWrappers::SparseMatrix with, without;
-    body.elements->assemble_intact(with, true);
-    body.elements->assemble_intact(without, false);
-    Vector x = body.values(linear_field<dim>), y(x), z(x);
-    with.vmult(y, x);
-    without.vmult(z, x);
-    const double size = z.linfty_norm();
-    y -= z;
-    EXPECT_LT(y.linfty_norm() / size, 1e-12);
-
-    x = body.values(bumpy_vector<dim>);
-    with.vmult(y, x);
-    with.Tvmult(z, x);
-    z -= y;
-    EXPECT_LT(z.linfty_norm() / y.linfty_norm(), 1e-13);
-
-    for (const Vector &motion : body.elements->near_null_space())
-      EXPECT_LT(std::abs(motion * y) / (motion.linfty_norm() * y.l1_norm()), 1e-13);
+    const Body<dim> body(settings, Model::coupled);
+    EXPECT_LT(defect(body, linear_field<dim>), 1e-12);
+    EXPECT_LT(asymmetry(body), 1e-13);
+    EXPECT_LT(unbalanced(body), 1e-13);
     EXPECT_GT(body.elements->lowest_remainder(), -1e-12);
   }
 
 
-  void expect_same_on_all_processes(const Settings &settings)
-  {
-    const Body<2> together(settings, Model::coupled),
-      alone(settings, Model::coupled, MPI_COMM_SELF);
-    Vector x = together.values(bumpy_vector<2>), y(x), x1 = alone.values(bumpy_vector<2>), y1(x1);
-    together.elements->multiply(y, x);
-    alone.elements->multiply(y1, x1);
-    unsigned int n_compared = 0;
-    for (unsigned int i = 0; i < y.locally_owned_size(); ++i)
-      for (unsigned int k = 0; k < y1.locally_owned_size() / 2; ++k)
-        if (together.elements->position(i / 2).distance(alone.elements->position(k)) < 1e-9)
-          {
-            EXPECT_NEAR(y.local_element(i), y1.local_element(2 * k + i % 2), 1e-12);
-            ++n_compared;
-          }
-    EXPECT_EQ(n_compared, y.locally_owned_size());
-    EXPECT_EQ(together.elements->size().bonds, alone.elements->size().bonds);
-  }
 } // namespace
 
 
@@ -171,8 +114,6 @@ TEST(ElasticExchange, same_on_all_processes)
 
 namespace
 {
-  using Matrix = dealii::TrilinosWrappers::SparseMatrix;
-
   const std::vector<std::string> schemes{"splice", "blending"};
 
 
@@ -180,84 +121,60 @@ namespace
   template <int dim>
   Settings block(const std::string &scheme, const std::string &overlap = "0")
   {
-    const std::string half    = overlap == "0" ? "0.15" : "0.05";
-    const std::string zones[] = {"",
-                                 half + " - abs(x-0.8)",
-                                 half + " - max(abs(x-0.7), abs(y-0.6))"};
-    return zoned<dim>(zones[dim], 0.25) + Settings{{"Peridynamics/Horizon ratio", "2"},
-                                                   {"Coupling/Scheme", scheme},
-                                                   {"Coupling/Overlap", overlap}};
-  }
-
-
-  /** Of a field, |(K - K of finite elements) u| over the largest of the latter. */
-  template <int dim, typename Field>
-  double defect(const Body<dim> &body, const Field &field)
-  {
-    Matrix with, without;
-    body.elements->assemble_intact(with, true);
-    body.elements->assemble_intact(without, false);
-    Vector x = body.values(field), y(x), z(x);
-    with.vmult(y, x);
-    without.vmult(z, x);
-    const double size = z.linfty_norm();
-    z -= y;
-    return z.linfty_norm() / size;
-  }
-
-
-  template <int dim>
-  double asymmetry(const Body<dim> &body)
-  {
-    Matrix matrix;
-    body.elements->assemble_intact(matrix, true);
-    Vector x = body.values(bumpy_vector<dim>), y(x), z(x);
-    matrix.vmult(y, x);
-    matrix.Tvmult(z, x);
-    z -= y;
-    return z.linfty_norm() / y.linfty_norm();
-  }
-
-
-  /** Largest |m . K x| over max |m| sum |K x| for the rigid motions m. */
-  template <int dim>
-  double unbalanced(const Body<dim> &body)
-  {
-    Matrix matrix;
-    body.elements->assemble_intact(matrix, true);
-    Vector x = body.values(bumpy_vector<dim>), y(x);
-    matrix.vmult(y, x);
-    double largest = 0.;
-    for (const Vector &motion : body.elements->near_null_space())
-      largest = std::max(largest, std::abs(motion * y) / (motion.linfty_norm() * y.l1_norm()));
-    return largest;
+    const std::string half     = overlap == "0" ? "0.15" : "0.05";
+    const std::string zones[]  = {"",
+                                  half + " - abs(x-0.8)",
+                                  half + " - max(abs(x-0.7), abs(y-0.6))",
+                                  half + " - max(max(abs(x-0.6), abs(y-0.6)), abs(z-0.6))"};
+    Settings          settings = zoned<dim>(zones[dim], 0.25);
+    if (dim == 3)
+      settings = settings +
+                 Settings{{"Domain/Upper corner", "1.2, 1.2, 1.2"}, {"Domain/Cells", "12, 12, 12"}};
+    return settings + Settings{{"Peridynamics/Horizon ratio", "2"},
+                               {"Coupling/Scheme", scheme},
+                               {"Coupling/Overlap", overlap}};
   }
 
 
   /** With peridynamics everywhere both schemes are the operator of peridynamics, heat and cracks included. */
   template <int dim>
-  void expect_peridynamics(const std::string &scheme, const std::string &model)
+  void expect_peridynamics(const std::string &scheme, const Settings &more = {})
   {
     Settings settings = zoned<dim>("everywhere", dim == 1 ? 0. : 0.4) +
                         Settings{{"Coupling/Scheme", scheme},
-                                 {"Elasticity/Model", model},
                                  {"Material/Thermal expansion", "0.001"},
-                                 {"Elasticity/Temperature change", "3 + x*x + 2*x"}};
-    if (dim == 2)
-      settings = settings + Settings{{"Cracks/Segments", "0.43, 0.55 ; 1.01, 0.75"}};
+                                 {"Elasticity/Temperature change", "3 + x*x + 2*x"}} +
+                        more;
     const Body<dim> coupled(settings, Model::coupled), alone(settings, Model::peridynamics);
-    Vector          x = coupled.values(bumpy_vector<dim>), y(x), z(x);
+    // Both have ghosts of their own.
+    Vector     x           = coupled.values(bumpy_vector<dim>), y(x);
+    Vector     x_alone     = alone.values(bumpy_vector<dim>), y_alone(x_alone);
+    const auto expect_same = [&](const std::string &what) {
+      const double size = y.linfty_norm();
+      for (unsigned int i = 0; i < y.locally_owned_size(); ++i)
+        EXPECT_NEAR(y.local_element(i), y_alone.local_element(i), 1e-13 * size)
+          << scheme << ", " << dim << "D: " << what;
+    };
     coupled.op().multiply(y, x);
-    alone.op().multiply(z, x);
-    const double size = z.linfty_norm();
-    z -= y;
-    EXPECT_LT(z.linfty_norm() / size, 1e-13) << scheme << ", " << model << ", " << dim << "D";
+    alone.op().multiply(y_alone, x_alone);
+    expect_same("K");
     coupled.op().unbalanced(y, x, 0.);
-    alone.op().unbalanced(z, x, 0.);
-    z -= y;
-    EXPECT_LT(z.linfty_norm() / size, 1e-13) << scheme << ", " << model << ", " << dim << "D";
-    EXPECT_NEAR(coupled.op().energy(x) / alone.op().energy(x), 1., 1e-12);
+    alone.op().unbalanced(y_alone, x_alone, 0.);
+    expect_same("forces");
+    EXPECT_NEAR(coupled.op().energy(x) / alone.op().energy(x_alone), 1., 1e-12);
     EXPECT_EQ(coupled.op().size().bonds, alone.op().size().bonds);
+
+    for (const Body<dim> *body : {&coupled, &alone})
+      {
+        Vector warmer;
+        body->op().initialize_nodal_vector(warmer);
+        for (unsigned int i = 0; i < warmer.locally_owned_size(); ++i)
+          warmer.local_element(i) = 2. + body->position(i)[0];
+        body->op().set_temperature_change(warmer);
+      }
+    coupled.op().unbalanced(y, x, 0.);
+    alone.op().unbalanced(y_alone, x_alone, 0.);
+    expect_same("another temperature");
   }
 } // namespace
 
@@ -265,12 +182,15 @@ namespace
 TEST(StateCouplings, everywhere_is_peridynamics)
 {
   for (const std::string &scheme : schemes)
-    for (const std::string model : {"state-based", "bond-based"})
-      {
-        expect_peridynamics<1>(scheme, model);
-        expect_peridynamics<2>(scheme, model);
-        expect_peridynamics<3>(scheme, model);
-      }
+    {
+      expect_peridynamics<1>(scheme);
+      expect_peridynamics<2>(scheme, {{"Cracks/Segments", "0.43, 0.55 ; 1.01, 0.75"}});
+      expect_peridynamics<2>(scheme,
+                             {{"Elasticity/Plane", "strain"},
+                              {"Material/Phases/Regions", "stiff: x > 0.7"},
+                              {"Material/Phases/Young modulus", "stiff: 30"}});
+      expect_peridynamics<3>(scheme);
+    }
 }
 
 
@@ -282,6 +202,8 @@ TEST(StateCouplings, splice_is_exact_for_linear_fields_but_does_not_balance)
       const Body<2> plate(block<2>("splice", overlap), Model::coupled);
       EXPECT_LT(defect(bar, linear_field<1>), 1e-13);
       EXPECT_LT(defect(plate, linear_field<2>), 1e-13);
+      EXPECT_LT(defect(Body<3>(block<3>("splice", overlap), Model::coupled), linear_field<3>),
+                1e-13);
       EXPECT_FALSE(plate.elements->symmetric());
       EXPECT_GT(asymmetry(plate), 1e-3);
       EXPECT_GT(unbalanced(plate), 1e-4);
@@ -297,11 +219,17 @@ TEST(StateCouplings, blending_balances_but_is_not_exact)
       EXPECT_TRUE(plate.elements->symmetric());
       EXPECT_LT(asymmetry(plate), 1e-14);
       EXPECT_LT(unbalanced(plate), 1e-14);
-      const double linear = defect(plate, linear_field<2>);
-      EXPECT_GT(linear, 1e-4);
-      EXPECT_LT(linear, 1.);
       EXPECT_GE(plate.elements->lowest_remainder(), -1e-14);
+      const double linear = defect(plate, linear_field<2>);
+      std::cout << "blending, overlap " << overlap << ": defect of a linear field " << linear
+                << std::endl;
+      EXPECT_GT(linear, 1e-2);
+      EXPECT_LT(linear, 0.3);
     }
+  const Body<3> block_3d(block<3>("blending", "0.5"), Model::coupled);
+  EXPECT_LT(asymmetry(block_3d), 1e-14);
+  EXPECT_LT(unbalanced(block_3d), 1e-14);
+  EXPECT_GE(block_3d.elements->lowest_remainder(), -1e-14);
 }
 
 
@@ -344,12 +272,17 @@ TEST(StateCouplings, free_thermal_expansion)
 
 TEST(StateCouplings, same_on_all_processes)
 {
+  const Settings crack{{"Cracks/Segments", "0.4, 0.55 ; 1.0, 0.75"}};
   for (const std::string &scheme : schemes)
     {
-      const Settings settings =
-        zoned<2>("cracks: 1", 0.3) + Settings{{"Cracks/Segments", "0.4, 0.55 ; 1.0, 0.75"},
-                                              {"Coupling/Scheme", scheme},
-                                              {"Coupling/Overlap", "1"}};
-      expect_same_on_all_processes(settings);
+      const Settings with{{"Coupling/Scheme", scheme}, {"Coupling/Overlap", "1"}};
+      expect_same_on_all_processes(zoned<2>("cracks: 1", 0.3) + crack + with);
+      // Rows that reach far beyond the halo.
+      expect_same_on_all_processes(zoned<2>("everywhere", 0.3) + crack + with +
+                                   Settings{{"Peridynamics/Horizon ratio", "5"}});
+      expect_same_on_all_processes(
+        zoned<2>("x - 0.5", 0.3) + with +
+        Settings{{"Peridynamics/Horizon ratio", "5"},
+                 {"Peridynamics/Surface correction", "fictitious nodes"}});
     }
 }

@@ -432,6 +432,36 @@ end
   }
 
 
+  TEST(ElasticScenes, fictitious_nodes)
+  {
+    const std::string entry = "Peridynamics/Surface correction",
+                      given = entry + "=fictitious nodes";
+    EXPECT_EQ(elastic_fault({given}), "");
+    EXPECT_EQ(elastic_fault<1>({given}), "");
+    EXPECT_EQ(
+      elastic_fault({given, "Models=coupled", "Coupling/Zone=x-0.5", "Coupling/Scheme=blending"}),
+      "");
+    const std::vector<std::pair<Overrides, std::string>> list = {
+      {{"Models=finite elements"}, "has no effect"},
+      {{"Models=coupled", "Coupling/Zone=x-0.5"}, "'splice' or 'blending'"},
+      {{"Domain/Nodes=cell centers"}, "'cell centers'"},
+      {{"Peridynamics/Nodal volume=full"}, "'Nodal volume = partial'"},
+      {{"Cracks/Segments=0.2,0.5 ; 0.5,0.5", "Cracks/Mesh=faces"}, "'removed'"},
+      {{e + "Kinematics=full", e + "Solver=conjugate gradients"}, "'Kinematics = full'"},
+      {{"Material/Critical stretch=0.1"}, "may break"},
+      {{b + "Traction=right: 1, 0", b + "Traction layer=0.1"}, "'Traction layer'"},
+      {{e + "Model=bond-based"}, "'Model = state-based'"},
+      {{b + "Symmetry=bottom, top"}, "'bottom' and 'top'"},
+      {{"Peridynamics/Operator form=lattice"}, "makes a matrix"}};
+    for (const auto &[more, words] : list)
+      {
+        Overrides overrides = more;
+        overrides.push_back(given);
+        expect(elastic_fault(overrides), entry, {words});
+      }
+  }
+
+
   TEST(ElasticScenes, coupled)
   {
     const std::string pd = "Peridynamics/", c = "Coupling/";
@@ -456,6 +486,9 @@ end
            {"'Scheme = exchange'", "blending"});
     expect(with({c + "Overlap=1"}), c + "Overlap", {"splice", "'exchange'"});
     EXPECT_EQ(with({e + "Model=bond-based"}), "");
+    expect(with({e + "Model=bond-based", c + "Scheme=splice"}),
+           e + "Model",
+           {"Poisson ratio of its own", "'Scheme = exchange'"});
     expect(with({e + "Model=bond-based", e + "Kinematics=full", e + "Solver=conjugate gradients"}),
            e + "Kinematics",
            {"coupled"});

@@ -46,4 +46,7 @@ namespace PeriDeal
   /** The owned values of a vector with all columns of a matrix as ghosts, which hanging nodes carry beyond the halo. Collective. */
   Vector with_columns_as_ghosts(const Vector                                 &v,
                                 const dealii::TrilinosWrappers::SparseMatrix &matrix);
+
+  /** Clear rows and columns of the unknowns that are marked by a number above 0, and put 1 on their diagonal. Collective. */
+  void hold_unknowns(dealii::TrilinosWrappers::SparseMatrix &matrix, const Vector &marked);
 } // namespace PeriDeal

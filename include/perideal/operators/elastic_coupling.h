@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace PeriDeal
@@ -43,10 +44,11 @@ namespace PeriDeal
     struct Family
     {
       std::vector<unsigned int>  nodes;     // the node, and its neighbours
+      std::vector<bool>          has_row;   // of these nodes those to whose rows it adds
       dealii::FullMatrix<double> stiffness; // K_f, rows and columns interleaved like the unknowns
       dealii::Vector<double>     thermal;   // the load by thermal strains
       double                     thermal_energy = 0.; // of a family that is held everywhere
-      unsigned int               n_bonds        = 0;  // unbroken
+      double n_bonds = 0.; // unbroken ones in the zone; of all families each is counted once
     };
 
     /** The thermal strain at a node, by its local number. */
@@ -57,18 +59,43 @@ namespace PeriDeal
     /** What the rows of an owned node have of pairs, in a fixed order, broken bonds included. @p bonds is overwritten. */
     virtual void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const = 0;
 
-    /** Visit what the family of an owned node adds, also to rows of other processes. @p intact: as if no crack were there. */
+    /**
+     * Visit what the family of an owned node adds, also to rows of other processes.
+     *
+     * @param intact as if no crack were there
+     * @param strain empty: without thermal strains
+     */
     virtual void visit_family(const unsigned int /*node*/,
                               const bool /*intact*/,
                               const ThermalStrain & /*strain*/,
                               const std::function<void(const Family &)> & /*visit*/) const
     {}
 
+    /** The same, with `nodes` and `has_row` of the intact body only. */
+    virtual void visit_nodes_of_family(const unsigned int /*node*/,
+                                       const std::function<void(const Family &)> & /*visit*/) const
+    {}
+
+    /** What is wrong with an owned node of the body with its cracks, or nothing. */
+    virtual std::string fault_of(const unsigned int /*node*/) const
+    {
+      return {};
+    }
+
     /**
      * Turn the matrix K_c of an intact cell (rows and columns interleaved) into what is left of it, R_c; broken bonds count as whole ones. Returns whether anything has
      * changed.
      */
     virtual bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const = 0;
+
+    /**
+     * Planes of symmetry beyond which families go on: what the other half of the body does normal to them acts on all nodes near them, not on those in the plane alone. At most
+     * one along each axis.
+     */
+    virtual std::vector<dealii::types::boundary_id> mirrors() const
+    {
+      return {};
+    }
 
     /** The matrix that ElasticElements adds up is symmetric. */
     virtual bool symmetric() const = 0;
@@ -90,4 +117,9 @@ namespace PeriDeal
   template <int dim>
   std::unique_ptr<ElasticCoupling<dim>> make_elastic_coupling(Nodes<dim>       &nodes,
                                                               const Scene<dim> &scene);
+
+  /** Families everywhere, with nothing left to the elements: peridynamics alone. Otherwise the same. */
+  template <int dim>
+  std::unique_ptr<ElasticCoupling<dim>> make_families_everywhere(Nodes<dim>       &nodes,
+                                                                 const Scene<dim> &scene);
 } // namespace PeriDeal

@@ -27,7 +27,7 @@ namespace PeriDeal
    *
    * One scalar DoFHandler numbers the nodes; each has dim unknowns, interleaved.
    *
-   * With a coupling its bonds are added and the cells changed (ElasticCoupling). Cells that a crack cuts carry nothing (`Mesh = removed`), so that in a zone the
+   * With a coupling its bonds and families are added, with their thermal loads, and the cells changed (ElasticCoupling); K is as symmetric as the coupling. Cells that a crack cuts carry nothing (`Mesh = removed`), so that in a zone the
    * bonds around the crack alone hold what they do; unless the crack is cut into the mesh. Thermal strains of bonds are the means of both ends.
    *
    * Crack-side scaling: at nodes with broken bonds and on cut cells g_i = V_i C_abab/(-(1/2) sum_j tr K_ij r_ij^2), C_abab = dim lambda + dim (dim + 1) mu, clipped
@@ -100,24 +100,28 @@ namespace PeriDeal
     struct CellData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
-    void find_positions();
-    void find_conditions();
-    void assemble();
-    void assemble_cell(CellData &data) const;
-    void change_cell(const Cell &cell, CellData &data) const;
-    void find_cut_cells();
-    void find_crack_factors();
-    void add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
-    void add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
-    void add_thermal_bonds();
-    void add_family_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
-    void add_families(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
-    void add_thermal_families();
-    template <typename Visit>
-    void   for_each_family(const bool intact, const Visit &visit) const;
+    /** Of cells alone, with rows of other processes; not compressed. */
+    dealii::TrilinosWrappers::SparsityPattern element_pattern() const;
+
+    void   find_positions();
+    void   find_conditions();
+    void   assemble();
+    void   assemble_cell(CellData &data) const;
+    void   change_cell(const Cell &cell, CellData &data) const;
+    void   find_cut_cells();
+    void   find_crack_factors();
+    void   add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
+    void   add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
+    void   add_thermal_bonds();
+    void   add_family_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
+    double add_families(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                        const bool                              intact) const; // their bonds
+    void   unknowns_of(const typename ElasticCoupling<dim>::Family  &family,
+                       std::vector<dealii::types::global_dof_index> &indices) const;
+    void   add_thermal_families();
     bool   any_thermal() const;
     double thermal_strain_at(const unsigned int node) const;
-    void   count_bonds();
+    void   count_bonds(const double n_in_families);
     double bond_factor(const unsigned int i, const unsigned int j) const;
     double temperature_change_at(const unsigned int node) const;
     double thermal_strain(const dealii::Point<dim> &p, const double temperature_change) const;

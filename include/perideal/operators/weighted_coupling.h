@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/operators/coupling.h>
+#include <perideal/operators/node_weights.h>
 #include <perideal/scene/scene.h>
 
 #include <vector>
@@ -37,14 +38,13 @@ namespace PeriDeal
     /** What a bond counts, for the row of a node. */
     virtual double bond_weight(const double own, const double neighbor) const = 0;
 
-    /** b at a vertex of a cell. */
-    double weight_at(const Cell &cell, const unsigned int vertex) const;
+    const NodeWeights<dim> &weights() const;
 
   private:
-    Families<dim>       bonds;
-    Zone<dim>           zone;
-    double              overlap;                 // a length
-    std::vector<double> weights, weights_at_end; // of nodes
+    Families<dim>    bonds;
+    Zone<dim>        zone;
+    double           overlap; // a length
+    NodeWeights<dim> weights_now, weights_at_end;
   };
 
 

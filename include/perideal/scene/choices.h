@@ -66,7 +66,8 @@ namespace PeriDeal
     crack_scaling,
     energy,
     volume, // this and the next: elasticity
-    moments
+    moments,
+    fictitious_nodes
   };
 
   enum class CorrectionDirection

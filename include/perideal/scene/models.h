@@ -36,6 +36,9 @@ namespace PeriDeal
     /** The surface correction is one of the linear peridynamic solid. */
     bool corrects_elastic_bonds() const;
 
+    /** Elastic families go on beyond the sides of the body (FictitiousExtension). */
+    bool completes_families() const;
+
     /** Throws UserError for values out of range and contradicting entries. */
     void parse(const Physics physics = Physics::heat);
 

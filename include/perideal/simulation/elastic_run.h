@@ -47,6 +47,9 @@ namespace PeriDeal
     /** Place of an owned node. Not collective. */
     virtual dealii::Point<dim> position(const unsigned int node) const = 0;
 
+    /** What an owned node has of the body's volume. Not collective. */
+    virtual double volume(const unsigned int node) const = 0;
+
     /** Displacement, stress and a computed temperature at points, in the order of elastic_columns(), one point after the other. */
     virtual std::vector<double> at_points(const PointEvaluator<dim>              &reader,
                                           const std::vector<std::vector<double>> &points) const = 0;

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include "elastic_test_tools.h"
+
+namespace PeriDeal
+{
+  namespace OperatorTests
+  {
+    using Matrix = dealii::TrilinosWrappers::SparseMatrix;
+
+    template <int dim>
+    dealii::Tensor<1, dim> linear_field(const dealii::Point<dim> &p)
+    {
+      return some_gradient<dim>() * p;
+    }
+
+
+    template <int dim>
+    Settings zoned(const std::string &zone, const double nu, const std::string &plane = "stress")
+    {
+      const char *const corners[] = {"", "1.6", "1.4, 1.2", "0.8, 0.7, 0.6"};
+      const char *const counts[]  = {"", "16", "14, 12", "8, 7, 6"};
+      Settings          settings  = box<dim>() + Settings{{"Domain/Upper corner", corners[dim]},
+                                                {"Domain/Cells", counts[dim]},
+                                                {"Material/Poisson ratio", std::to_string(nu)},
+                                                {"Coupling/Zone", zone}};
+      if (dim == 2)
+        settings.push_back({"Elasticity/Plane", plane});
+      return settings;
+    }
+
+
+    /** Of a field, |(K - K of finite elements) u| over the largest of the latter. */
+    template <int dim, typename Field>
+    double defect(const Body<dim> &body, const Field &field)
+    {
+      Matrix with, without;
+      body.elements->assemble_intact(with, true);
+      body.elements->assemble_intact(without, false);
+      Vector x = body.values(field), y(x), z(x);
+      with.vmult(y, x);
+      without.vmult(z, x);
+      const double size = z.linfty_norm();
+      z -= y;
+      return z.linfty_norm() / size;
+    }
+
+
+    template <int dim>
+    double asymmetry(const Body<dim> &body)
+    {
+      Matrix matrix;
+      body.elements->assemble_intact(matrix, true);
+      Vector x = body.values(bumpy_vector<dim>), y(x), z(x);
+      matrix.vmult(y, x);
+      matrix.Tvmult(z, x);
+      z -= y;
+      return z.linfty_norm() / y.linfty_norm();
+    }
+
+
+    /** Largest |m . K x| over max |m| sum |K x| for the rigid motions m. */
+    template <int dim>
+    double unbalanced(const Body<dim> &body)
+    {
+      Matrix matrix;
+      body.elements->assemble_intact(matrix, true);
+      Vector x = body.values(bumpy_vector<dim>), y(x);
+      matrix.vmult(y, x);
+      double largest = 0.;
+      for (const Vector &motion : body.elements->near_null_space())
+        largest = std::max(largest, std::abs(motion * y) / (motion.linfty_norm() * y.l1_norm()));
+      return largest;
+    }
+
+
+    inline void expect_same_on_all_processes(const Settings &settings)
+    {
+      const Body<2> together(settings, Model::coupled),
+        alone(settings, Model::coupled, MPI_COMM_SELF);
+      Vector x = together.values(bumpy_vector<2>), y(x), x1 = alone.values(bumpy_vector<2>), y1(x1);
+      together.elements->multiply(y, x);
+      alone.elements->multiply(y1, x1);
+      unsigned int n_compared = 0;
+      for (unsigned int i = 0; i < y.locally_owned_size(); ++i)
+        for (unsigned int k = 0; k < y1.locally_owned_size() / 2; ++k)
+          if (together.elements->position(i / 2).distance(alone.elements->position(k)) < 1e-9)
+            {
+              EXPECT_NEAR(y.local_element(i), y1.local_element(2 * k + i % 2), 1e-12);
+              ++n_compared;
+            }
+      EXPECT_EQ(n_compared, y.locally_owned_size());
+      // What a preconditioner gets: the same, without rows and columns that are held.
+      dealii::TrilinosWrappers::SparseMatrix surrogate, surrogate_1;
+      together.elements->surrogate(surrogate);
+      alone.elements->surrogate(surrogate_1);
+      EXPECT_NEAR(surrogate.frobenius_norm() / surrogate_1.frobenius_norm(), 1., 1e-12);
+      EXPECT_EQ(together.elements->size().bonds, alone.elements->size().bonds);
+    }
+  } // namespace OperatorTests
+} // namespace PeriDeal
