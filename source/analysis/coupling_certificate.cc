@@ -169,16 +169,15 @@ namespace PeriDeal
       result.n_bonds_of_full        = n_bonds;
       result.n_nonzeros_of_full     = 2 * n_bonds + n_nodes;
       if constexpr (std::is_same_v<OperatorType, ElasticElements<dim>>)
-        if (op.bonds().mirrors().empty()) // the other half of a body pulls at its nodes, too
-          {
-            Vector y(noise);
-            matrix.vmult(y, noise);
-            double largest = 0.;
-            for (const Vector &motion : op.near_null_space())
-              largest =
-                std::max(largest, std::abs(motion * y) / (motion.linfty_norm() * y.l1_norm()));
-            result.unbalanced = largest;
-          }
+        {
+          Vector y(noise);
+          matrix.vmult(y, noise);
+          double largest = 0.;
+          for (const Vector &motion : op.near_null_space())
+            largest =
+              std::max(largest, std::abs(motion * y) / (motion.linfty_norm() * y.l1_norm()));
+          result.unbalanced = largest;
+        }
       return result;
     }
   } // namespace

@@ -47,11 +47,25 @@ namespace PeriDeal
                             name_of_side(side, false) + "' is not normal to an axis."));
       return found;
     }
+
+
+    /** Whether a place is within `Displacement layer` of a side of the box. */
+    template <int dim>
+    bool is_in_layer(const Point<dim> &p, const types::boundary_id side, const Scene<dim> &scene)
+    {
+      const Domain<dim> &domain   = scene.domain;
+      const unsigned int axis     = side / 2;
+      const double       width    = domain.upper[axis] - domain.lower[axis];
+      const double       distance = side % 2 == 0 ? p[axis] - domain.lower[axis] :
+                                                    domain.upper[axis] - p[axis];
+      return distance <= scene.boundary_conditions.displacement_layer + 1e-9 * width;
+    }
   } // namespace
 
 
   template <int dim>
   DisplacementConditions<dim>::DisplacementConditions(const std::vector<NodeOnSide<dim>> &nodes,
+                                                      const std::vector<Point<dim>>      &positions,
                                                       const Scene<dim>                   &scene,
                                                       const MPI_Comm communicator)
   {
@@ -73,14 +87,19 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           if (condition.values[d])
             {
-              varies = varies || condition.values[d]->depends_on_time();
+              varies          = varies || condition.values[d]->depends_on_time();
+              const auto hold = [&](const unsigned int node, const Point<dim> &position) {
+                found.try_emplace(
+                  dim * node + d,
+                  Prescribed{dim * node + d, condition.id, &*condition.values[d], position});
+              };
               for (const NodeOnSide<dim> &node : nodes)
                 if (node.side == condition.id)
-                  found.try_emplace(dim * node.node + d,
-                                    Prescribed{dim * node.node + d,
-                                               node.side,
-                                               &*condition.values[d],
-                                               node.position});
+                  hold(node.node, node.position);
+              for (unsigned int i = 0; i < positions.size() && conditions.displacement_layer > 0.;
+                   ++i)
+                if (is_in_layer(positions[i], condition.id, scene))
+                  hold(i, positions[i]);
             }
       }
     for (const types::boundary_id side : conditions.symmetry)

@@ -279,11 +279,13 @@ namespace PeriDeal
             "The node at " + place_of(i) + fault +
             " Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
         else if (!(stiffness_diagonal.local_element(i) > 1e-13 * largest))
-          message = "The node at " + place_of(i) +
-                    " is isolated: cracks cut all cells around it, and no bond holds it. Use " +
-                    (coupling ? "a wider 'Zone' in section 'Coupling'." :
-                                "'Models = coupled' with a zone around the cracks, or 'Mesh = "
-                                "faces' in section 'Cracks'.");
+          message =
+            "The node at " + place_of(i) +
+            " is isolated: cracks cut all cells around it, and no bond holds it. Use " +
+            (coupling ?
+               "fewer cracks, or a wider 'Zone' in section 'Coupling' where only a part of the body has bonds." :
+               "'Models = coupled' with a zone around the cracks, or 'Mesh = "
+               "faces' in section 'Cracks'.");
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
   }

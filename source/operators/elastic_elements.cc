@@ -105,11 +105,11 @@ namespace PeriDeal
                     on_sides.push_back({node, side, positions[node]});
                 }
       }
+    const std::vector<Point<dim>> own(positions.begin(),
+                                      positions.begin() + nodes->locally_owned_size());
     conditions =
-      std::make_unique<DisplacementConditions<dim>>(on_sides, scene, dofs.get_communicator());
-    conditions->pin({positions.begin(), positions.begin() + nodes->locally_owned_size()},
-                    scene,
-                    false);
+      std::make_unique<DisplacementConditions<dim>>(on_sides, own, scene, dofs.get_communicator());
+    conditions->pin(own, scene, false);
   }
 
 

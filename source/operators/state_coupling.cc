@@ -118,8 +118,19 @@ namespace PeriDeal
     Family                    family;
     if (!find_family(node, true, {}, family.nodes, list))
       return;
-    for (const unsigned int j : family.nodes)
-      family.has_row.push_back(row_weight(j) > 0.);
+    if (dim == 1)
+      {
+        for (const BondOfFamily &bond : list)
+          {
+            Family alone;
+            for (const Part &part : bond.parts)
+              alone.nodes.push_back(family.nodes[part.place]);
+            find_rows(alone);
+            visit(alone);
+          }
+        return;
+      }
+    find_rows(family);
     visit(family);
   }
 
@@ -301,11 +312,18 @@ namespace PeriDeal
 
 
   template <int dim>
+  void StateCoupling<dim>::find_rows(Family &family) const
+  {
+    for (const unsigned int j : family.nodes)
+      family.has_row.push_back(row_weight(j) > 0.);
+  }
+
+
+  template <int dim>
   void StateCoupling<dim>::scale_rows(Family &family) const
   {
     family.thermal_energy *= row_weight(family.nodes[0]);
-    for (const unsigned int j : family.nodes)
-      family.has_row.push_back(row_weight(j) > 0.);
+    find_rows(family);
     for (unsigned int a = 0; a < family.thermal.size(); ++a)
       {
         const double factor = row_weight(family.nodes[a / dim]);
@@ -344,7 +362,7 @@ namespace PeriDeal
   std::size_t StateCoupling<dim>::memory_consumption() const
   {
     return bonds.memory_consumption() + node_weights.memory_consumption() +
-           laws.capacity() * sizeof(StateLaw);
+           laws.capacity() * sizeof(StateLaw) + acts.capacity() / 8;
   }
 
 

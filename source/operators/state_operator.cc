@@ -29,11 +29,13 @@ namespace PeriDeal
     std::vector<NodeOnSide<dim>> on_sides;
     for (const BoundaryShare &share : nodes.boundary_shares())
       on_sides.push_back({share.node, share.id, nodes.position(share.node)});
-    conditions =
-      std::make_unique<DisplacementConditions<dim>>(on_sides, scene, nodes.communicator());
     std::vector<Point<dim>> positions;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       positions.push_back(nodes.position(i));
+    conditions = std::make_unique<DisplacementConditions<dim>>(on_sides,
+                                                               positions,
+                                                               scene,
+                                                               nodes.communicator());
     conditions->pin(positions, scene, scene.domain.nodes == NodePlacement::cell_centers);
     const auto &force = scene.initial_and_source.body_force;
     loads_vary        = std::any_of(force.begin(), force.end(), [](const Expression &e) {

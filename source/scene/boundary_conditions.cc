@@ -93,6 +93,13 @@ namespace PeriDeal
       "x, y, z, t or the word `free` where nothing holds it. Where two sides meet, the one named first holds." +
         sides);
     declare(
+      "Displacement layer",
+      EntryType::text,
+      "",
+      "length",
+      "Depth behind the sides in `Displacement` in which all nodes are held, each as the formula says at its own place, by all models; with two horizons no family of the nodes that are left is cut "
+      "off there. Empty: the outermost row of nodes.");
+    declare(
       "Traction",
       EntryType::list,
       "",
@@ -259,17 +266,23 @@ namespace PeriDeal
     displacement = parse_vectors("Displacement", box_sides, hole);
     traction     = parse_vectors("Traction", box_sides, hole);
     parse_symmetry(box_sides, hole);
-    traction_layer = -1.;
-    if (!text("Traction layer").empty())
-      {
-        traction_layer = parse_number(text("Traction layer"), where("Traction layer"));
-        if (!(traction_layer > 0.))
-          error("Traction layer",
-                "found " + text("Traction layer") +
-                  ", needs a length greater than 0 (or nothing).");
-      }
+    displacement_layer = parse_layer("Displacement layer");
+    traction_layer     = parse_layer("Traction layer");
     check_scalar_conditions();
     check_vector_conditions();
+  }
+
+
+  template <int dim>
+  double BoundaryConditions<dim>::parse_layer(const std::string &entry) const
+  {
+    if (this->text(entry).empty())
+      return -1.;
+    const double depth = parse_number(this->text(entry), this->where(entry));
+    if (!(depth > 0.))
+      this->error(entry,
+                  "found " + this->text(entry) + ", needs a length greater than 0 (or nothing).");
+    return depth;
   }
 
 

@@ -8,6 +8,7 @@
 #include <perideal/scene/scene.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -20,6 +21,22 @@ namespace PeriDeal
     {
       const std::vector<Model> &models = scene.general.models;
       return std::find(models.begin(), models.end(), model) != models.end();
+    }
+
+
+    /** Of the corners of a crack to a side of the box. */
+    template <int dim>
+    double distance_to_side(const Scene<dim>              &scene,
+                            const std::vector<Point<dim>> &crack,
+                            const types::boundary_id       side)
+    {
+      const unsigned int axis    = side / 2;
+      double             nearest = std::numeric_limits<double>::max();
+      for (const Point<dim> &p : crack)
+        nearest = std::min(nearest,
+                           side % 2 == 0 ? p[axis] - scene.domain.lower[axis] :
+                                           scene.domain.upper[axis] - p[axis]);
+      return nearest;
     }
 
 
@@ -49,7 +66,7 @@ namespace PeriDeal
         other + "'vertices'.");
       refuse(scene.domain.shape == Shape::mesh_file || scene.domain.shape == Shape::image,
              "needs flat sides of a lattice, which this 'Shape' in section 'Domain' has not.",
-             other + "'box'.");
+             other + "'box' or 'plate with hole'.");
       refuse(pd.nodal_volume != NodalVolume::partial,
              "needs 'Nodal volume = partial'.",
              other + "that.");
@@ -60,6 +77,18 @@ namespace PeriDeal
              "is not for 'Kinematics = full'.",
              other + "'linear'.");
       const auto &symmetry = scene.boundary_conditions.symmetry;
+      refuse(
+        !symmetry.empty() && runs(scene, Model::coupled) &&
+          scene.coupling.scheme == CouplingScheme::splice,
+        "and 'Scheme = splice' do not go with 'Symmetry' in section 'Boundary conditions': nothing would tell its lost forces from those of the other half.",
+        " Hold the side by 'Displacement', or use 'blending'.");
+      const double reach = scene.horizon() + scene.domain.spacing().norm();
+      for (const types::boundary_id side : symmetry)
+        for (const auto &crack : scene.cracks.cracks)
+          refuse(distance_to_side(scene, crack, side) < reach,
+                 "cannot mirror a crack that comes within a horizon of the plane of symmetry '" +
+                   name_of_side(side, true) + "'.",
+                 " Hold that side by 'Displacement', or use another correction.");
       for (const types::boundary_id side : symmetry)
         refuse(
           side % 2 == 0 && std::count(symmetry.begin(), symmetry.end(), side + 1) > 0,
@@ -231,6 +260,43 @@ namespace PeriDeal
     }
 
 
+    /** The width of the body behind a flat side; an error for others, and for a layer that is deeper. */
+    template <int dim>
+    void check_layer(const Scene<dim>      &scene,
+                     const VectorCondition &condition,
+                     const double           depth,
+                     const std::string     &where,
+                     const std::string     &list)
+    {
+      if (condition.id >= 2 * dim)
+        entry_error(where, "needs flat sides, and '" + list + "' names 'hole'. Leave it empty.");
+      const unsigned int axis  = condition.id / 2;
+      const double       width = scene.domain.upper[axis] - scene.domain.lower[axis];
+      if (depth > width)
+        entry_error(where,
+                    "found " + number_text(depth) + ", wider than the body behind the side '" +
+                      condition.name + "', " + number_text(width) +
+                      (scene.domain.has_extra_layers() ? " with its extra layers." : "."));
+    }
+
+
+    /** Which bodies and sides displacements can be given in. */
+    template <int dim>
+    void check_displacement_layer(const Scene<dim> &scene)
+    {
+      const BoundaryConditions<dim> &conditions = scene.boundary_conditions;
+      if (conditions.displacement_layer <= 0.)
+        return;
+      const std::string where = conditions.where("Displacement layer");
+      if (scene.domain.shape == Shape::mesh_file)
+        entry_error(
+          where,
+          "is for the sides of a box, and 'Shape' in section 'Domain' is 'mesh file'. Leave it empty.");
+      for (const VectorCondition &condition : conditions.displacement)
+        check_layer(scene, condition, conditions.displacement_layer, where, "Displacement");
+    }
+
+
     /** Which bodies and sides tractions can be spread in. */
     template <int dim>
     void check_traction_layer(const Scene<dim> &scene)
@@ -249,26 +315,13 @@ namespace PeriDeal
           "needs nodes in rows along the side, which 'Shape = mesh file' in section 'Domain' does not have. Leave it empty.");
       for (const VectorCondition &condition : conditions.traction)
         {
-          if (condition.id >= 2 * dim)
-            entry_error(where, "needs flat sides, and 'Traction' names 'hole'. Leave it empty.");
-          const double width =
-            scene.domain.upper[condition.id / 2] - scene.domain.lower[condition.id / 2];
-          if (conditions.traction_layer > width)
-            entry_error(where,
-                        "found " + number_text(conditions.traction_layer) +
-                          ", wider than the body behind the side '" + condition.name + "', " +
-                          number_text(width) +
-                          (scene.domain.has_extra_layers() ? " with its extra layers." : "."));
-          const unsigned int axis = condition.id / 2;
+          check_layer(scene, condition, conditions.traction_layer, where, "Traction");
           for (const auto &crack : scene.cracks.cracks)
-            for (const Point<dim> &p : crack)
-              if ((condition.id % 2 == 0 ?
-                     p[axis] - scene.domain.lower[axis] :
-                     scene.domain.upper[axis] - p[axis]) < conditions.traction_layer)
-                entry_error(
-                  where,
-                  "a crack lies within it at the side '" + condition.name +
-                    "', and what is behind the crack would be pulled. Leave it empty, or make it thinner.");
+            if (distance_to_side(scene, crack, condition.id) < conditions.traction_layer)
+              entry_error(
+                where,
+                "a crack lies within it at the side '" + condition.name +
+                  "', and what is behind the crack would be pulled. Leave it empty, or make it thinner.");
         }
     }
 
@@ -386,6 +439,7 @@ namespace PeriDeal
       entry_error(
         cracks.where(cracks.contact_conductance < 0. ? "Transmission" : "Contact conductance"),
         "is for what diffuses; cracks transmit no force with 'Physics = elasticity'.");
+    check_displacement_layer(*this);
     check_traction_layer(*this);
     check_extra_layers(*this);
     check_time(*this);

@@ -21,7 +21,8 @@ namespace PeriDeal
         for (const Entry &entry : from[k]->entries())
           to[k]->set(entry.name, entry.text);
     problem->general.set("Physics", names_of(Physics::heat).physics);
-    for (const char *const entry : {"Displacement", "Traction", "Traction layer"})
+    for (const char *const entry :
+         {"Displacement", "Displacement layer", "Traction", "Traction layer"})
       problem->boundary_conditions.set(entry, "");
     for (const char *const entry : {"Body force", "Initial displacement", "Initial velocity"})
       problem->initial_and_source.set(entry, "");

@@ -129,6 +129,7 @@ namespace PeriDeal
       }
     refuse("Displacement", "'Dirichlet'");
     refuse("Traction", "'Flux'");
+    refuse("Displacement layer", "'Boundary treatment' in section 'Peridynamics'");
     refuse("Traction layer", "'Flux treatment' in section 'Peridynamics'");
   }
 
@@ -136,6 +137,8 @@ namespace PeriDeal
   template <int dim>
   void BoundaryConditions<dim>::check_vector_conditions() const
   {
+    if (displacement_layer > 0. && displacement.empty())
+      error("Displacement layer", "has no effect: no side is named in 'Displacement'.");
     if (traction_layer > 0. && traction.empty())
       error("Traction layer", "has no effect: no side is named in 'Traction'.");
     for (const VectorCondition &load : traction)

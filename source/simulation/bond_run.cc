@@ -205,19 +205,17 @@ namespace PeriDeal
       {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
       {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},
       {"surface correction",
-       p.surface_correction == SurfaceCorrection::none ?
-         "none" :
-       p.surface_correction == SurfaceCorrection::crack_scaling ?
-         "crack scaling" :
-       p.surface_correction == SurfaceCorrection::volume ?
-         "volume" :
-       p.surface_correction == SurfaceCorrection::moments ?
-         "moments" :
+       p.surface_correction == SurfaceCorrection::none          ? "none" :
+       p.surface_correction == SurfaceCorrection::crack_scaling ? "crack scaling" :
+       p.surface_correction == SurfaceCorrection::volume        ? "volume" :
+       p.surface_correction == SurfaceCorrection::moments       ? "moments" :
+       p.completes_families()                                   ? "fictitious nodes" :
        scene.general.physics == Physics::elasticity ?
-         "energy" :
+                                "energy" :
        p.correction_direction == CorrectionDirection::both ?
-         "energy, each direction" :
-         std::string("energy, direction ") + "xyz"[static_cast<int>(p.correction_direction)]}};
+                                "energy, each direction" :
+                                std::string("energy, direction ") +
+                                  "xyz"[static_cast<int>(p.correction_direction)]}};
     return list;
   }
 

@@ -50,7 +50,9 @@ namespace PeriDeal
             }
           elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
         }
-        if (model == Model::coupled && scene.coupling.certificate)
+        // Its fields would have to be mirrored, too.
+        if (model == Model::coupled && scene.coupling.certificate &&
+            elements->bonds().mirrors().empty())
           examine();
       }
 
@@ -218,15 +220,8 @@ namespace PeriDeal
                               to_text(100. * elements->bonds().zone_share()) + " %");
           }
         if (model != Model::finite_elements)
-          {
-            list.emplace_back("horizon", to_text(scene.horizon()));
-            list.emplace_back("surface correction",
-                              scene.peridynamics.completes_families() ? "fictitious nodes" :
-                              scene.peridynamics.surface_correction ==
-                                  SurfaceCorrection::crack_scaling ?
-                                                                        "crack scaling" :
-                                                                        "none");
-          }
+          for (const auto &setting : bond_settings(scene, elements->bonds().families()))
+            list.push_back(setting);
         if (!scene.cracks.cracks.empty())
           list.emplace_back("cracks", scene.cracks.mesh == CrackMesh::faces ? "faces" : "removed");
         return list;

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Elastic bodies at rest: prm/elasticity against closed forms, prm/papers/le_2014 against finite elements that follow the hole.
 
-    elasticity.py bars | surface | cells | plates | bore | crack | thermal | torsion | notes | ranks | le_elements | le_hole | le_full
+    elasticity.py bars | surface | cells | constraint | plates | bore | crack | thermal | torsion | notes | ranks | le_elements | le_hole | le_full
 
 Bounds that follow from no theory are about 1.5 times the gap that was measured; the comment beside them gives it.
 """
@@ -18,8 +18,8 @@ FEM, PD = "finite elements", "peridynamics"
 QUIET = {"Output/Fields": "none", "Solver/Tolerance": "1e-12"}
 
 
-def run_quietly(name, more=None):
-    return run_scene(f"prm/elasticity/{name}", {**QUIET, **(more or {})})
+def run_quietly(name, more=None, ranks=1):
+    return run_scene(f"prm/elasticity/{name}", {**QUIET, **(more or {})}, ranks=ranks)
 
 
 def balanced(table, run):
@@ -253,16 +253,40 @@ def surface():
     end, before = (plate.probe(PD, [x, 0.5], column="ux") for x in (2, 1.95))
     table.add(f"{law}: 1D bar: end", with_surface("bar_1d.prm", law).probe(PD, [1], column="ux") / 5e-3, 1, absolute=1e-9)
     for name, value, gap in (
-        ("plate: end", end / 0.01, 1.011),
-        ("plate: strain at the end", (end - before) / 0.05 / 5e-3, 1.011),
-        ("plate: sxx at the free side", plate.probe(PD, [1, 1], column="sxx"), 0.777),
-        ("cantilever: end", with_surface("cantilever.prm", law).probe(PD, (10, 0), column="uy") / beam, 5.242),
+        ("plate: end", end / 0.01, -1.011),
+        ("plate: strain at the end", (end - before) / 0.05 / 5e-3, -1.011),
+        ("plate: sxx at the free side", plate.probe(PD, [1, 1], column="sxx"), -0.777),
+        ("cantilever: end", with_surface("cantilever.prm", law).probe(PD, (10, 0), column="uy") / beam, -5.242),
         ("torsion: torque", 8 * twisted.model(PD)["strain energy"] / 0.005 / moment, 1.181),
-        ("torsion: stress at the face", twisted.probe(PD, (0.5, 0, 0.25), column="syz") / shear, 0.267),
+        ("torsion: stress at the face", twisted.probe(PD, (0.5, 0, 0.25), column="syz") / shear, -0.267),
     ):
-        table.add(f"{law}: {name}", value, 1, absolute=0.015 * gap)
+        table.add(f"{law}: {name}", value, 1 + gap / 100, absolute=2e-4)
     balanced(table, plate)
     table.show()
+
+
+def constraint():
+    """A linear field given in a layer along the sides is that of the inside, too."""
+    table = Comparison("Displacements in a layer: distance from a linear field over its size")
+    name, entry = "volume_constraint.prm", "Boundary conditions/Displacement layer"
+
+    def distance(run, model):
+        gaps = [(row["ux"] - (1e-3 * row["x"] + 2e-4 * row["y"]), row["uy"] - (2e-4 * row["x"] - 3e-4 * row["y"])) for row in run.probes if row["model"] == model]
+        return max(math.hypot(*gap) for gap in gaps) / 1e-3
+
+    runs = {depth: run_quietly(name, {entry: depth}) for depth in ("", "0.075", "0.15")}
+    for depth, run in runs.items():
+        print(f"  layer of {depth or 'one row'}: {distance(run, PD):.2e}")
+        table.add_limit(f"layer '{depth}', FEM", distance(run, FEM), 1e-9)
+        balanced(table, run)
+    table.add_limit("two horizons, PD", distance(runs["0.15"], PD), 1e-11)
+    table.add_limit("one horizon over one row, PD", distance(runs["0.075"], PD) / distance(runs[""], PD), 0.1)
+    two = run_quietly(name, {entry: "0.15"}, ranks=2)
+    table.add_limit("two processes, PD", distance(two, PD), 1e-9)
+    table.show()
+    for value, words in (("1.5", ("wider than the body", "'left'")), ("0", ("greater than 0",)), ("-1", ("greater than 0",))):
+        run = run_scene(f"prm/elasticity/{name}", {**QUIET, entry: value}, expect_error=True)
+        check_message(run, "Displacement layer", *words)
 
 
 def notes():
@@ -345,7 +369,7 @@ def le_full():
 
 
 def main():
-    parts = {function.__name__: function for function in (bars, surface, cells, plates, bore, crack, thermal, torsion, notes, ranks, le_elements, le_hole, le_full)}
+    parts = {function.__name__: function for function in (bars, surface, cells, constraint, plates, bore, crack, thermal, torsion, notes, ranks, le_elements, le_hole, le_full)}
     for name in sys.argv[1:] or parts:
         parts[name]()
     finish()

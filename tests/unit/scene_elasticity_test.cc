@@ -2,7 +2,6 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 // Scenes of elasticity: what their entries give, and what is said about mistakes.
-
 #include <perideal/scene/rigid_motions.h>
 
 #include "elastic_scene_tools.h"
@@ -452,6 +451,7 @@ end
       {{b + "Traction=right: 1, 0", b + "Traction layer=0.1"}, "'Traction layer'"},
       {{e + "Model=bond-based"}, "'Model = state-based'"},
       {{b + "Symmetry=bottom, top"}, "'bottom' and 'top'"},
+      {{b + "Symmetry=top", "Cracks/Segments=0.2,0.5 ; 0.5,0.99"}, "symmetry 'top'"},
       {{"Peridynamics/Operator form=lattice"}, "makes a matrix"}};
     for (const auto &[more, words] : list)
       {

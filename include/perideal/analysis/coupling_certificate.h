@@ -28,7 +28,7 @@ namespace PeriDeal
     std::optional<double>
       kept_share; // of the bonds' conductance that distorted cells leave; not of elastic bodies
     std::optional<double>
-                       unbalanced; // of elastic bodies, where no family goes on beyond a plane of symmetry: the largest |m . K x|/(max |m| sum |K x|) for the rigid motions m and a field x of noise
+                       unbalanced; // of elastic bodies: the largest |m . K x|/(max |m| sum |K x|) for the rigid motions m and a field x of noise
     unsigned long long n_bonds_of_full    = 0,
                        n_nonzeros_of_full = 0; // peridynamics everywhere; 0: not known
 
@@ -41,7 +41,7 @@ namespace PeriDeal
   template <int dim>
   CouplingCertificate examine_coupling(const FEMOperator<dim> &op, const bool symmetric);
 
-  /** Collective. */
+  /** For couplings without mirrors(). Collective. */
   template <int dim>
   CouplingCertificate examine_coupling(const ElasticElements<dim> &op);
 } // namespace PeriDeal

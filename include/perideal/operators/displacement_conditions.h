@@ -31,10 +31,16 @@ namespace PeriDeal
   class DisplacementConditions
   {
   public:
-    /** Collective. Throws UserError for a side of symmetry that is not normal to an axis, and for sides without nodes. */
-    DisplacementConditions(const std::vector<NodeOnSide<dim>> &nodes,
-                           const Scene<dim>                   &scene,
-                           const MPI_Comm                      communicator);
+    /**
+     * @param nodes on the sides
+     * @param positions of this process's own nodes, for those in `Displacement layer`
+     *
+     * Collective. Throws UserError for a side of symmetry that is not normal to an axis, and for sides without nodes.
+     */
+    DisplacementConditions(const std::vector<NodeOnSide<dim>>    &nodes,
+                           const std::vector<dealii::Point<dim>> &positions,
+                           const Scene<dim>                      &scene,
+                           const MPI_Comm                         communicator);
 
     /** Hold the pins of the scene's islands. @param positions of this process's own nodes; @param at_centers which pins are meant. Not collective. */
     void pin(const std::vector<dealii::Point<dim>> &positions,

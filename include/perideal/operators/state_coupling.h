@@ -22,7 +22,7 @@ namespace PeriDeal
    *
    * the symbols as in StateOperator (d, c, b the factors of StateLaw); the sum of all K_i is its K. Families are cut off at the surface of the body;
    * with `Surface correction = fictitious nodes` they are completed beyond flat sides by nodes whose displacement follows from those inside (FictitiousExtension), in K_i only, since what is beyond has no energy. So K stays symmetric
-   * and positive semidefinite, a uniform strain has its energy at each node, and its forces are those of the stress on the sides. q_i is summed over the bonds that are left by cracks.
+   * and positive semidefinite, and away from holes and cracks a uniform strain has its energy at each node; its forces are those of the stress on the sides, but for one horizon from edges and corners. q_i is summed over the bonds that are left by cracks.
    *
    * In one dimension there is no dilatation, and the bonds of a family are visited one by one, so that rows reach one horizon and not two.
    */
@@ -96,6 +96,7 @@ namespace PeriDeal
 
     typename Lattice<dim>::Index site_of(const unsigned int node) const;
     static void                  set_size(Family &family);
+    void                         find_rows(Family &family) const;
 
     /** Add the energy factor/2 (sum of moments times displacements - thermal)^2. */
     static void add_square(const std::vector<Part> &parts,

@@ -47,8 +47,8 @@ namespace PeriDeal
     std::vector<dealii::types::boundary_id>
       symmetry; // elasticity: no displacement normal to the side
 
-    std::vector<VectorCondition> displacement, traction; // elasticity only
-    double                       traction_layer = -1.;   // length; negative: not given
+    std::vector<VectorCondition> displacement, traction;   // elasticity only
+    double displacement_layer = -1., traction_layer = -1.; // lengths; negative: not given
 
     /** The condition of the given list on a side, or nullptr. */
     static const SideCondition *find(const std::vector<SideCondition> &list,
@@ -82,6 +82,8 @@ namespace PeriDeal
                                           const bool         hole) const;
 
     void parse_symmetry(const bool box_sides, const bool hole);
+
+    double parse_layer(const std::string &entry) const;
 
     std::vector<VectorCondition> parse_vectors(const std::string &entry,
                                                const bool         box_sides,
