@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/elastic_simulation.h>
@@ -14,10 +15,13 @@
 
 #include <algorithm>
 #include <iostream>
+#include <new>
 
 namespace
 {
   using namespace PeriDeal;
+
+  bool memory_was_refused = false; // at some time
 
   template <int dim>
   void compute(const SceneText &text, const MPI_Comm communicator, const bool dry, const bool quiet)
@@ -312,41 +316,71 @@ namespace
 
 
   /** One message, from rank 0 if everybody has it. The others must not wait forever for a process that failed alone. */
-  int report(const std::string &message, const bool first_rank)
+  int report(const std::string &message, const bool first_rank, const ExitStatus status)
   {
-    const bool all = all_processes_arrive(MPI_COMM_WORLD);
+    const int  number = static_cast<int>(status);
+    const bool all    = all_processes_arrive(MPI_COMM_WORLD);
     if (first_rank || !all)
-      std::cerr << "\nperideal: error: " << message << std::endl;
+      std::cerr << "\nperideal: " << message << std::endl;
     if (!all)
-      MPI_Abort(MPI_COMM_WORLD, 1);
-    return 1;
+      MPI_Abort(MPI_COMM_WORLD, number);
+    return number;
+  }
+
+
+  int report_lack_of_memory(const bool first_rank)
+  {
+    return report(
+      "error: out of memory. `perideal check` tells what a scene needs; a coarser lattice, fewer 'Models' or a smaller 'Horizon ratio' need less.",
+      first_rank,
+      ExitStatus::error);
+  }
+
+
+  int report_fault(const std::string &what, const bool first_rank)
+  {
+    if (memory_is_short() || memory_was_refused)
+      return report_lack_of_memory(first_rank);
+    return report("internal error, please report it with the scene file:\n" + what,
+                  first_rank,
+                  ExitStatus::fault);
   }
 } // namespace
 
 
 int main(int argc, char **argv)
 {
+  using namespace PeriDeal;
+  std::set_new_handler([] {
+    memory_was_refused = true;
+    throw std::bad_alloc();
+  });
+  prepare_mpi_environment();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  handle_signals(first_rank);
   try
     {
       return execute(argc, argv, first_rank);
     }
-  catch (const PeriDeal::UserError &error)
+  catch (const UserError &error)
     {
-      return report(error.message(), first_rank);
+      return report("error: " + error.message(), first_rank, ExitStatus::error);
     }
   catch (const std::bad_alloc &)
     {
-      std::cerr << "\nperideal: error: out of memory. `perideal check` tells what a scene needs."
-                << std::endl;
-      MPI_Abort(MPI_COMM_WORLD, 1);
+      return report_lack_of_memory(first_rank);
+    }
+  catch (const dealii::StandardExceptions::ExcOutOfMemory &)
+    {
+      return report_lack_of_memory(first_rank);
     }
   catch (const std::exception &error)
     {
-      std::cerr << "\nperideal: internal error, please report it with the scene file:\n"
-                << error.what() << std::endl;
-      MPI_Abort(MPI_COMM_WORLD, 1);
+      return report_fault(error.what(), first_rank);
     }
-  return 1;
+  catch (...) // Trilinos throws numbers
+    {
+      return report_fault("an exception without a text", first_rank);
+    }
 }

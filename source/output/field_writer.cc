@@ -1,34 +1,86 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/base/hdf5.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 #include <deal.II/dofs/dof_tools.h>
-#include <deal.II/lac/full_matrix.h>
 
+#include <perideal/base/process_end.h>
 #include <perideal/output/field_writer.h>
 
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
 #include <fstream>
-#include <numeric>
+#include <limits>
+#include <sstream>
+
+#include "gather_in_turn.h"
+#include "hdf5_file.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** The default compression takes ten times as long for files that are a tenth smaller. */
+    DataOutBase::VtkFlags quick_flags()
+    {
+      DataOutBase::VtkFlags flags;
+      flags.compression_level = DataOutBase::VtkFlags::best_speed;
+      return flags;
+    }
+
+
+    /** A file that is written under another name and gets its own when it is whole. On rank 0. */
+    class UnfinishedFile
+    {
+    public:
+      UnfinishedFile(ResultFolder &folder, const std::string &name)
+        : folder(folder)
+        , name(name)
+        , path(folder.claim(name))
+      {
+        set_unfinished_file(part());
+      }
+
+      std::string part() const
+      {
+        return path + ".part";
+      }
+
+      /** @param problem an error number, 0 if all was written, -1 if the system gave no reason */
+      void finish(int problem)
+      {
+        if (problem == 0 && std::rename(part().c_str(), path.c_str()) != 0)
+          problem = errno;
+        if (problem != 0)
+          {
+            folder.keep_failure(name, std::max(problem, 0));
+            std::remove(part().c_str());
+          }
+        set_unfinished_file("");
+      }
+
+    private:
+      ResultFolder     &folder;
+      const std::string name, path;
+    };
+  } // namespace
+
+
   template <int dim>
   FieldWriter<dim>::FieldWriter(const DoFHandler<dim> &dofs,
-                                const std::string     &directory,
+                                ResultFolder          &folder,
                                 const std::string     &series,
                                 const Choice          &shows)
     : dofs(dofs)
-    , directory(directory)
+    , folder(folder)
     , series(series)
     , shows(shows)
+    , flags(quick_flags())
   {
-    // The default compression takes ten times as long for files that are a tenth smaller.
-    DataOutBase::VtkFlags flags;
-    flags.compression_level = DataOutBase::VtkFlags::best_speed;
     this->set_flags(flags);
   }
 
@@ -89,15 +141,16 @@ namespace PeriDeal
       std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
                                                           relevant,
                                                           dofs.get_communicator());
-    std::vector<Vector> values;
+    std::vector<Vector> nodal;
     for (const OutputField &field : fields)
       for (const Vector &component : field.components)
         {
-          values.emplace_back(partitioner);
-          std::copy(component.begin(), component.end(), values.back().begin());
+          nodal.emplace_back(partitioner);
+          std::copy(component.begin(), component.end(), nodal.back().begin());
         }
-    for (const Vector &value : values) // copies of vectors lose their ghosts, so only now
+    for (const Vector &value : nodal) // copies of vectors lose their ghosts, so only now
       value.update_ghost_values();
+    values.assign(names.size(), {});
     patches.clear();
     patches.reserve(dofs.get_triangulation().n_active_cells());
     for (const auto &cell : dofs.active_cell_iterators())
@@ -113,87 +166,150 @@ namespace PeriDeal
             patch.vertices[v] = cell->vertex(v);
           cell->get_dof_indices(indices);
           // In FE_Q the first dofs of a cell are those of its vertices.
-          for (unsigned int row = 0; row < values.size(); ++row)
+          for (unsigned int row = 0; row < nodal.size(); ++row)
             for (unsigned int v = 0; v < n_vertices; ++v)
-              patch.data(row, v) = values[row](indices[at_vertices ? v : 0]);
+              {
+                values[row].push_back(nodal[row](indices[at_vertices ? v : 0]));
+                patch.data(row, v) = values[row].back();
+              }
         }
+  }
+
+
+  template <int dim>
+  void FieldWriter<dim>::write_vtu_file(const std::string &name) const
+  {
+    std::ostringstream piece;
+    if (!patches.empty())
+      DataOutBase::write_vtu_main(patches, names, get_nonscalar_data_ranges(), flags, piece);
+    std::unique_ptr<UnfinishedFile> target;
+    std::ofstream                   out;
+    if (folder.writes())
+      {
+        target = std::make_unique<UnfinishedFile>(folder, name);
+        errno  = 0;
+        out.open(target->part(), std::ios::binary);
+        DataOutBase::write_vtu_header(out, flags);
+      }
+    int problem = 0;
+    gather_in_turn(piece.str(), dofs.get_communicator(), [&](const std::string &text) {
+      if (out)
+        out << text << std::flush;
+      if (!out && problem == 0)
+        problem = errno != 0 ? errno : -1;
+    });
+    if (!folder.writes())
+      return;
+    errno = 0;
+    if (out)
+      DataOutBase::write_vtu_footer(out);
+    out.close();
+    if (!out && problem == 0)
+      problem = errno != 0 ? errno : -1;
+    target->finish(problem);
   }
 
 
   template <int dim>
   void FieldWriter<dim>::write_vtu_series(const double time)
   {
-    const MPI_Comm    communicator = dofs.get_communicator();
-    const std::string record       = this->write_vtu_with_pvtu_record(directory + "/fields/",
-                                                                series,
-                                                                n_written,
-                                                                communicator,
-                                                                4,
-                                                                1);
-    vtu_records.emplace_back(time, "fields/" + record);
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      {
-        std::ofstream pvd(directory + "/" + series + ".pvd");
-        DataOutBase::write_pvd_record(pvd, vtu_records);
-      }
-  }
-
-
-  template <int dim>
-  void FieldWriter<dim>::write_1d_hdf5_file(const std::string &name) const
-  {
-    std::vector<double> own;
-    for (const auto &patch : patches)
-      for (unsigned int v = 0; v < 2; ++v)
-        {
-          own.push_back(patch.vertices[v][0]);
-          for (unsigned int k = 0; k < names.size(); ++k)
-            own.push_back(patch.data(k, v));
-        }
-    const auto parts = Utilities::MPI::gather(dofs.get_communicator(), own, 0);
-    if (Utilities::MPI::this_mpi_process(dofs.get_communicator()) != 0)
+    const std::string name  = series + "_" + Utilities::int_to_string(n_written, 4);
+    const std::string piece = name + ".0.vtu", record = "fields/" + name + ".pvtu";
+    write_vtu_file("fields/" + piece);
+    if (!folder.writes() || folder.failed())
       return;
-    const std::size_t                width = 1 + names.size();
-    std::vector<std::vector<double>> columns(width);
-    for (const auto &part : parts)
-      for (std::size_t k = 0; k < part.size(); ++k)
-        columns[k % width].push_back(part[k]);
-    HDF5::File        file(directory + "/" + name, HDF5::File::FileAccessMode::create);
-    const std::size_t n     = columns[0].size();
-    const auto        write = [&](const std::string &field, const std::vector<double> &values) {
-      auto               data = file.create_dataset<double>(field, {n, 1});
-      FullMatrix<double> matrix(n, 1);
-      for (std::size_t i = 0; i < n; ++i)
-        matrix(i, 0) = values[i];
-      data.write(matrix);
-    };
-    write("nodes", columns[0]);
-    for (std::size_t k = 0; k < names.size(); ++k)
-      write(names[k], columns[k + 1]);
-    auto                      cells = file.create_dataset<unsigned int>("cells", {n / 2, 2});
-    std::vector<unsigned int> pairs(n);
-    std::iota(pairs.begin(), pairs.end(), 0u);
-    cells.write(pairs);
+    std::ostringstream pvtu, pvd;
+    this->write_pvtu_record(pvtu, {piece});
+    folder.write(record, pvtu.str());
+    vtu_records.emplace_back(time, record);
+    DataOutBase::write_pvd_record(pvd, vtu_records);
+    if (!folder.failed())
+      folder.write(series + ".pvd", pvd.str());
   }
 
 
   template <int dim>
-  void FieldWriter<dim>::write_hdf5_file(const std::string &name, const double time)
+  void FieldWriter<dim>::write_hdf5_file(const std::string &name) const
   {
-    if constexpr (dim == 1)
+    constexpr unsigned int                n_corners = GeometryInfo<dim>::vertices_per_cell;
+    constexpr std::array<unsigned int, 8> order{{0, 1, 3, 2, 4, 5, 7, 6}}; // around a face
+    const MPI_Comm                        communicator = dofs.get_communicator();
+    const std::uint64_t                   n_own        = patches.size();
+    const std::uint64_t                   n_cells      = Utilities::MPI::sum(n_own, communicator);
+    std::uint64_t                         first        = 0;
+    MPI_Exscan(&n_own, &first, 1, MPI_UINT64_T, MPI_SUM, communicator);
+    std::unique_ptr<UnfinishedFile> target;
+    std::unique_ptr<Hdf5File>       file;
+    if (folder.writes())
       {
-        (void)time;
-        write_1d_hdf5_file(name);
+        target = std::make_unique<UnfinishedFile>(folder, name);
+        file   = std::make_unique<Hdf5File>(target->part());
       }
-    else
-      {
-        const MPI_Comm             communicator = dofs.get_communicator();
-        DataOutBase::DataOutFilter filter(DataOutBase::DataOutFilterFlags(false, true));
-        this->write_filtered_data(filter);
-        this->write_hdf5_parallel(filter, directory + "/" + name, communicator);
-        xdmf_entries.push_back(this->create_xdmf_entry(filter, name, time, communicator));
-        this->write_xdmf_file(xdmf_entries, directory + "/" + series + ".xdmf", communicator);
-      }
+    const auto add = [&](const std::string &table, const auto &own, const unsigned int n_columns) {
+      using number        = typename std::decay_t<decltype(own)>::value_type;
+      const bool of_cells = std::is_same<number, std::uint32_t>::value;
+      if (file)
+        file->begin_table<number>(table, of_cells ? n_cells : n_cells * n_corners, n_columns);
+      gather_in_turn(own, communicator, [&](const std::vector<number> &rows) {
+        file->append(rows.data(), rows.size() / n_columns);
+      });
+    };
+    std::vector<double>        nodes;
+    std::vector<std::uint32_t> cells;
+    for (const auto &patch : patches)
+      for (unsigned int v = 0; v < n_corners; ++v)
+        {
+          for (unsigned int d = 0; d < dim; ++d)
+            nodes.push_back(patch.vertices[v][d]);
+          cells.push_back((first + patch.patch_index) * n_corners + (dim == 1 ? v : order[v]));
+        }
+    add("nodes", nodes, dim);
+    add("cells", cells, n_corners);
+    for (unsigned int row = 0, next = 0; row < names.size(); ++row)
+      if (next < vectors.size() && vectors[next].first == row)
+        {
+          std::vector<double> padded(3 * values[row].size(), 0.); // vectors have three components
+          for (unsigned int d = 0; d < dim; ++d)
+            for (std::size_t i = 0; i < values[row].size(); ++i)
+              padded[3 * i + d] = values[row + d][i];
+          add(vectors[next++].second, padded, 3);
+          row += dim - 1;
+        }
+      else
+        add(names[row], values[row], 1);
+    if (file)
+      target->finish(file->close());
+  }
+
+
+  template <int dim>
+  void FieldWriter<dim>::write_xdmf_file(const std::string &hdf5_name, const double time)
+  {
+    const std::uint64_t n_cells =
+      Utilities::MPI::sum(static_cast<std::uint64_t>(patches.size()), dofs.get_communicator());
+    XDMFEntry entry(hdf5_name, time, n_cells * GeometryInfo<dim>::vertices_per_cell, n_cells, dim);
+    for (unsigned int row = 0, next = 0; row < names.size(); ++row)
+      if (next < vectors.size() && vectors[next].first == row)
+        {
+          entry.add_attribute(vectors[next++].second, 3);
+          row += dim - 1;
+        }
+      else
+        entry.add_attribute(names[row], 1);
+    if (!folder.writes() || folder.failed())
+      return;
+    xdmf_entries += entry.get_xdmf_content(3, ReferenceCells::get_hypercube<dim>());
+    folder.write(
+      series + ".xdmf",
+      "<?xml version=\"1.0\" ?>\n"
+      "<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n"
+      "<Xdmf Version=\"2.0\">\n"
+      "  <Domain>\n"
+      "    <Grid Name=\"CellTime\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
+        xdmf_entries +
+        "    </Grid>\n"
+        "  </Domain>\n"
+        "</Xdmf>\n");
   }
 
 
@@ -212,11 +328,14 @@ namespace PeriDeal
     if (hdf5)
       {
         name = "fields/" + series + "_" + Utilities::int_to_string(n_written, 4) + ".h5";
-        write_hdf5_file(name, time);
+        write_hdf5_file(name);
+        if (dim > 1) // XDMF knows no lines of its own
+          write_xdmf_file(name, time);
       }
     ++n_written;
     patches.clear();
     patches.shrink_to_fit();
+    values.clear();
     return name;
   }
 

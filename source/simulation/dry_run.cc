@@ -15,7 +15,7 @@ namespace PeriDeal
   {
     build();
     make_steppers();
-    make_evaluators();
+    make_readers();
     for (const auto &model : models)
       {
         std::ostringstream out;

@@ -4,7 +4,6 @@
 // Bodies at rest: one equilibrium, or one after the other where loads depend on time.
 
 #include <perideal/base/user_error.h>
-#include <perideal/output/result_files.h>
 #include <perideal/simulation/elastic_simulation.h>
 #include <perideal/solvers/step_tools.h>
 
@@ -53,26 +52,15 @@ namespace PeriDeal
     progress.begin("time");
     for (const auto &model : models)
       add_totals(*model, 0.);
-    try
+    end_output(0.);
+    double now = 0.;
+    for (const double t : times_of_output())
       {
-        double now = 0.;
-        for (const double t : times_of_output())
-          {
-            if (t > now)
-              load_until(now, t);
-            now = t;
-            Timings::Scope scope(timings, "output");
-            write_state(t);
-          }
-      }
-    catch (const UserError &failure)
-      {
-        // What the body bore until then is what such a run is for.
-        progress.end();
-        write_files({{"totals.csv", record->totals}}, scene.general.output_directory, communicator);
-        throw UserError(
-          failure.message() +
-          " Forces and energies until then are in totals.csv of the output directory; there are no other results.");
+        if (t > now)
+          load_until(now, t);
+        now = t;
+        Timings::Scope scope(timings, "output");
+        write_state(t);
       }
     progress.end();
     for (const auto &model : models)
@@ -123,6 +111,7 @@ namespace PeriDeal
         Timings::Scope scope(timings, "output");
         for (const auto &model : models)
           add_totals(*model, to);
+        end_output(to);
         progress.update(to / scene.time.end_time);
       }
   }

@@ -3,7 +3,7 @@
 
 #include "elastic_phases.h"
 
-#include <perideal/output/result_files.h>
+#include <perideal/output/tables.h>
 
 namespace PeriDeal
 {

@@ -13,6 +13,7 @@
 #include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "elastic_phases.h"
 #include "elastic_summary.h"
@@ -34,8 +35,6 @@ namespace PeriDeal
     , communicator(communicator)
     , quiet(quiet)
     , progress(communicator, quiet)
-    , probes(scene.output.probes, dim, elastic_columns(scene))
-    , line(scene.output.line, dim, elastic_columns(scene))
     , record(std::make_unique<ResultRecord>())
   {}
 
@@ -141,15 +140,22 @@ namespace PeriDeal
   {
     const auto add = [&](const std::vector<std::vector<double>>            &points,
                          const std::string                                 &entry,
+                         const std::string                                 &file,
                          std::vector<std::unique_ptr<PointEvaluator<dim>>> &readers,
-                         PointTable                                        &table) {
-      if (readers.empty())
-        readers = make_point_readers<dim>(models, scene.cracks, points, entry);
+                         std::unique_ptr<PointTable>                       &table) {
+      if (points.empty())
+        return;
+      if (!table)
+        {
+          readers = make_point_readers<dim>(models, scene.cracks, points, entry);
+          table =
+            std::make_unique<PointTable>(files->folder, file, points, dim, elastic_columns(scene));
+        }
       for (unsigned int k = 0; k < readers.size(); ++k)
-        table.add(t, models[k]->name(), models[k]->at_points(*readers[k], points));
+        table->add(t, models[k]->name(), models[k]->at_points(*readers[k], points));
     };
-    add(scene.output.probes, "Probes", probe_readers, probes);
-    add(scene.output.line, "Line", line_readers, line);
+    add(scene.output.probes, "Probes", "probes.csv", probe_readers, probes);
+    add(scene.output.line, "Line", "line.csv", line_readers, line);
   }
 
 
@@ -158,24 +164,22 @@ namespace PeriDeal
   {
     if (!scene.output.vtu && !scene.output.hdf5)
       return;
-    nlohmann::ordered_json files = nlohmann::ordered_json::object();
+    nlohmann::ordered_json names = nlohmann::ordered_json::object();
     for (unsigned int k = 0; k < models.size(); ++k)
       {
-        const ElasticRun<dim> &model  = *models[k];
-        std::string            series = model.name();
-        std::replace(series.begin(), series.end(), ' ', '_');
+        const ElasticRun<dim> &model = *models[k];
         if (writers.size() == k)
           writers.push_back(std::make_unique<FieldWriter<dim>>(
             model.dofs(),
-            scene.general.output_directory,
-            series,
+            files->folder,
+            series_of(model.name()),
             [this](const Point<dim> &p) { return scene.domain.shows(p); }));
         const std::string name =
           writers[k]->write(model.fields(), t, scene.output.vtu, scene.output.hdf5);
         if (!name.empty())
-          files[model.name()] = name;
+          names[model.name()] = name;
       }
-    record->fields.push_back({{"time", t}, {"files", files}});
+    record->fields.push_back({{"time", t}, {"files", names}});
   }
 
 
@@ -234,8 +238,16 @@ namespace PeriDeal
   void ElasticSimulation<dim>::run()
   {
     refuse_what_is_not_computed(scene);
-    prepare_directory(scene.general.output_directory, text.file_name, communicator);
-    write_image_as_read(scene, communicator);
+    files = std::make_unique<RunFiles>(scene, text, communicator);
+    with_orderly_end(*files, [&] { compute(); });
+    files.reset();
+    progress.line("Results: " + scene.general.output_directory);
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::compute()
+  {
     build();
     if (scene.elasticity.is_static())
       load();
@@ -246,8 +258,9 @@ namespace PeriDeal
       }
     for (const std::string &note : record->notes)
       progress.note(note);
-    write_summary();
-    progress.line("Results: " + scene.general.output_directory);
+    const auto summary = summary_now(true);
+    files->add_totals(std::exchange(record->totals, ""));
+    files->complete(summary);
   }
 
 
@@ -267,6 +280,16 @@ namespace PeriDeal
     write_points(t);
     write_fields(t);
     compare_displacements(models, scene.domain, t, record->comparison);
+    end_output(t);
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::end_output(const double t)
+  {
+    files->add_totals(std::exchange(record->totals, ""));
+    files->after_output([&] { return summary_now(false); },
+                        scene.time.steady ? "the equilibrium" : "until t = " + full_precision(t));
   }
 
 
@@ -284,7 +307,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticSimulation<dim>::write_summary()
+  nlohmann::ordered_json ElasticSimulation<dim>::summary_now(const bool at_the_end)
   {
     using json           = nlohmann::ordered_json;
     json summary         = describe_scene(scene, text, *mesh, communicator);
@@ -334,10 +357,12 @@ namespace PeriDeal
         Utilities::System::get_memory_stats(stats);
         entry["peak memory"] =
           1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
-        entry.update(record->balances.at(model->name()));
-        if (const json phases = describe_phases(*model, scene, record->totals, communicator);
-            !phases.empty())
-          entry["phases"] = phases;
+        if (record->balances.contains(model->name()))
+          entry.update(record->balances.at(model->name()));
+        if (at_the_end)
+          if (const json phases = describe_phases(*model, scene, record->totals, communicator);
+              !phases.empty())
+            entry["phases"] = phases;
         summary["models"][model->name()] = entry;
       }
     if (!record->comparison.empty())
@@ -350,15 +375,7 @@ namespace PeriDeal
       }
     summary["values on sides"] =
       values_on_sides(scene, lower, upper, scene.time.steady ? 0. : scene.time.end_time);
-    std::vector<std::pair<std::string, std::string>> files;
-    if (!scene.output.probes.empty())
-      files.emplace_back("probes.csv", probes.text());
-    if (!scene.output.line.empty())
-      files.emplace_back("line.csv", line.text());
-    files.emplace_back("totals.csv", record->totals);
-    files.emplace_back("scene.prm", scene_with_defaults());
-    files.emplace_back("summary.json", json_text(summary));
-    write_files(files, scene.general.output_directory, communicator);
+    return summary;
   }
 
 

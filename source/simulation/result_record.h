@@ -44,6 +44,6 @@ namespace PeriDeal
     json                     comparison = json::object();
     json comparisons = json::object(); // "coupled minus (other model)" -> norm -> [[t, value], ...]
     json balances    = json::object(); // model -> flux and balance at the last time
-    std::string totals = "time,model,quantity,value\n";
+    std::string totals; // rows for totals.csv that are not yet written
   };
 } // namespace PeriDeal

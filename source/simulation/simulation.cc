@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "effective_conductivity.h"
 #include "point_readers.h"
@@ -228,12 +229,15 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::make_evaluators()
+  void Simulation<dim>::make_tables()
   {
-    make_readers();
-    probes = std::make_unique<PointTable>(scene.output.probes, dim);
-    line   = std::make_unique<PointTable>(scene.output.line, dim);
-    grid   = std::make_unique<PointTable>(scene.output.grid, dim);
+    const auto make = [&](const std::vector<std::vector<double>> &points, const std::string &name) {
+      return points.empty() ? nullptr :
+                              std::make_unique<PointTable>(files->folder, name, points, dim);
+    };
+    probes = make(scene.output.probes, "probes.csv");
+    line   = make(scene.output.line, "line.csv");
+    grid   = make(scene.output.grid, "grid.csv");
   }
 
 
@@ -241,26 +245,30 @@ namespace PeriDeal
   void Simulation<dim>::make_writers()
   {
     for (const auto &model : models)
-      {
-        std::string series = model->name();
-        std::replace(series.begin(), series.end(), ' ', '_');
-        writers.push_back(std::make_unique<FieldWriter<dim>>(model->dofs(),
-                                                             scene.general.output_directory,
-                                                             series));
-      }
+      writers.push_back(
+        std::make_unique<FieldWriter<dim>>(model->dofs(), files->folder, series_of(model->name())));
   }
 
 
   template <int dim>
   void Simulation<dim>::run()
   {
-    prepare_directory(scene.general.output_directory, text.file_name, communicator);
-    write_image_as_read(scene, communicator);
+    files = std::make_unique<RunFiles>(scene, text, communicator);
+    with_orderly_end(*files, [&] { compute(); });
+    files.reset();
+    progress.line("Results: " + scene.general.output_directory);
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::compute()
+  {
     build();
     make_steppers();
     {
       Timings::Scope scope(timings, "output");
-      make_evaluators();
+      make_readers();
+      make_tables();
       make_writers();
     }
     const std::vector<double> times = output_times();
@@ -282,8 +290,7 @@ namespace PeriDeal
                               " cells at the end ('Zone = adaptive' in section 'Coupling').");
     for (const std::string &note : record->notes)
       progress.note(note);
-    write_summary();
-    progress.line("Results: " + scene.general.output_directory);
+    files->complete(summary_now());
   }
 
 
@@ -303,6 +310,9 @@ namespace PeriDeal
         model->solution.set_ghost_state(false);
         add_totals(t, *model);
       }
+    files->add_totals(std::exchange(record->totals, ""));
+    files->after_output([&] { return summary_now(); },
+                        scene.time.steady ? "the steady state" : "until t = " + full_precision(t));
   }
 
 
@@ -310,20 +320,20 @@ namespace PeriDeal
   void Simulation<dim>::add_points(const double t)
   {
     const auto add =
-      [&](const std::vector<std::vector<double>> &points, const auto &readers, PointTable &table) {
+      [&](const std::vector<std::vector<double>> &points, const auto &readers, PointTable *table) {
         for (std::size_t m = 0; m < readers.size(); ++m)
-          table.add(t, models[m]->name(), readers[m]->evaluate(models[m]->solution));
+          table->add(t, models[m]->name(), readers[m]->evaluate(models[m]->solution));
         if (exact && !points.empty())
           {
             std::vector<double> values;
             for (const auto &point : points)
               values.push_back(exact->value(point.data(), t));
-            table.add(t, "exact", values);
+            table->add(t, "exact", values);
           }
       };
-    add(scene.output.probes, probe_readers, *probes);
-    add(scene.output.line, line_readers, *line);
-    add(scene.output.grid, grid_readers, *grid);
+    add(scene.output.probes, probe_readers, probes.get());
+    add(scene.output.line, line_readers, line.get());
+    add(scene.output.grid, grid_readers, grid.get());
   }
 
 
@@ -332,7 +342,7 @@ namespace PeriDeal
   {
     if (!scene.output.vtu && !scene.output.hdf5)
       return;
-    nlohmann::ordered_json files = nlohmann::ordered_json::object();
+    nlohmann::ordered_json names = nlohmann::ordered_json::object();
     for (std::size_t m = 0; m < models.size(); ++m)
       {
         std::vector<OutputField> fields{
@@ -347,9 +357,9 @@ namespace PeriDeal
           }
         const std::string name = writers[m]->write(fields, t, scene.output.vtu, scene.output.hdf5);
         if (!name.empty())
-          files[models[m]->name()] = name;
+          names[models[m]->name()] = name;
       }
-    record->fields.push_back({{"time", t}, {"files", files}});
+    record->fields.push_back({{"time", t}, {"files", names}});
     if (scene.cracks.change())
       record->fields.back()["cracks"] = corners_of(scene.cracks.pieces(t));
   }
@@ -398,7 +408,7 @@ namespace PeriDeal
   template void Simulation<dim>::build_on(const std::shared_ptr<Triangulation<dim>> &);      \
   template const ModelRun<dim>            &Simulation<dim>::model(const unsigned int) const; \
   template const std::vector<std::string> &Simulation<dim>::notes() const;                   \
-  template void                            Simulation<dim>::make_evaluators();               \
+  template void                            Simulation<dim>::make_readers();                  \
   template std::vector<double>             Simulation<dim>::output_times() const;            \
   template void                            Simulation<dim>::run();
   PERIDEAL_INSTANTIATE(1)

@@ -100,14 +100,15 @@ namespace PeriDeal
         entry["certificate"] = describe_certificate(*certificate);
       if (record.errors.contains(model.name()))
         entry["errors"] = record.errors.at(model.name());
-      entry.update(record.balances.at(model.name()));
+      if (record.balances.contains(model.name()))
+        entry.update(record.balances.at(model.name()));
       return entry;
     }
   } // namespace
 
 
   template <int dim>
-  void Simulation<dim>::write_summary()
+  json Simulation<dim>::summary_now() const
   {
     json summary = describe_scene(scene, text, *mesh, communicator);
     if (scene.domain.coarsening > 0)
@@ -129,21 +130,10 @@ namespace PeriDeal
       summary["comparison"] = record->comparison;
     if (!record->comparisons.empty())
       summary["comparisons"] = record->comparisons;
-
-    std::vector<std::pair<std::string, std::string>> files;
-    if (!scene.output.probes.empty())
-      files.emplace_back("probes.csv", probes->text());
-    if (!scene.output.line.empty())
-      files.emplace_back("line.csv", line->text());
-    if (!scene.output.grid.empty())
-      files.emplace_back("grid.csv", grid->text());
-    files.emplace_back("totals.csv", record->totals);
-    files.emplace_back("scene.prm", scene_with_defaults());
-    files.emplace_back("summary.json", json_text(summary));
-    write_files(files, scene.general.output_directory, communicator);
+    return summary;
   }
 
-  template void Simulation<1>::write_summary();
-  template void Simulation<2>::write_summary();
-  template void Simulation<3>::write_summary();
+  template json Simulation<1>::summary_now() const;
+  template json Simulation<2>::summary_now() const;
+  template json Simulation<3>::summary_now() const;
 } // namespace PeriDeal

@@ -5,9 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/base/user_error.h>
-#include <perideal/output/result_files.h>
-
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -97,29 +95,39 @@ namespace PeriDeal
 
 
   template <int dim>
+  json describe_start(const Scene<dim> &scene, const SceneText &text, const MPI_Comm communicator)
+  {
+    json summary;
+    summary["title"]          = scene.general.title;
+    summary["text"]           = teaching_text(text.text);
+    summary["scene file"]     = text.file_name;
+    summary["program"]        = std::string("PeriDeal ") + PERIDEAL_VERSION;
+    summary["dimension"]      = dim;
+    summary["processes"]      = Utilities::MPI::n_mpi_processes(communicator);
+    summary["units"]          = {{"length", scene.units.length},
+                                 {"time", scene.units.time},
+                                 {"temperature", scene.units.temperature},
+                                 {"field", scene.units.of_field(scene.general.physics)}};
+    const PhysicsNames &names = names_of(scene.general.physics);
+    summary["physics"]        = names.physics;
+    summary["names"]          = {{"field", names.field},
+                                 {"flux", names.flux},
+                                 {"content", names.content},
+                                 {"flow", names.flow},
+                                 {"quantity", names.quantity}};
+    summary["models"]         = json::object();
+    summary["fields"]         = json::array();
+    return summary;
+  }
+
+
+  template <int dim>
   json describe_scene(const Scene<dim>         &scene,
                       const SceneText          &text,
                       const Triangulation<dim> &mesh,
                       const MPI_Comm            communicator)
   {
-    json summary;
-    summary["title"]                  = scene.general.title;
-    summary["text"]                   = teaching_text(text.text);
-    summary["scene file"]             = text.file_name;
-    summary["program"]                = std::string("PeriDeal ") + PERIDEAL_VERSION;
-    summary["dimension"]              = dim;
-    summary["processes"]              = Utilities::MPI::n_mpi_processes(communicator);
-    summary["units"]                  = {{"length", scene.units.length},
-                                         {"time", scene.units.time},
-                                         {"temperature", scene.units.temperature},
-                                         {"field", scene.units.of_field(scene.general.physics)}};
-    const PhysicsNames &names         = names_of(scene.general.physics);
-    summary["physics"]                = names.physics;
-    summary["names"]                  = {{"field", names.field},
-                                         {"flux", names.flux},
-                                         {"content", names.content},
-                                         {"flow", names.flow},
-                                         {"quantity", names.quantity}};
+    json                     summary  = describe_start(scene, text, communicator);
     static const char *const shapes[] = {"box", "plate with hole", "mesh file", "image"};
     const auto               corners  = scene.domain.has_extra_layers() ?
                                           std::make_pair(scene.domain.body_lower, scene.domain.body_upper) :
@@ -135,12 +143,18 @@ namespace PeriDeal
 
 
   template <int dim>
-  void write_image_as_read(const Scene<dim> &scene, const MPI_Comm communicator)
+  void write_image_as_read(const Scene<dim> &scene, ResultFolder &folder)
   {
     if (scene.domain.image)
-      write_files({{"image_as_read.png", encode_png(scene.domain.image_of_body().picture())}},
-                  scene.general.output_directory,
-                  communicator);
+      folder.write("image_as_read.png", encode_png(scene.domain.image_of_body().picture()));
+  }
+
+
+  std::string series_of(const std::string &model)
+  {
+    std::string series = model;
+    std::replace(series.begin(), series.end(), ' ', '_');
+    return series;
   }
 
 
@@ -175,37 +189,13 @@ namespace PeriDeal
   }
 
 
-  void write_files(const std::vector<std::pair<std::string, std::string>> &files,
-                   const std::string                                      &directory,
-                   const MPI_Comm                                          communicator)
-  {
-    std::string message;
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      try
-        {
-          for (const auto &[name, content] : files)
-            write_file(directory + "/" + name, content);
-        }
-      catch (const UserError &error)
-        {
-          message = error.message();
-        }
-    throw_on_all_if_any(communicator, message);
-  }
-
-
-  std::string json_text(const json &summary)
-  {
-    return summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
-  }
-
-
-#define PERIDEAL_INSTANTIATE(dim)                          \
-  template json describe_scene(const Scene<dim> &,         \
-                               const SceneText &,          \
-                               const Triangulation<dim> &, \
-                               const MPI_Comm);            \
-  template void write_image_as_read(const Scene<dim> &, const MPI_Comm);
+#define PERIDEAL_INSTANTIATE(dim)                                                      \
+  template json describe_scene(const Scene<dim> &,                                     \
+                               const SceneText &,                                      \
+                               const Triangulation<dim> &,                             \
+                               const MPI_Comm);                                        \
+  template json describe_start(const Scene<dim> &, const SceneText &, const MPI_Comm); \
+  template void write_image_as_read(const Scene<dim> &, ResultFolder &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

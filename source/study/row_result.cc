@@ -6,7 +6,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/user_error.h>
-#include <perideal/output/result_files.h>
+#include <perideal/output/result_folder.h>
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/elastic_simulation.h>
 #include <perideal/simulation/simulation.h>

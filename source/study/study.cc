@@ -5,7 +5,7 @@
 
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
-#include <perideal/output/result_files.h>
+#include <perideal/output/result_folder.h>
 #include <perideal/scene/lists.h>
 #include <perideal/study/study.h>
 

@@ -3,7 +3,7 @@
 
 #include "study_tables.h"
 
-#include <perideal/output/result_files.h>
+#include <perideal/output/tables.h>
 
 #include <algorithm>
 

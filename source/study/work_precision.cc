@@ -4,7 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/user_error.h>
-#include <perideal/output/result_files.h>
+#include <perideal/output/result_folder.h>
 #include <perideal/study/work_precision.h>
 
 #include <algorithm>

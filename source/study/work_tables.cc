@@ -4,7 +4,7 @@
 #include "work_tables.h"
 
 #include <perideal/base/progress.h>
-#include <perideal/output/result_files.h>
+#include <perideal/output/tables.h>
 
 #include <algorithm>
 #include <cmath>

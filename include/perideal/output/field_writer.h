@@ -7,6 +7,7 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <perideal/base/types.h>
+#include <perideal/output/result_folder.h>
 
 #include <functional>
 #include <string>
@@ -23,9 +24,12 @@ namespace PeriDeal
 
 
   /**
-   * Writes fields of one model at one time: VTU pieces with a PVTU record, and HDF5 with an XDMF description. Patches are made straight
-   * from the dofs (vertex dofs, or cell centres as constants per cell), so that vertices doubled by a crack stay apart and
-   * vectors need no finite element system. In 1D the HDF5 file is written by rank 0 (`/nodes`, `/cells`, one data set per field).
+   * Writes fields of one model at one time: VTU with a PVTU record (single precision), and HDF5 (`/nodes`, `/cells`, one table per field, double
+   * precision) with, but for 1D, an XDMF description. Cells are written straight from the dofs (vertex dofs, or cell centres as constants per cell), so that
+   * vertices doubled by a crack stay apart and vectors need no finite element system.
+   *
+   * Rank 0 writes, with what it gets from one process after the other, each file under another name until it is whole. (Open MPI 4 writes in parallel
+   * under the protection of a semaphore that is named after the file alone: a stale one, or a second run on the machine, stops it for ever.)
    */
   template <int dim>
   class FieldWriter : public dealii::DataOutInterface<dim>
@@ -34,15 +38,17 @@ namespace PeriDeal
     using Choice = std::function<bool(const dealii::Point<dim> &)>;
 
     /**
-     * @param directory where the series goes; @param series its name, for example `finite_elements`
-     * @param shows     whether the cell with this centre is written; empty: all are
+     * @param folder where the series goes; @param series its name, for example `finite_elements`
+     * @param shows  whether the cell with this centre is written; empty: all are
      */
     FieldWriter(const dealii::DoFHandler<dim> &dofs,
-                const std::string             &directory,
+                ResultFolder                  &folder,
                 const std::string             &series,
                 const Choice                  &shows = {});
 
-    /** Returns the name of the HDF5 file relative to the directory (empty if not asked for). Collective. */
+    /**
+     * Returns the name of the HDF5 file relative to the directory (empty if not asked for). What cannot be written is kept in the folder. Collective.
+     */
     std::string write(const std::vector<OutputField> &fields,
                       const double                    time,
                       const bool                      vtu,
@@ -59,18 +65,22 @@ namespace PeriDeal
 
     void build_patches(const std::vector<OutputField> &fields);
     void write_vtu_series(const double time);
-    void write_hdf5_file(const std::string &name, const double time);
-    void write_1d_hdf5_file(const std::string &name) const;
+    void write_vtu_file(const std::string &name) const;
+    void write_hdf5_file(const std::string &name) const;
+    void write_xdmf_file(const std::string &hdf5_name, const double time);
 
     const dealii::DoFHandler<dim>                    &dofs;
-    std::string                                       directory, series;
+    ResultFolder                                     &folder;
+    const std::string                                 series;
     const Choice                                      shows;
+    const dealii::DataOutBase::VtkFlags               flags;
     unsigned int                                      n_written = 0;
     std::vector<dealii::DataOutBase::Patch<dim, dim>> patches;
-    std::vector<std::string>                          names;
+    std::vector<std::string>                          names; // of the components
+    std::vector<std::vector<double>> values; // of the components at the patches' corners
     std::vector<std::pair<unsigned int, std::string>>
       vectors; // first component and name of each vector field
     std::vector<std::pair<double, std::string>> vtu_records;
-    std::vector<dealii::XDMFEntry>              xdmf_entries;
+    std::string                                 xdmf_entries;
   };
 } // namespace PeriDeal

@@ -7,8 +7,8 @@
 
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/progress.h>
-#include <perideal/output/result_files.h>
 #include <perideal/simulation/elastic_run.h>
+#include <perideal/simulation/run_files.h>
 #include <perideal/simulation/simulation.h>
 
 #include <nlohmann/json_fwd.hpp>
@@ -44,6 +44,7 @@ namespace PeriDeal
     void dry_run();
 
   private:
+    void                   compute();
     void                   build();
     void                   build_heat();
     void                   warm_until(const double t);
@@ -61,7 +62,8 @@ namespace PeriDeal
     void                   write_fields(const double t);
     void                   add_totals(const ElasticRun<dim> &model, const double t);
     nlohmann::ordered_json add_energies(const ElasticRun<dim> &model, const double t);
-    void                   write_summary();
+    void                   end_output(const double t);
+    nlohmann::ordered_json summary_now(const bool at_the_end);
 
     const Scene<dim>                                 &scene;
     const SceneText                                  &text;
@@ -71,8 +73,9 @@ namespace PeriDeal
     Timings                                           timings;
     std::shared_ptr<dealii::Triangulation<dim>>       mesh;
     std::vector<std::unique_ptr<ElasticRun<dim>>>     models;
-    std::unique_ptr<Simulation<dim>>                  heat; // null: no temperature is computed
-    PointTable                                        probes, line;
+    std::unique_ptr<Simulation<dim>>                  heat;  // null: no temperature is computed
+    std::unique_ptr<RunFiles>                         files; // of run() only
+    std::unique_ptr<PointTable>                       probes, line;
     std::unique_ptr<ResultRecord>                     record;
     std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers; // of the models
     std::vector<std::unique_ptr<FieldWriter<dim>>>    writers;

@@ -9,8 +9,8 @@
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/progress.h>
 #include <perideal/mesh/grading.h>
-#include <perideal/output/result_files.h>
 #include <perideal/simulation/model_run.h>
+#include <perideal/simulation/run_files.h>
 
 #include <functional>
 #include <map>
@@ -63,8 +63,9 @@ namespace PeriDeal
     void solve_models();
     void prepare_adaptation();
     bool adapt(const double t);
-    void make_evaluators();
+    void make_tables();
     void make_writers();
+    void compute();
     void make_reference();
     void advance_through_events(ModelRun<dim> &model, const double t_begin, const double t_end);
     void write_output(const double t);
@@ -74,12 +75,12 @@ namespace PeriDeal
     void compare_models(const double t);
     void compare_with_others(const double t, const ModelRun<dim> &coupled);
     void write_fields(const double t);
-    void write_summary();
-    void describe(const ModelRun<dim> &model) const;
-    void check_sides() const;
-    std::vector<double> output_times() const;
-    double              expected_applications(const ModelRun<dim> &model) const;
-    double              time_of_application(const ModelRun<dim> &model) const;
+    nlohmann::ordered_json summary_now() const;
+    void                   describe(const ModelRun<dim> &model) const;
+    void                   check_sides() const;
+    std::vector<double>    output_times() const;
+    double                 expected_applications(const ModelRun<dim> &model) const;
+    double                 time_of_application(const ModelRun<dim> &model) const;
 
     const Scene<dim>                                 &scene;
     const SceneText                                  &text;
@@ -91,6 +92,7 @@ namespace PeriDeal
     std::vector<std::unique_ptr<FieldWriter<dim>>>    writers;
     std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers, grid_readers;
     std::unique_ptr<ExactSolution>                    exact;
+    std::unique_ptr<RunFiles>                         files; // of run() only
     std::unique_ptr<PointTable>                       probes, line, grid;
     std::unique_ptr<ResultRecord>                     record;
     Vector                        difference; // peridynamics minus finite elements, at the nodes

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <string>
+
+namespace PeriDeal
+{
+  /** What the status of a process means to whoever started it. */
+  enum class ExitStatus
+  {
+    complete = 0,
+    error    = 1, // of the user or of the machine, or a run that diverged
+    fault    = 2, // of the program
+    stopped  = 3  // by a signal
+  };
+
+
+  /**
+   * Settings of Open MPI that a run needs and that stand in the environment, unless the user has set them; to be called before MPI_Init.
+   *
+   * Its directory of keys is kept in memory: the one in shared files below TMPDIR ends in a bus error where that is full. A process that no
+   * launcher has started needs no daemon and no transport between processes.
+   */
+  void prepare_mpi_environment();
+
+  /**
+   * From now on SIGTERM and SIGINT end the process with ExitStatus::stopped after what set_farewell() has asked for; faults (a segmentation fault, a bus
+   * error, abort()) end it with one message, without a trace, and ExitStatus::fault, or ExitStatus::error if memory has run out. To be called after
+   * MPI_Init, which sets handlers of its own.
+   *
+   * @param speaks whether this process tells the user; one of each run does
+   */
+  void handle_signals(const bool speaks);
+
+  /**
+   * What a process that is told to end still does: the file is replaced as a whole by the text, then the message is printed. Only what is prepared here
+   * can be written then, since nothing may be computed in a signal handler.
+   */
+  void set_farewell(const std::string &file, const std::string &text, const std::string &message);
+
+  /** Nothing is to be written any more. */
+  void clear_farewell();
+
+  /** A file that is being written and is of no use until it is whole: removed if the process ends before. Empty: none. */
+  void set_unfinished_file(const std::string &file);
+
+  /** Whether the machine, or a limit of the process, refuses more memory at this moment. */
+  bool memory_is_short();
+} // namespace PeriDeal

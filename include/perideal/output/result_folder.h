@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/output/folder_lock.h>
+
+#include <mpi.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * The output directory of one run. The folder `.perideal` in it holds the list of the files that runs have written there, each named before it is
+   * written, a lock while a run goes on, and the results of the run before until the new one has results of its own.
+   *
+   * - One run at a time: a second one is refused. The lock goes with the process, so that a run that was killed leaves none.
+   * - Only files of the list are ever moved, replaced or deleted; where a file of another origin has the name of a result, the run is refused.
+   * - A run that ends before commit() leaves the directory as it was.
+   *
+   * Files are written by rank 0. What goes wrong there is kept, and check() throws it on all processes.
+   */
+  class ResultFolder
+  {
+  public:
+    /**
+     * Takes the directory and sets aside what an earlier run wrote there.
+     *
+     * @param scene_file must not be among the results @param names of files that the run is going to write or its report is, relative to the directory;
+     * `*` at the end stands for anything
+     *
+     * Throws UserError. Collective.
+     */
+    ResultFolder(const std::string              &directory,
+                 const std::string              &scene_file,
+                 const std::vector<std::string> &names,
+                 const MPI_Comm                  communicator);
+
+    /** Without commit() everything is as before. */
+    ~ResultFolder();
+
+    ResultFolder(const ResultFolder &)            = delete;
+    ResultFolder &operator=(const ResultFolder &) = delete;
+
+    const std::string &directory() const
+    {
+      return path;
+    }
+
+    /** This process writes. */
+    bool writes() const
+    {
+      return first_rank;
+    }
+
+    /** Name a file as the run's own, before it is written; returns where it lies. Only where writes(). */
+    std::string claim(const std::string &name);
+
+    /** Write a file whole or not at all. Does nothing where not writes(). */
+    void write(const std::string &name, const std::string &text);
+
+    /** Something could not be written, for the reason that the system gave (an error number, 0 if it gave none). The first such message counts. */
+    void keep_failure(const std::string &name, const int reason);
+
+    /** Throws a UserError on all processes if anything could not be written. Collective. */
+    void check() const;
+
+    /** Whether anything could not be written, as far as this process knows. */
+    bool failed() const
+    {
+      return !failure.empty();
+    }
+
+    /** The run has results: those of the run before go. */
+    void commit();
+
+  private:
+    std::string take(const std::string &scene_file, const std::vector<std::string> &names);
+    std::string file_of_another_origin(const std::vector<std::string> &names,
+                                       const std::set<std::string>    &earlier) const;
+    void        set_aside(const std::set<std::string> &earlier);
+    void        restore();
+
+    const std::string     path, own; // the directory, and its folder `.perideal`
+    const MPI_Comm        communicator;
+    const bool            first_rank;
+    std::set<std::string> listed;
+    std::string           failure;
+    FolderLock            lock;
+    bool                  holds = false, committed = false;
+
+    std::vector<std::string> made; // folders that did not exist before, the innermost first
+  };
+
+
+  /** Write a file whole or not at all (new file, then rename); returns 0 or the error number. Call it on one process. */
+  int replace_file(const std::string &name, const std::string &text);
+
+  /** As replace_file(), throws UserError. */
+  void write_file(const std::string &name, const std::string &text);
+
+} // namespace PeriDeal

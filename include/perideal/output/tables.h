@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/output/result_folder.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** A table (.csv) that is written as the run goes on, a line at a time, so that a run that ends early leaves whole lines. */
+  class Table
+  {
+  public:
+    /** The file exists with its header from now on. Writes where the folder does; failures are kept there. */
+    Table(ResultFolder &folder, const std::string &name, const std::string &header);
+    ~Table();
+
+    Table(const Table &)            = delete;
+    Table &operator=(const Table &) = delete;
+
+    /** @param rows whole lines */
+    void add(const std::string &rows);
+
+  private:
+    ResultFolder     &folder;
+    const std::string name;
+    std::FILE        *file = nullptr; // nullptr where nothing is written
+  };
+
+
+  /**
+   * The rows `time,model,x,y,z,value` of probes.csv and line.csv, with other columns for other physics; 15 significant digits, coordinates as given in the
+   * scene.
+   */
+  class PointTable
+  {
+  public:
+    PointTable(ResultFolder                           &folder,
+               const std::string                      &name,
+               const std::vector<std::vector<double>> &points,
+               const unsigned int                      dim,
+               const std::vector<std::string>         &columns = {"value"});
+
+    /** @param values those of all columns of the first point, then of the next */
+    void add(const double time, const std::string &model, const std::vector<double> &values);
+
+  private:
+    std::vector<std::vector<double>> points;
+    std::size_t                      n_columns;
+    Table                            table;
+  };
+
+  /** The number with 15 significant digits. */
+  std::string full_precision(const double x);
+} // namespace PeriDeal

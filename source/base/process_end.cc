@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/process_end.h>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    /** What set_farewell() was given. A handler reads it, so it never changes once it is published. */
+    struct Farewell
+    {
+      std::string file, part, text, message;
+    };
+
+    std::atomic<const Farewell *>    farewell{nullptr};
+    std::unique_ptr<const Farewell>  current, previous; // a handler may still read the one before
+    std::atomic<const std::string *> unfinished{nullptr};
+    std::string                      unfinished_files[2];
+    bool                             speaker = false;
+
+
+    // The functions below run in signal handlers: system calls only, no memory.
+
+    void write_all(const int file, const char *text, std::size_t length)
+    {
+      while (length > 0)
+        {
+          const ssize_t n = write(file, text, length);
+          if (n <= 0)
+            return;
+          text += n;
+          length -= static_cast<std::size_t>(n);
+        }
+    }
+
+
+    void say(const char *text)
+    {
+      if (speaker)
+        write_all(STDERR_FILENO, text, std::strlen(text));
+    }
+
+
+    void leave_in_order(const Farewell *last)
+    {
+      if (const std::string *file = unfinished.load())
+        unlink(file->c_str());
+      if (last == nullptr || last->file.empty())
+        return;
+      const int file = open(last->part.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+      if (file < 0)
+        return;
+      write_all(file, last->text.c_str(), last->text.size());
+      if (close(file) == 0)
+        rename(last->part.c_str(), last->file.c_str());
+    }
+
+
+    void stop(int signal)
+    {
+      const Farewell *last = farewell.load();
+      leave_in_order(last);
+      say(signal == SIGINT ? "\nperideal: stopped by an interrupt (SIGINT)." :
+                             "\nperideal: stopped by a request to end (SIGTERM).");
+      if (last != nullptr)
+        {
+          say(" ");
+          say(last->message.c_str());
+        }
+      say("\n");
+      _exit(static_cast<int>(ExitStatus::stopped));
+    }
+
+
+    void fail(int signal)
+    {
+      leave_in_order(farewell.load());
+      speaker = true; // the others may know nothing of it
+      if (memory_is_short())
+        {
+          say(
+            "\nperideal: error: out of memory. `perideal check` tells what a scene needs; a coarser lattice, fewer 'Models' or a smaller "
+            "'Horizon ratio' need less.\n");
+          _exit(static_cast<int>(ExitStatus::error));
+        }
+      if (signal == SIGBUS)
+        {
+          say(
+            "\nperideal: error: a file in shared memory could not grow (bus error): is the folder for temporary files (TMPDIR) or "
+            "/dev/shm full?\n");
+          _exit(static_cast<int>(ExitStatus::error));
+        }
+      say("\nperideal: internal error: ");
+      say(signal == SIGSEGV ? "segmentation fault" :
+          signal == SIGABRT ? "the program called abort()" :
+          signal == SIGFPE  ? "a forbidden arithmetic operation" :
+                              "a forbidden instruction");
+      say(". Please report it with the scene file.\n");
+      _exit(static_cast<int>(ExitStatus::fault));
+    }
+
+
+    void set_default(const char *name, const char *value)
+    {
+      setenv(name, value, 0);
+    }
+  } // namespace
+
+
+  void prepare_mpi_environment()
+  {
+    set_default("PMIX_MCA_gds", "hash");
+    for (const char *launched : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
+      if (std::getenv(launched) != nullptr)
+        return;
+    set_default("OMPI_MCA_ess_singleton_isolated", "1");
+    set_default("OMPI_MCA_btl", "self");
+    set_default("OMPI_MCA_pml", "ob1");
+  }
+
+
+  void handle_signals(const bool speaks)
+  {
+    speaker       = speaks;
+    const auto on = [](const int signal, void (*handler)(int), const int flags) {
+      struct sigaction action = {};
+      action.sa_handler       = handler;
+      action.sa_flags         = flags;
+      sigfillset(&action.sa_mask); // one end is enough
+      sigaction(signal, &action, nullptr);
+    };
+    on(SIGTERM, stop, 0);
+    on(SIGINT, stop, 0);
+    std::signal(SIGXFSZ,
+                SIG_IGN); // a file that would grow beyond a limit: writing fails, which is checked
+#ifndef __SANITIZE_ADDRESS__ // it has handlers of its own
+    // A stack that is full holds no handler.
+    static char alternative[1 << 16];
+    stack_t     stack = {};
+    stack.ss_sp       = alternative;
+    stack.ss_size     = sizeof alternative;
+    sigaltstack(&stack, nullptr);
+    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
+      on(signal, fail, SA_ONSTACK);
+#endif
+  }
+
+
+  void set_farewell(const std::string &file, const std::string &text, const std::string &message)
+  {
+    previous = std::move(current);
+    current  = std::make_unique<const Farewell>(Farewell{file, file + ".part", text, message});
+    farewell = current.get();
+  }
+
+
+  void clear_farewell()
+  {
+    farewell = nullptr;
+    previous.reset();
+    current.reset();
+  }
+
+
+  void set_unfinished_file(const std::string &file)
+  {
+    // Two in turn, since a handler may read the one that is published.
+    std::string &next = unfinished.load() == &unfinished_files[0] ? unfinished_files[1] :
+                                                                    unfinished_files[0];
+    next              = file;
+    unfinished        = file.empty() ? nullptr : &next;
+  }
+
+
+  bool memory_is_short()
+  {
+    constexpr std::size_t little = std::size_t(1) << 26;
+    void *const           block =
+      mmap(nullptr, little, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (block == MAP_FAILED)
+      return true;
+    munmap(block, little);
+    return false;
+  }
+} // namespace PeriDeal

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/simulation/run_files.h>
+
+#include <new>
+
+#include "summary_parts.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** What a run of the scene writes under names that are known beforehand, and its report. */
+    template <int dim>
+    std::vector<std::string> names_of_results(const Scene<dim> &scene)
+    {
+      std::vector<std::string> names{"scene.prm", "summary.json", "report.html", "totals.csv"};
+      const auto               add = [&](const bool is_written, const std::string &name) {
+        if (is_written)
+          names.push_back(name);
+      };
+      add(!scene.output.probes.empty(), "probes.csv");
+      add(!scene.output.line.empty(), "line.csv");
+      add(!scene.output.grid.empty(), "grid.csv");
+      add(static_cast<bool>(scene.domain.image), "image_as_read.png");
+      for (const Model model : scene.general.models)
+        {
+          const std::string series = series_of(to_string(model));
+          add(scene.output.vtu, series + ".pvd");
+          add(scene.output.hdf5, series + ".xdmf");
+          add(scene.output.vtu || scene.output.hdf5, "fields/" + series + "_*");
+        }
+      return names;
+    }
+  } // namespace
+
+
+  template <int dim>
+  RunFiles::RunFiles(const Scene<dim> &scene, const SceneText &text, const MPI_Comm communicator)
+    : folder(scene.general.output_directory, text.file_name, names_of_results(scene), communicator)
+    , communicator(communicator)
+    , summary_file(folder, describe_start(scene, text, communicator))
+    , totals(folder, "totals.csv", "time,model,quantity,value")
+    , last_update(Clock::now())
+  {
+    folder.write("scene.prm", scene_with_defaults());
+    write_image_as_read(scene, folder);
+    if (folder.writes())
+      folder.claim("report.html"); // the scripts that draw it keep no list
+    folder.check();
+  }
+
+
+  void RunFiles::add_totals(const std::string &rows)
+  {
+    folder.commit();
+    has_results = true;
+    totals.add(rows);
+  }
+
+
+  void RunFiles::after_output(const std::function<Json()> &summary, const std::string &reached)
+  {
+    constexpr int many = 50; // times what it costs
+    const auto    now  = Clock::now();
+    const bool    due =
+      Utilities::MPI::broadcast(communicator, now - last_update >= many * cost_of_update, 0);
+    folder.check();
+    if (!due)
+      return;
+    summary_file.update(summary(), reached);
+    last_update    = Clock::now();
+    cost_of_update = last_update - now;
+    folder.check();
+  }
+
+
+  void RunFiles::complete(const Json &summary)
+  {
+    folder.check();
+    summary_file.complete(summary);
+    folder.check();
+  }
+
+
+  std::string RunFiles::end_early(const std::string &message, const bool diverged)
+  {
+    if (!has_results)
+      return "";
+    const bool unwritable = folder.failed();
+    summary_file.end(diverged && !unwritable ? "diverged" : "stopped", message);
+    return unwritable ? "" :
+                        " Results until then are in '" + folder.directory() +
+                          "'; its summary.json says how the run ended.";
+  }
+
+
+  void with_orderly_end(RunFiles &files, const std::function<void()> &action)
+  {
+    try
+      {
+        action();
+      }
+    catch (const UserError &error)
+      {
+        throw UserError(error.message() + files.end_early(error.message(), true));
+      }
+    catch (const std::bad_alloc &)
+      {
+        files.end_early("out of memory", false);
+        throw;
+      }
+    catch (...)
+      {
+        files.end_early("internal error", false);
+        throw;
+      }
+  }
+
+
+  template RunFiles::RunFiles(const Scene<1> &, const SceneText &, const MPI_Comm);
+  template RunFiles::RunFiles(const Scene<2> &, const SceneText &, const MPI_Comm);
+  template RunFiles::RunFiles(const Scene<3> &, const SceneText &, const MPI_Comm);
+} // namespace PeriDeal
