@@ -5,6 +5,7 @@
 
 #include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
+#include <perideal/output/field_writer.h>
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/elastic_simulation.h>
 #include <perideal/simulation/simulation.h>
@@ -356,6 +357,7 @@ int main(int argc, char **argv)
     throw std::bad_alloc();
   });
   prepare_mpi_environment();
+  start_hdf5();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   handle_signals(first_rank);

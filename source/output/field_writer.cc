@@ -141,7 +141,7 @@ namespace PeriDeal
       std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
                                                           relevant,
                                                           dofs.get_communicator());
-    std::vector<Vector> nodal;
+    nodal.clear();
     for (const OutputField &field : fields)
       for (const Vector &component : field.components)
         {
@@ -150,7 +150,6 @@ namespace PeriDeal
         }
     for (const Vector &value : nodal) // copies of vectors lose their ghosts, so only now
       value.update_ghost_values();
-    values.assign(names.size(), {});
     patches.clear();
     patches.reserve(dofs.get_triangulation().n_active_cells());
     for (const auto &cell : dofs.active_cell_iterators())
@@ -168,10 +167,7 @@ namespace PeriDeal
           // In FE_Q the first dofs of a cell are those of its vertices.
           for (unsigned int row = 0; row < nodal.size(); ++row)
             for (unsigned int v = 0; v < n_vertices; ++v)
-              {
-                values[row].push_back(nodal[row](indices[at_vertices ? v : 0]));
-                patch.data(row, v) = values[row].back();
-              }
+              patch.data(row, v) = nodal[row](indices[at_vertices ? v : 0]);
         }
   }
 
@@ -179,30 +175,32 @@ namespace PeriDeal
   template <int dim>
   void FieldWriter<dim>::write_vtu_file(const std::string &name) const
   {
-    std::ostringstream piece;
+    std::ostringstream head, piece, foot; // deal.II throws where a file cannot be written to
     if (!patches.empty())
       DataOutBase::write_vtu_main(patches, names, get_nonscalar_data_ranges(), flags, piece);
+    DataOutBase::write_vtu_header(head, flags);
+    DataOutBase::write_vtu_footer(foot);
     std::unique_ptr<UnfinishedFile> target;
     std::ofstream                   out;
+    int                             problem = 0;
+    const auto                      add     = [&](const std::string &text) {
+      errno = 0;
+      if (problem == 0 && !(out << text << std::flush))
+        problem = errno != 0 ? errno : -1;
+    };
     if (folder.writes())
       {
         target = std::make_unique<UnfinishedFile>(folder, name);
         errno  = 0;
         out.open(target->part(), std::ios::binary);
-        DataOutBase::write_vtu_header(out, flags);
+        problem = out ? 0 : errno != 0 ? errno : -1;
+        add(head.str());
       }
-    int problem = 0;
-    gather_in_turn(piece.str(), dofs.get_communicator(), [&](const std::string &text) {
-      if (out)
-        out << text << std::flush;
-      if (!out && problem == 0)
-        problem = errno != 0 ? errno : -1;
-    });
-    if (!folder.writes())
+    gather_in_turn(piece.str(), dofs.get_communicator(), add);
+    if (!target)
       return;
+    add(foot.str());
     errno = 0;
-    if (out)
-      DataOutBase::write_vtu_footer(out);
     out.close();
     if (!out && problem == 0)
       problem = errno != 0 ? errno : -1;
@@ -225,6 +223,44 @@ namespace PeriDeal
     DataOutBase::write_pvd_record(pvd, vtu_records);
     if (!folder.failed())
       folder.write(series + ".pvd", pvd.str());
+  }
+
+
+  template <int dim>
+  std::vector<std::tuple<std::string, unsigned int, unsigned int>> FieldWriter<dim>::tables() const
+  {
+    std::vector<std::tuple<std::string, unsigned int, unsigned int>> list;
+    for (unsigned int row = 0, next = 0; row < names.size(); ++row)
+      if (next < vectors.size() && vectors[next].first == row)
+        {
+          list.emplace_back(vectors[next++].second, row, dim);
+          row += dim - 1;
+        }
+      else
+        list.emplace_back(names[row], row, 1);
+    return list;
+  }
+
+
+  template <int dim>
+  std::vector<double> FieldWriter<dim>::corner_values(const unsigned int first,
+                                                      const unsigned int n_components) const
+  {
+    constexpr unsigned int               n_corners   = GeometryInfo<dim>::vertices_per_cell;
+    const unsigned int                   width       = n_components == 1 ? 1 : 3;
+    const bool                           at_vertices = dofs.get_fe().n_dofs_per_vertex() > 0;
+    std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
+    std::vector<double>                  values(patches.size() * n_corners * width, 0.);
+    auto                                 next = values.begin();
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && (!shows || shows(cell->center())))
+        {
+          cell->get_dof_indices(indices);
+          for (unsigned int v = 0; v < n_corners; ++v, next += width)
+            for (unsigned int d = 0; d < n_components; ++d)
+              next[d] = nodal[first + d](indices[at_vertices ? v : 0]);
+        }
+    return values;
   }
 
 
@@ -265,18 +301,8 @@ namespace PeriDeal
         }
     add("nodes", nodes, dim);
     add("cells", cells, n_corners);
-    for (unsigned int row = 0, next = 0; row < names.size(); ++row)
-      if (next < vectors.size() && vectors[next].first == row)
-        {
-          std::vector<double> padded(3 * values[row].size(), 0.); // vectors have three components
-          for (unsigned int d = 0; d < dim; ++d)
-            for (std::size_t i = 0; i < values[row].size(); ++i)
-              padded[3 * i + d] = values[row + d][i];
-          add(vectors[next++].second, padded, 3);
-          row += dim - 1;
-        }
-      else
-        add(names[row], values[row], 1);
+    for (const auto &[name_of_table, first_component, n_components] : tables())
+      add(name_of_table, corner_values(first_component, n_components), n_components == 1 ? 1 : 3);
     if (file)
       target->finish(file->close());
   }
@@ -288,14 +314,8 @@ namespace PeriDeal
     const std::uint64_t n_cells =
       Utilities::MPI::sum(static_cast<std::uint64_t>(patches.size()), dofs.get_communicator());
     XDMFEntry entry(hdf5_name, time, n_cells * GeometryInfo<dim>::vertices_per_cell, n_cells, dim);
-    for (unsigned int row = 0, next = 0; row < names.size(); ++row)
-      if (next < vectors.size() && vectors[next].first == row)
-        {
-          entry.add_attribute(vectors[next++].second, 3);
-          row += dim - 1;
-        }
-      else
-        entry.add_attribute(names[row], 1);
+    for (const auto &[table, first_component, n_components] : tables())
+      entry.add_attribute(table, n_components == 1 ? 1 : 3);
     if (!folder.writes() || folder.failed())
       return;
     xdmf_entries += entry.get_xdmf_content(3, ReferenceCells::get_hypercube<dim>());
@@ -335,7 +355,7 @@ namespace PeriDeal
     ++n_written;
     patches.clear();
     patches.shrink_to_fit();
-    values.clear();
+    nodal.clear();
     return name;
   }
 

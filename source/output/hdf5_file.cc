@@ -3,6 +3,8 @@
 
 #include "hdf5_file.h"
 
+#include <perideal/output/field_writer.h>
+
 #include <cerrno>
 #include <cstdint>
 #include <type_traits>
@@ -23,9 +25,6 @@ namespace PeriDeal
 
   Hdf5File::Hdf5File(const std::string &name)
   {
-    // Files that could not be closed would be tried again, with complaints, when the program ends.
-    static const bool quiet = H5dont_atexit() >= 0;
-    (void)quiet;
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     errno = 0;
     file  = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
@@ -43,6 +42,13 @@ namespace PeriDeal
   {
     if (!good && problem == 0)
       problem = errno != 0 ? errno : -1;
+  }
+
+
+  void start_hdf5()
+  {
+    H5dont_atexit();
+    H5open();
   }
 
 

@@ -63,6 +63,13 @@ namespace PeriDeal
                            dealii::DataComponentInterpretation::DataComponentInterpretation>>
     get_nonscalar_data_ranges() const override;
 
+    /** Name, first component and number of components of each table. */
+    std::vector<std::tuple<std::string, unsigned int, unsigned int>> tables() const;
+
+    /** Of a table at the patches' corners; vectors have three components in files. */
+    std::vector<double> corner_values(const unsigned int first,
+                                      const unsigned int n_components) const;
+
     void build_patches(const std::vector<OutputField> &fields);
     void write_vtu_series(const double time);
     void write_vtu_file(const std::string &name) const;
@@ -77,10 +84,17 @@ namespace PeriDeal
     unsigned int                                      n_written = 0;
     std::vector<dealii::DataOutBase::Patch<dim, dim>> patches;
     std::vector<std::string>                          names; // of the components
-    std::vector<std::vector<double>> values; // of the components at the patches' corners
+    std::vector<Vector>                               nodal; // of the components
     std::vector<std::pair<unsigned int, std::string>>
       vectors; // first component and name of each vector field
     std::vector<std::pair<double, std::string>> vtu_records;
     std::string                                 xdmf_entries;
   };
+
+
+  /**
+   * To be called by a program before MPI_Init: else HDF5 ends with MPI, tries again then to close files that could not be closed since the disk is full, and
+   * fails over them.
+   */
+  void start_hdf5();
 } // namespace PeriDeal
