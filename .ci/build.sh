@@ -29,6 +29,7 @@ parallel_environment()
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     export OMPI_MCA_hwloc_base_binding_policy=none
     export OMPI_MCA_btl_vader_single_copy_mechanism=none
+    export PMIX_MCA_gds=hash # else a full folder for temporary files (TMPDIR) ends in a bus error
 }
 
 # Configure the release build where that has not been done, or was done for a tree that stood elsewhere.

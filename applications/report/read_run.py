@@ -146,9 +146,20 @@ class Run:
         for model, entry in summary["models"].items():
             if not isinstance(entry, dict):
                 raise ReportError(f"'{path}': the model '{model}' must hold an object")
-        if not summary["models"]:
+        if not summary["models"] and summary.get("status", "complete") == "complete":
             raise ReportError(f"'{path}' names no model")
         return summary
+
+    @property
+    def unfinished(self):
+        """What a reader has to know of a run that is not complete, as a sentence; empty if it is."""
+        status, message = self.get("status", default="complete"), self.get("message", default="")
+        if status == "complete":
+            return ""
+        if status == "running":
+            return "This run is not finished: it goes on, or it was killed. The page shows what it had written."
+        start = "This run ended early" if status == "diverged" else "This run was stopped before its end"
+        return f"{start}: {message.rstrip('.') or status}. The page shows what it had written until then."
 
     def _dimension(self):
         dimension = self.summary["dimension"]
@@ -346,7 +357,10 @@ class Run:
         if not path.is_file():
             return [], []
         with open(path, newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
+            lines = file.read().splitlines(keepends=True)
+        if lines and not lines[-1].endswith("\n"):  # the run was killed while it wrote the last one
+            lines.pop()
+        rows = list(csv.reader(lines))
         if not rows:
             return [], []
         header = [h.strip() for h in rows[0]]

@@ -53,6 +53,8 @@ class Report:
     def html(self):
         """The document."""
         title = self.run.get("title", default="PeriDeal run")
+        if not self.run.models:
+            return self.without_results(title)
         self.problem()
         place = len(self.page.parts)
         self.fields()
@@ -68,6 +70,13 @@ class Report:
         self.files()
         return self.page.html(title, self.header(title))
 
+    def without_results(self, title):
+        """The page of a run that has written nothing yet."""
+        self.page.section("The problem", "problem")
+        self.page.add(paragraphs(prose(self.run.get("text", default=""))))
+        self.files()
+        return self.page.html(title, self.header(title))
+
     def header(self, title):
         """Title and the facts of the run in one line."""
         facts = [self.run.get("scene file"), self.run.get("program"),
@@ -78,7 +87,8 @@ class Report:
         if self.units():
             facts.append("units: " + ", ".join(self.units()))
         spans = "".join(f"<span>{escape(str(f))}</span>" for f in facts if f)
-        return f"<h1>{escape(title)}</h1><p>{spans}</p>"
+        warning = f'<p class="unfinished">{escape(self.run.unfinished)}</p>' if self.run.unfinished else ""
+        return f"<h1>{escape(title)}</h1><p>{spans}</p>{warning}"
 
     def kind(self):
         """What kind of a run it is."""

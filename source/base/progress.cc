@@ -82,7 +82,7 @@ namespace PeriDeal
   }
 
 
-  void Progress::end()
+  void Progress::end() const
   {
     if (active && terminal)
       std::cout << "\r" << std::string(78, ' ') << "\r" << std::flush;

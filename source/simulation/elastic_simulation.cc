@@ -239,7 +239,7 @@ namespace PeriDeal
   {
     refuse_what_is_not_computed(scene);
     files = std::make_unique<RunFiles>(scene, text, communicator);
-    with_orderly_end(*files, [&] { compute(); });
+    with_orderly_end(*files, progress, [&] { compute(); });
     files.reset();
     progress.line("Results: " + scene.general.output_directory);
   }

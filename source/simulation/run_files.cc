@@ -89,36 +89,40 @@ namespace PeriDeal
   }
 
 
-  std::string RunFiles::end_early(const std::string &message, const bool diverged)
+  bool RunFiles::end_early(const std::string &message, const bool diverged)
   {
-    if (!has_results)
-      return "";
-    const bool unwritable = folder.failed();
-    summary_file.end(diverged && !unwritable ? "diverged" : "stopped", message);
-    return unwritable ? "" :
-                        " Results until then are in '" + folder.directory() +
-                          "'; its summary.json says how the run ended.";
+    if (has_results)
+      summary_file.end(diverged && !folder.failed() ? "diverged" : "stopped", message);
+    return has_results;
   }
 
 
-  void with_orderly_end(RunFiles &files, const std::function<void()> &action)
+  void with_orderly_end(RunFiles                    &files,
+                        const Progress              &progress,
+                        const std::function<void()> &action)
   {
+    const auto end = [&](const std::string &message, const bool diverged) {
+      progress.end();
+      if (files.end_early(message, diverged))
+        progress.line("Results until then: " + files.folder.directory());
+    };
     try
       {
         action();
       }
     catch (const UserError &error)
       {
-        throw UserError(error.message() + files.end_early(error.message(), true));
+        end(error.message(), true);
+        throw;
       }
     catch (const std::bad_alloc &)
       {
-        files.end_early("out of memory", false);
+        end("out of memory", false);
         throw;
       }
     catch (...)
       {
-        files.end_early("internal error", false);
+        end("internal error", false);
         throw;
       }
   }

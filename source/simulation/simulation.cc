@@ -254,7 +254,7 @@ namespace PeriDeal
   void Simulation<dim>::run()
   {
     files = std::make_unique<RunFiles>(scene, text, communicator);
-    with_orderly_end(*files, [&] { compute(); });
+    with_orderly_end(*files, progress, [&] { compute(); });
     files.reset();
     progress.line("Results: " + scene.general.output_directory);
   }

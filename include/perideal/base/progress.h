@@ -31,7 +31,7 @@ namespace PeriDeal
     /** @param done fraction in [0, 1] */
     void update(const double done);
 
-    void end();
+    void end() const;
 
   private:
     std::string remaining(const double done) const;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/progress.h>
 #include <perideal/output/summary_file.h>
 #include <perideal/output/tables.h>
 #include <perideal/scene/scene.h>
@@ -40,10 +41,9 @@ namespace PeriDeal
     void complete(const Json &summary);
 
     /**
-     * The run ends with an error: if it has results, summary.json says how. Returns what the user should read besides the error. Not collective, since a
-     * process may have failed alone.
+     * The run ends with an error: if it has results, which is returned, summary.json says how. Not collective, since a process may have failed alone.
      */
-    std::string end_early(const std::string &message, const bool diverged);
+    bool end_early(const std::string &message, const bool diverged);
 
     ResultFolder folder;
 
@@ -59,6 +59,8 @@ namespace PeriDeal
   };
 
 
-  /** Do it, and if it throws, end the files of the run accordingly; the error goes on, with what there is of results. */
-  void with_orderly_end(RunFiles &files, const std::function<void()> &action);
+  /** Do it, and if it throws, end the files of the run accordingly and tell where results are; the error goes on. */
+  void with_orderly_end(RunFiles                    &files,
+                        const Progress              &progress,
+                        const std::function<void()> &action);
 } // namespace PeriDeal
