@@ -263,8 +263,8 @@ class ElasticSections:
         if html:
             self.page.section("Forces on the sides", "sides")
             per = {1: "", 2: ", per unit thickness", 3: ""}[self.run.dimension]
-            when = f" at {self.words.at_time(self.run.get('end time'))}" \
-                if loading.is_slow(self.run) and self.run.get("end time") is not None else ""
+            when = f" at {self.words.at_time(self.run.end_time)}" \
+                if loading.is_slow(self.run) and self.run.end_time is not None else ""
             self.page.add(f"<p>What acts on the body from outside{escape(when)}{per}.</p>")
             self.page.add(f'<div class="wide">{html}</div>')
 

@@ -18,7 +18,7 @@ def what_ran(run, words):
     state = f" in plane {plane}" if plane else ""
     n = len(run.cracks())
     cracks = "" if not n else " with a crack" if n == 1 else f" with {n} cracks"
-    end = run.get("end time")
+    end = run.end_time
     slow = ", slowly loaded" if loading.is_slow(run) else ""
     when = " at rest" if run.get("steady", default=False) else \
         "" if end is None else f"{slow} up to {words.at_time(end)}" + ("," if slow else "")

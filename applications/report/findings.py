@@ -74,7 +74,7 @@ def what_ran(run, words):
     if run.get("steady", default=False):
         how = f"The steady {words.solution.text}"
     else:
-        end = run.get("end time")
+        end = run.end_time
         how = f"The {words.solution.text}" + (
             "" if end is None else f" up to {words.at_time(end)}")
     cracks = run.cracks()

@@ -161,6 +161,13 @@ class Run:
         start = "This run ended early" if status == "diverged" else "This run was stopped before its end"
         return f"{start}: {message.rstrip('.') or status}. The page shows what it had written until then."
 
+    @property
+    def end_time(self):
+        """Up to when there are results: the end time of the scene, or the last time of a run that did not get there."""
+        end = self.get("end time")
+        times = [pair[0] for of_quantity in self.totals.values() for pairs in of_quantity.values() for pair in pairs]
+        return max(times) if self.unfinished and times else end
+
     def _dimension(self):
         dimension = self.summary["dimension"]
         if dimension not in (1, 2, 3):

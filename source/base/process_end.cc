@@ -125,6 +125,7 @@ namespace PeriDeal
       if (std::getenv(launched) != nullptr)
         return;
     set_default("OMPI_MCA_ess_singleton_isolated", "1");
+    set_default("OMPI_MCA_orte_create_session_dirs", "0"); // all such processes would share one
     set_default("OMPI_MCA_btl", "self");
     set_default("OMPI_MCA_pml", "ob1");
   }

@@ -36,7 +36,7 @@ subsection Output
   set Probes = 0.1,0.9
 end
 """
-SLOW = {"Domain/Cells": "48, 40", "Time/Stepper": "euler", "Time/Time step": "1e-5", "Time/End time": "20", "Output/Write every": "0.02"}
+SLOW = {"Domain/Cells": "48, 40", "Time/Stepper": "euler", "Time/Time step": "1e-5", "Time/End time": "20", "Output/Write every": "0.002"}
 BROKEN = {"Time/Stepper": "euler", "Time/Time step": "1"}  # refused when the operators are there
 
 FOLDER = tempfile.mkdtemp(prefix="perideal_")
