@@ -16,13 +16,10 @@
 
 #include <algorithm>
 #include <iostream>
-#include <new>
 
 namespace
 {
   using namespace PeriDeal;
-
-  bool memory_was_refused = false; // at some time
 
   template <int dim>
   void compute(const SceneText &text, const MPI_Comm communicator, const bool dry, const bool quiet)
@@ -283,7 +280,7 @@ namespace
   }
 
 
-  int execute(int argc, char **argv, const bool first_rank)
+  void execute(int argc, char **argv, const bool first_rank)
   {
     CLI::App app(
       "PeriDeal solves diffusion, elasticity and fracture with peridynamics and with finite elements on one mesh, from one "
@@ -300,7 +297,7 @@ namespace
         AssertThrow(problem.get_exit_code() == 0, UserError(explain(problem, app)));
         if (first_rank)
           app.exit(problem); // --help or --version
-        return 0;
+        return;
       }
     if (app.got_subcommand("parameters"))
       {
@@ -312,7 +309,6 @@ namespace
       compute_study(request);
     else
       compute(request.scene, request.overrides, app.got_subcommand("check"), request.quiet);
-    return 0;
   }
 
 
@@ -329,19 +325,8 @@ namespace
   }
 
 
-  int report_lack_of_memory(const bool first_rank)
-  {
-    return report(
-      "error: out of memory. `perideal check` tells what a scene needs; a coarser lattice, fewer 'Models' or a smaller 'Horizon ratio' need less.",
-      first_rank,
-      ExitStatus::error);
-  }
-
-
   int report_fault(const std::string &what, const bool first_rank)
   {
-    if (memory_is_short() || memory_was_refused)
-      return report_lack_of_memory(first_rank);
     return report("internal error, please report it with the scene file:\n" + what,
                   first_rank,
                   ExitStatus::fault);
@@ -352,10 +337,6 @@ namespace
 int main(int argc, char **argv)
 {
   using namespace PeriDeal;
-  std::set_new_handler([] {
-    memory_was_refused = true;
-    throw std::bad_alloc();
-  });
   prepare_mpi_environment();
   start_hdf5();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
@@ -363,19 +344,12 @@ int main(int argc, char **argv)
   handle_signals(first_rank);
   try
     {
-      return execute(argc, argv, first_rank);
+      with_memory_errors([&] { execute(argc, argv, first_rank); });
+      return static_cast<int>(ExitStatus::complete);
     }
   catch (const UserError &error)
     {
       return report("error: " + error.message(), first_rank, ExitStatus::error);
-    }
-  catch (const std::bad_alloc &)
-    {
-      return report_lack_of_memory(first_rank);
-    }
-  catch (const dealii::StandardExceptions::ExcOutOfMemory &)
-    {
-      return report_lack_of_memory(first_rank);
     }
   catch (const std::exception &error)
     {

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/process_end.h>
+#include <perideal/base/user_error.h>
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -12,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <new>
 
 namespace PeriDeal
 {
@@ -27,7 +29,11 @@ namespace PeriDeal
     std::unique_ptr<const Farewell>  current, previous; // a handler may still read the one before
     std::atomic<const std::string *> unfinished{nullptr};
     std::string                      unfinished_files[2];
-    bool                             speaker = false;
+    bool                             speaker            = false;
+    thread_local bool                memory_was_refused = false;
+
+    const std::string out_of_memory =
+      "out of memory. `perideal check` tells what a scene needs; a coarser lattice, fewer 'Models' or a smaller 'Horizon ratio' need less.";
 
 
     // The functions below run in signal handlers: system calls only, no memory.
@@ -89,9 +95,9 @@ namespace PeriDeal
       speaker = true; // the others may know nothing of it
       if (memory_is_short())
         {
-          say(
-            "\nperideal: error: out of memory. `perideal check` tells what a scene needs; a coarser lattice, fewer 'Models' or a smaller "
-            "'Horizon ratio' need less.\n");
+          say("\nperideal: error: ");
+          say(out_of_memory.c_str());
+          say("\n");
           _exit(static_cast<int>(ExitStatus::error));
         }
       if (signal == SIGBUS)
@@ -181,6 +187,32 @@ namespace PeriDeal
                                                                     unfinished_files[0];
     next              = file;
     unfinished        = file.empty() ? nullptr : &next;
+  }
+
+
+  void with_memory_errors(const std::function<void()> &action)
+  {
+    memory_was_refused                      = false;
+    const std::new_handler previous_handler = std::set_new_handler([] {
+      memory_was_refused = true;
+      throw std::bad_alloc();
+    });
+    try
+      {
+        action();
+        std::set_new_handler(previous_handler);
+      }
+    catch (const UserError &)
+      {
+        std::set_new_handler(previous_handler);
+        throw;
+      }
+    catch (...) // also the numbers that Trilinos throws
+      {
+        std::set_new_handler(previous_handler);
+        AssertThrow(!memory_was_refused && !memory_is_short(), UserError(out_of_memory));
+        throw;
+      }
   }
 
 

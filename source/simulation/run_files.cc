@@ -6,8 +6,6 @@
 #include <perideal/base/user_error.h>
 #include <perideal/simulation/run_files.h>
 
-#include <new>
-
 #include "summary_parts.h"
 
 namespace PeriDeal
@@ -115,14 +113,9 @@ namespace PeriDeal
         end(error.message(), true);
         throw;
       }
-    catch (const std::bad_alloc &)
-      {
-        end("out of memory", false);
-        throw;
-      }
     catch (...)
       {
-        end("internal error", false);
+        end("out of memory, or a fault of the program", false);
         throw;
       }
   }

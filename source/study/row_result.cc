@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/result_folder.h>
 #include <perideal/scene/lists.h>
@@ -162,7 +163,10 @@ namespace PeriDeal
     void compute_once(const CheckedRow &checked, Json &record, const MPI_Comm communicator)
     {
       const double begin = MPI_Wtime();
-      with_scene(checked.text, [&](const auto &scene) { run(scene, checked.text, communicator); });
+      with_memory_errors([&] {
+        with_scene(checked.text,
+                   [&](const auto &scene) { run(scene, checked.text, communicator); });
+      });
       if (!is_first(communicator))
         return;
       keep_smaller(record, "wall time", MPI_Wtime() - begin);

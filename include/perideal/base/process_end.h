@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace PeriDeal
@@ -48,4 +49,10 @@ namespace PeriDeal
 
   /** Whether the machine, or a limit of the process, refuses more memory at this moment. */
   bool memory_is_short();
+
+  /**
+   * Do it; where memory runs out, by an exception of C++, of deal.II or of a library that was refused some and fails over that, throws a UserError that
+   * says so and what needs less.
+   */
+  void with_memory_errors(const std::function<void()> &action);
 } // namespace PeriDeal
