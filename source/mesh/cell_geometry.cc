@@ -113,11 +113,11 @@ namespace PeriDeal
 
   namespace
   {
-    constexpr double slack = 1e-6; // of a face, beyond its edges
+    constexpr double beyond = 1e-6; // of a face, across its edges
 
     bool within_face(const double u)
     {
-      return u > -slack && u < 1. + slack;
+      return u > -beyond && u < 1. + beyond;
     }
 
 
@@ -229,7 +229,7 @@ namespace PeriDeal
           p[v] = {(x * first) * by_first, (x * second) * by_second, (x * along) * by_along};
         }
       // What is admitted beyond the edges, with some room.
-      const double           tolerance = 10. * slack * (corners[7] - corners[0]).norm();
+      const double           tolerance = 10. * beyond * (corners[7] - corners[0]).norm();
       constexpr unsigned int faces[6][4] =
         {{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5}, {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}};
       for (const auto &f : faces)

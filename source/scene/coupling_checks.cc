@@ -12,14 +12,6 @@ namespace PeriDeal
 {
   namespace
   {
-    template <int dim>
-    bool runs(const Scene<dim> &scene, const Model model)
-    {
-      const std::vector<Model> &models = scene.general.models;
-      return std::find(models.begin(), models.end(), model) != models.end();
-    }
-
-
     /** An entry that bonds beside finite elements cannot have, and why. */
     struct Obstacle
     {

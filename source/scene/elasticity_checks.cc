@@ -16,14 +16,6 @@ namespace PeriDeal
 
   namespace
   {
-    template <int dim>
-    bool runs(const Scene<dim> &scene, const Model model)
-    {
-      const std::vector<Model> &models = scene.general.models;
-      return std::find(models.begin(), models.end(), model) != models.end();
-    }
-
-
     /** Of the corners of a crack to a side of the box. */
     template <int dim>
     double distance_to_side(const Scene<dim>              &scene,

@@ -19,13 +19,6 @@ namespace PeriDeal
   {
     using Offset = std::array<int, 2>;
 
-    bool runs(const Scene<2> &scene, const Model model)
-    {
-      const std::vector<Model> &models = scene.general.models;
-      return std::find(models.begin(), models.end(), model) != models.end();
-    }
-
-
     bool is_elastic(const Scene<2> &scene)
     {
       return scene.general.physics == Physics::elasticity;

@@ -68,14 +68,6 @@ namespace PeriDeal
 
   namespace
   {
-    template <int dim>
-    bool runs(const Scene<dim> &scene, const Model model)
-    {
-      const std::vector<Model> &models = scene.general.models;
-      return std::find(models.begin(), models.end(), model) != models.end();
-    }
-
-
     /** What a choice needs of the shape of the body. */
     template <int dim>
     void check_shape_for_peridynamics(const Scene<dim> &scene)

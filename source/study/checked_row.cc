@@ -13,18 +13,18 @@
 
 namespace PeriDeal
 {
+  std::string content_of(const std::string &file_name)
+  {
+    std::ifstream      in(file_name, std::ios::binary);
+    std::ostringstream all;
+    if (in)
+      all << in.rdbuf();
+    return all.str();
+  }
+
+
   namespace
   {
-    std::string content_of(const std::string &file_name)
-    {
-      std::ifstream      in(file_name, std::ios::binary);
-      std::ostringstream all;
-      if (in)
-        all << in.rdbuf();
-      return all.str();
-    }
-
-
     /** Of the program, the processes (times and memory depend on them), the scene, its entries and its mesh file or image. Collective. */
     std::string hash_of(const CheckedRow  &checked,
                         const std::string &mesh_file,

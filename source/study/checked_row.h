@@ -25,6 +25,9 @@ namespace PeriDeal
       entries; // every entry of the scene and its text, defaults included
   };
 
+  /** All bytes of a file; empty if it cannot be read. */
+  std::string content_of(const std::string &file_name);
+
   /** What is wrong with the entries of a row: the message without the words for overrides, which stand on no command line there. */
   std::string mistake_in_overrides(const UserError &error);
 

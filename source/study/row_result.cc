@@ -36,16 +36,6 @@ namespace PeriDeal
     }
 
 
-    std::string content_of(const fs::path &path)
-    {
-      std::ifstream      in(path);
-      std::ostringstream all;
-      if (in)
-        all << in.rdbuf();
-      return all.str();
-    }
-
-
     /** A table of a run as a list of objects; coordinates become one list. */
     Json read_table(const fs::path &path)
     {

@@ -39,7 +39,7 @@ namespace PeriDeal
     }
 
 
-    void set(WorkFamily &family, const std::string &entry, const std::string &value)
+    void set_entry(WorkFamily &family, const std::string &entry, const std::string &value)
     {
       for (Setting &setting : family.settings)
         if (setting.first == entry)
@@ -57,8 +57,8 @@ namespace PeriDeal
                           const std::string &correction)
     {
       WorkFamily result = family("PD " + kind + ", m = " + ratio, bonds, "pairs", correction);
-      set(result, "Peridynamics/Boundary treatment", treatment);
-      set(result, "Peridynamics/Horizon ratio", ratio);
+      set_entry(result, "Peridynamics/Boundary treatment", treatment);
+      set_entry(result, "Peridynamics/Horizon ratio", ratio);
       result.ratio = std::stod(ratio);
       return result;
     }
@@ -71,8 +71,8 @@ namespace PeriDeal
                coupled,
                "pairs",
                scaled ? "crack scaling" : "none");
-      set(result, "Peridynamics/Horizon ratio", ratio);
-      set(result, "Coupling/Zone", "cracks: " + width);
+      set_entry(result, "Peridynamics/Horizon ratio", ratio);
+      set_entry(result, "Coupling/Zone", "cracks: " + width);
       return result;
     }
 
@@ -81,8 +81,8 @@ namespace PeriDeal
     WorkFamily zone_on_faces(const std::string &width)
     {
       WorkFamily result = family("coupled on faces, m = 3, c = " + width, coupled, "faces", "none");
-      set(result, "Peridynamics/Horizon ratio", "3");
-      set(result, "Coupling/Zone", "cracks: " + width);
+      set_entry(result, "Peridynamics/Horizon ratio", "3");
+      set_entry(result, "Coupling/Zone", "cracks: " + width);
       return result;
     }
 
@@ -92,9 +92,9 @@ namespace PeriDeal
     {
       family.name += ", graded " + std::to_string(k);
       family.multiple = 1u << k;
-      set(family, "Domain/Coarsening", std::to_string(k));
+      set_entry(family, "Domain/Coarsening", std::to_string(k));
       if (family.model == elements)
-        set(family, "Peridynamics/Horizon ratio", "3");
+        set_entry(family, "Peridynamics/Horizon ratio", "3");
       return family;
     }
 

@@ -161,7 +161,7 @@ namespace PeriDeal
     }
 
 
-    void add_rows(Study &study, const WorkPlan &plan, const std::string &scene)
+    void add_to(Study &study, const WorkPlan &plan, const std::string &scene)
     {
       for (const WorkPlan::Row &planned : plan.rows)
         {
@@ -244,7 +244,7 @@ namespace PeriDeal
     study.rows.clear();
     study.title  = facts.title + ": work and precision";
     study.output = options.output.empty() ? study.output + "_work_precision" : options.output;
-    add_rows(study, plan, scene);
+    add_to(study, plan, scene);
     override_rows(study, options.overrides);
     print_line(communicator,
                options.study.quiet,

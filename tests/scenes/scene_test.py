@@ -10,12 +10,17 @@
 
 A failed check is printed and counted, and the script goes on; finish() ends it with exit status 1 if any failed. A scene
 that should have run and did not ends the script at once.
+
+Where PERIDEAL_SCENE_SERVER names the program of scene_server.cc, as ctest does unless a test says EACH_ALONE, the scenes of a
+script are computed one after the other in one process for each number of processes; else each by a program of its own.
 """
 
+import atexit
 import csv
 import json
 import math
 import os
+import select
 import shutil
 import subprocess
 import sys
@@ -24,6 +29,7 @@ import tempfile
 SOURCE_DIR = os.environ.get(
     "PERIDEAL_SOURCE_DIR", os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 EXECUTABLE = os.environ.get("PERIDEAL_EXECUTABLE", os.path.join(SOURCE_DIR, "build/release/applications/perideal"))
+SERVER = os.environ.get("PERIDEAL_SCENE_SERVER", "")
 MPIRUN = os.environ.get("PERIDEAL_MPIRUN", "mpirun")
 
 _checks = {"passed": 0, "failed": 0}
@@ -109,24 +115,90 @@ def _value(text):
         return text
 
 
+def _environment():
+    return dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1")
+
+
+def _on_ranks(command, ranks):
+    return [MPIRUN, "-q", "--oversubscribe", "-np", str(ranks)] + command if ranks > 1 else command
+
+
 def run_perideal(arguments, ranks=1, timeout=3000, cwd=None):
     """Run the program with any arguments; returns (exit status, stdout, stderr)."""
-    command = [EXECUTABLE] + list(arguments)
-    if ranks > 1:
-        command = [MPIRUN, "-q", "--oversubscribe", "-np", str(ranks)] + command
-    environment = dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1")
-    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=timeout, cwd=cwd,
-                          env=environment)
+    done = subprocess.run(_on_ranks([EXECUTABLE] + list(arguments), ranks), stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          timeout=timeout, cwd=cwd, env=_environment())
     return done.returncode, done.stdout, done.stderr
 
 
-def run_scene(scene, overrides=None, ranks=1, expect_error=False, keep=False, timeout=3000):
+class _SceneServer:
+    """A running scene_server on a number of processes; one that has ended is started again."""
+
+    running = {}
+
+    def __init__(self, ranks):
+        self.said = tempfile.TemporaryFile()
+        self.process = subprocess.Popen(_on_ranks([SERVER], ranks), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.said,
+                                        cwd=SOURCE_DIR, env=_environment())
+
+    @classmethod
+    def run(cls, ranks, scene, overrides, timeout):
+        """As run_perideal(["run", scene, "-s", ...])."""
+        server = cls.running.get(ranks)
+        if server is None:
+            server = cls.running[ranks] = cls(ranks)
+        with tempfile.TemporaryDirectory(prefix="perideal_said_") as folder:
+            files = {name: os.path.join(folder, name) for name in ("output", "errors")}
+            for name in files.values():
+                open(name, "w").close()
+            status = server.ask({"scene": scene, "overrides": overrides, **files}, timeout)
+            texts = {name: open(path, errors="replace").read() for name, path in files.items()}
+        if status is None:  # it has ended, as a program of its own would have
+            del cls.running[ranks]
+            status = server.process.wait()
+            server.said.seek(0)
+            texts["errors"] += server.said.read().decode(errors="replace")
+        return status, texts["output"], texts["errors"]
+
+    def ask(self, request, timeout):
+        """The exit status of a request; None if the server ended over it."""
+        try:
+            self.process.stdin.write((json.dumps(request) + "\n").encode())
+            self.process.stdin.flush()
+        except BrokenPipeError:
+            return None
+        line = b""
+        while not line.endswith(b"\n"):
+            if not select.select([self.process.stdout], [], [], timeout)[0]:
+                self.process.kill()
+                raise subprocess.TimeoutExpired([SERVER, request["scene"]], timeout)
+            more = os.read(self.process.stdout.fileno(), 4096)
+            if not more:
+                return None
+            line += more
+        return int(line.split()[-1])
+
+    @classmethod
+    def stop_all(cls):
+        for server in cls.running.values():
+            try:
+                server.process.stdin.close()
+                server.process.wait(60)
+            except (OSError, subprocess.TimeoutExpired):
+                server.process.kill()
+        cls.running.clear()
+
+
+atexit.register(_SceneServer.stop_all)
+
+
+def run_scene(scene, overrides=None, ranks=1, expect_error=False, keep=False, timeout=3000, alone=False):
     """Run a scene in a fresh folder.
 
     scene: a path within the repository, an absolute path, or the text of a scene (if it has several lines).
     overrides: {"Section/Entry": value}. ranks: number of processes.
     expect_error: the run has to end with exit status 1, one message and no trace, else with 0. keep: leave the folder there.
+    alone: by the program itself, whatever PERIDEAL_SCENE_SERVER says.
     """
     folder = tempfile.mkdtemp(prefix="perideal_")
     if keep:
@@ -140,12 +212,14 @@ def run_scene(scene, overrides=None, ranks=1, expect_error=False, keep=False, ti
     else:
         path = scene if os.path.isabs(scene) else os.path.join(SOURCE_DIR, scene)
     results = os.path.join(folder, "results")
-    arguments = ["run", path]
     settings = {"Output directory": results}
     settings.update(overrides or {})
-    for entry, value in settings.items():
-        arguments += ["-s", f"{entry}={value}"]
-    status, stdout, stderr = run_perideal(arguments, ranks, timeout, cwd=SOURCE_DIR)
+    settings_list = [f"{entry}={value}" for entry, value in settings.items()]
+    arguments = ["run", path] + [word for setting in settings_list for word in ("-s", setting)]
+    if SERVER and not alone:
+        status, stdout, stderr = _SceneServer.run(ranks, path, settings_list, timeout)
+    else:
+        status, stdout, stderr = run_perideal(arguments, ranks, timeout, cwd=SOURCE_DIR)
     run = Run(settings["Output directory"], status, stdout, stderr)
     if expect_error:
         check_clean_error(run, f"{scene if len(scene) < 80 else 'scene'} {overrides or ''}")

@@ -15,6 +15,7 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -121,6 +122,15 @@ namespace PeriDeal
     /** Finds `heat`. Throws UserError as a scene of heat does. */
     void make_heat_problem();
   };
+
+
+  /** Whether `Models` names this one. */
+  template <int dim>
+  bool runs(const Scene<dim> &scene, const Model model)
+  {
+    const std::vector<Model> &models = scene.general.models;
+    return std::find(models.begin(), models.end(), model) != models.end();
+  }
 
 
   /**
