@@ -48,7 +48,7 @@ if(PERIDEAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   endif()
 endif()
 
-# A file with deal.II in three dimensions takes up to 2 GB to compile: as many at once as cores and memory allow.
+# A batch of files with deal.II in three dimensions takes up to 2.2 GB to compile: as many at once as cores and memory allow.
 cmake_host_system_information(RESULT perideal_cores QUERY NUMBER_OF_LOGICAL_CORES)
 cmake_host_system_information(RESULT perideal_memory QUERY TOTAL_PHYSICAL_MEMORY) # MiB
 if(EXISTS /sys/fs/cgroup/memory.max)
@@ -61,7 +61,7 @@ if(EXISTS /sys/fs/cgroup/memory.max)
     endif()
   endif()
 endif()
-math(EXPR perideal_jobs "${perideal_memory} / 2000")
+math(EXPR perideal_jobs "${perideal_memory} / 2200")
 if(perideal_jobs GREATER perideal_cores)
   set(perideal_jobs ${perideal_cores})
 endif()

@@ -192,13 +192,13 @@ class _SceneServer:
 atexit.register(_SceneServer.stop_all)
 
 
-def run_scene(scene, overrides=None, ranks=1, expect_error=False, keep=False, timeout=3000, alone=False):
+def run_scene(scene, overrides=None, ranks=1, expect_error=False, keep=False, timeout=3000, alone=False, check_status=True):
     """Run a scene in a fresh folder.
 
     scene: a path within the repository, an absolute path, or the text of a scene (if it has several lines).
     overrides: {"Section/Entry": value}. ranks: number of processes.
     expect_error: the run has to end with exit status 1, one message and no trace, else with 0. keep: leave the folder there.
-    alone: by the program itself, whatever PERIDEAL_SCENE_SERVER says.
+    alone: by the program itself, whatever PERIDEAL_SCENE_SERVER says. check_status: a run that fails ends the script.
     """
     folder = tempfile.mkdtemp(prefix="perideal_")
     if keep:
@@ -223,7 +223,7 @@ def run_scene(scene, overrides=None, ranks=1, expect_error=False, keep=False, ti
     run = Run(settings["Output directory"], status, stdout, stderr)
     if expect_error:
         check_clean_error(run, f"{scene if len(scene) < 80 else 'scene'} {overrides or ''}")
-    elif status != 0:
+    elif status != 0 and check_status:
         print(stdout[-4000:], stderr[-4000:], sep="\n")
         raise SystemExit(f"FAILED: {' '.join(arguments)} on {ranks} process(es) ended with exit status {status}")
     return run
@@ -351,7 +351,25 @@ def _selftest():
     check(status == 0 and "run" in stdout, "perideal --help")
     status, _, stderr = run_perideal(["run", "there_is_no_such_scene.prm"])
     check(status == 1 and "there_is_no_such_scene.prm" in stderr, f"a missing scene: {stderr}")
+    _selftest_of_server()
     finish()
+
+
+def _selftest_of_server():
+    """Scenes one after the other in one process give what programs of their own give, after a failure, too; a server that is gone comes back."""
+    scene, small = "prm/quick_start.prm", {"Domain/Cells": "20, 20", "Output/Fields": "none", "Time/Stepper": "chebyshev"}
+    for ranks in (1, 2):
+        alone = run_scene(scene, small, ranks, alone=True)
+        for name in ("first", "after a failure", "after the end of the process"):
+            run = run_scene(scene, small, ranks)
+            check([row["value"] for row in run.probes] == [row["value"] for row in alone.probes], f"{name}, {ranks} process(es): the same digits")
+            check(run.stdout.splitlines()[0] == alone.stdout.splitlines()[0], f"{name}: {run.stdout[:300]}")
+            if name == "first":
+                run = run_scene(scene, {**small, "Domain/Cells": "many"}, ranks, expect_error=True)
+                check_message(run, "'Cells'", "needs 2 numbers")
+            elif ranks == 1 and ranks in _SceneServer.running:
+                _SceneServer.running[ranks].process.kill()
+                check(run_scene(scene, small, ranks, check_status=False).returncode != 0, "the end of a server is seen")
 
 
 if __name__ == "__main__":

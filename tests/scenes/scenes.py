@@ -1,16 +1,40 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Every scene of prm/ but those of prm/failures as it is, but without field files: it runs to its end, keeps its heat or its forces in balance, and its comment teaches."""
+"""
+Every scene of prm/ but those of prm/failures, without field files: it runs to its end, keeps its heat or its forces in balance, and its comment teaches.
+
+    scenes.py [PART OF A NAME]      as they are, but those that take long on coarser lattices
+    scenes.py --slow                those that take long, as they are
+"""
 
 import glob
 import os
 import re
+import sys
 import time
 
 from scene_test import SOURCE_DIR, check, check_less, finish, print_table, run_scene
 
 # Slaves of extrapolated fluxes and the papers' self term do not conserve heat (doc/theory.md).
 NOT_CONSERVING = re.compile(r"bobaru_20\d\d/example_\d_paper\.prm")
+
+# The lattices of scenes that take seconds to minutes as they are.
+COARSER = {
+    "coupling/adaptive_zone.prm": {"Domain/Cells": "80, 80", "Domain/Coarsening": "2"},
+    "coupling/growing_cracks.prm": {"Domain/Cells": "60, 60"},
+    "coupling/square_crack_3d.prm": {"Domain/Cells": "20, 20, 20"},
+    "elasticity/bore.prm": {"Domain/Cells": "32, 32, 2"},
+    "elasticity/thermal_stress.prm": {"Domain/Cells": "20, 80"},
+    "fracture/branching_crack.prm": {"Domain/Cells": "100, 40"},
+    "fracture/centre_crack.prm": {"Domain/Cells": "40, 80"},
+    "fracture/cracked_block.prm": {"Domain/Cells": "16, 32, 2"},
+    "fracture/double_cantilever.prm": {"Domain/Cells": "100, 20"},
+    "papers/bobaru_2012/example_4_paper.prm": {"Domain/Cells": "60, 60"},
+    "papers/bobaru_2012/example_5_paper.prm": {"Domain/Cells": "60, 60"},
+    "papers/bobaru_2012/example_6_paper.prm": {"Domain/Cells": "60, 60"},
+    "papers/diyaroglu_2017/example_d.prm": {"Domain/Cells": "105, 94, 3", "Peridynamics/Horizon": "0.34665"},
+    "papers/diyaroglu_2017/example_d_paper.prm": {"Domain/Cells": "105, 94, 3", "Peridynamics/Horizon": "0.34665"},
+}
 
 FORCE_LOST = 9e-8  # measured: 5.7e-8, the bimetal strip; solvers stop at 1e-10 of the loads
 
@@ -28,14 +52,21 @@ def comment_of(path):
 
 def main():
     rows = []
-    for path in sorted(glob.glob(os.path.join(SOURCE_DIR, "prm", "**", "*.prm"), recursive=True)):
-        name = os.path.relpath(path, SOURCE_DIR)
+    wanted = sys.argv[1] if len(sys.argv) > 1 else ""
+    slow = wanted == "--slow"
+    names = [os.path.relpath(path, SOURCE_DIR) for path in sorted(glob.glob(os.path.join(SOURCE_DIR, "prm", "**", "*.prm"), recursive=True))]
+    for known in COARSER:
+        check(os.path.join("prm", known) in names, f"there is a scene {known}")
+    for name in names:
         if name.startswith(os.path.join("prm", "failures")):
             continue  # they fail on purpose: failures.py
+        path, coarser = os.path.join(SOURCE_DIR, name), COARSER.get(os.path.relpath(name, "prm"))
+        if (slow and not coarser) or (not slow and wanted not in name):
+            continue
         comment = comment_of(path)
         check(len(comment) > 150 and "What to look for" in comment, f"{name}: the comment says what to look for")
         begin = time.time()
-        run = run_scene(name, {"Output/Fields": "none"})
+        run = run_scene(name, {"Output/Fields": "none", **(coarser if coarser and not slow else {})})
         seconds = time.time() - begin
         for model in run.summary["models"]:
             entry = run.model(model)

@@ -18,54 +18,13 @@ namespace PeriDeal
     {
       Body(const Settings &settings,
            const Model     model,
-           const MPI_Comm  communicator = MPI_COMM_WORLD)
-      {
-        scene.general.set("Models", to_string(model));
-        scene.general.set("Physics", "elasticity");
-        set(scene, settings);
-        std::vector<std::string> notes;
-        mesh = build_mesh(scene, communicator, notes);
-        handler.reinit(*mesh);
-        if (model != Model::peridynamics)
-          {
-            handler.distribute_dofs(dealii::FE_Q<dim>(scene.finite_elements.degree));
-            std::unique_ptr<ElasticCoupling<dim>> coupling;
-            if (model == Model::coupled)
-              {
-                number_along_lattice(handler, scene.domain);
-                nodes    = std::make_unique<Nodes<dim>>(handler,
-                                                     scene.domain,
-                                                     scene.cracks,
-                                                     NodalVolume::partial);
-                coupling = make_elastic_coupling(*nodes, scene);
-              }
-            elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
-          }
-        else
-          {
-            if (scene.domain.nodes == NodePlacement::cell_centers)
-              handler.distribute_dofs(dealii::FE_DGQ<dim>(0));
-            else
-              handler.distribute_dofs(dealii::FE_Q<dim>(1));
-            if (scene.domain.shape != Shape::mesh_file)
-              number_along_lattice(handler, scene.domain);
-            nodes  = std::make_unique<Nodes<dim>>(handler,
-                                                 scene.domain,
-                                                 scene.cracks,
-                                                 scene.peridynamics.nodal_volume);
-            states = std::make_unique<StateOperator<dim>>(*nodes, scene);
-          }
-      }
+           const MPI_Comm  communicator = MPI_COMM_WORLD);
 
-      ElasticOperator &op() const
-      {
-        return elements ? static_cast<ElasticOperator &>(*elements) : *states;
-      }
+      ~Body();
 
-      const dealii::Point<dim> &position(const unsigned int node) const
-      {
-        return elements ? elements->position(node) : nodes->position(node);
-      }
+      ElasticOperator &op() const;
+
+      const dealii::Point<dim> &position(const unsigned int node) const;
 
       /** A vector with the values f(p)[component] at the owned nodes. */
       template <typename Function>
