@@ -9,22 +9,22 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
+#include <perideal/output/field_writer.h>
 #include <perideal/simulation/elastic_simulation.h>
 #include <perideal/simulation/simulation.h>
 
 #include <fcntl.h>
 #include <malloc.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
 #include <iostream>
-#include <new>
 #include <string>
 #include <thread>
-
-#include <nlohmann/json.hpp>
 
 namespace
 {
@@ -104,10 +104,9 @@ namespace
 
   void compute(const Json &request)
   {
-    const SceneText text =
-      read_scene(request.at("scene").get<std::string>(),
-                 request.at("overrides").get<std::vector<std::string>>(),
-                 communicator);
+    const SceneText text = read_scene(request.at("scene").get<std::string>(),
+                                      request.at("overrides").get<std::vector<std::string>>(),
+                                      communicator);
     switch (dimension_of(text))
       {
         case 1:
@@ -120,12 +119,16 @@ namespace
   }
 
 
-  /** Ends all processes, as the program does. */
-  [[noreturn]] void give_up(const std::string &message)
+  /** As the program does: one message, and the end of all processes where one failed alone. */
+  int report(const std::string &message, const ExitStatus status)
   {
-    std::cerr << "\nperideal: " << message << std::endl;
-    MPI_Abort(communicator, 1);
-    std::abort();
+    const int  number = static_cast<int>(status);
+    const bool all    = all_processes_arrive(communicator);
+    if (is_first() || !all)
+      std::cerr << "\nperideal: " << message << std::endl;
+    if (!all)
+      MPI_Abort(communicator, number);
+    return number;
   }
 
 
@@ -141,19 +144,11 @@ namespace
       }
     catch (const UserError &error)
       {
-        if (!all_processes_arrive(communicator))
-          give_up("error: " + error.message());
-        if (is_first())
-          std::cerr << "\nperideal: error: " << error.message() << std::endl;
-        return 1;
-      }
-    catch (const std::bad_alloc &)
-      {
-        give_up("error: out of memory.");
+        return report("error: " + error.message(), ExitStatus::error);
       }
     catch (const std::exception &error)
       {
-        give_up(std::string("internal error:\n") + error.what());
+        return report(std::string("internal error:\n") + error.what(), ExitStatus::fault);
       }
   }
 } // namespace
@@ -161,7 +156,10 @@ namespace
 
 int main(int argc, char **argv)
 {
+  prepare_mpi_environment();
+  start_hdf5();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  handle_signals(is_first());
   while (true)
     {
       const std::string request = next_request();
