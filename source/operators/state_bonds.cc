@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/smallest_eigenvalue.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/state_operator.h>
 
@@ -149,7 +150,7 @@ namespace PeriDeal
       message =
         "The node at " + place_of(dim * i) +
         " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
-    else if (eigenvalues(shape)[dim - 1] < 1e-9 * trace(shape))
+    else if (smallest_eigenvalue(shape) < 1e-9 * trace(shape))
       message =
         "All bonds of the node at " + place_of(dim * i) +
         " lie in one line or plane, across which nothing holds it. Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/smallest_eigenvalue.h>
 #include <perideal/operators/coupling.h>
 #include <perideal/operators/state_coupling.h>
 
@@ -167,7 +168,7 @@ namespace PeriDeal
       shape += symmetrize(outer_product(bond.parts[1].moment, bond.parts[1].moment)) / bond.square;
     if (list.empty())
       return " is isolated: no bond of it is left.";
-    if (eigenvalues(shape)[dim - 1] < 1e-9 * trace(shape))
+    if (smallest_eigenvalue(shape) < 1e-9 * trace(shape))
       return " has bonds in one line or plane only, across which nothing holds it.";
     return {};
   }
