@@ -32,6 +32,10 @@ EXECUTABLE = os.environ.get("PERIDEAL_EXECUTABLE", os.path.join(SOURCE_DIR, "bui
 SERVER = os.environ.get("PERIDEAL_SCENE_SERVER", "")
 MPIRUN = os.environ.get("PERIDEAL_MPIRUN", "mpirun")
 
+# What a user should never see.
+TRACES = ("Stacktrace", "An error occurred in line", "terminate called", "Segmentation fault", "Signal:",
+          "*** Process received signal", "Additional information", "MPI_ABORT")
+
 _checks = {"passed": 0, "failed": 0}
 _folders = []
 
@@ -124,10 +128,16 @@ def _on_ranks(command, ranks):
     return [MPIRUN, "-q", "--oversubscribe", "-np", str(ranks)] + command if ranks > 1 else command
 
 
+def command_and_environment(arguments, ranks=1):
+    """How the program is started with any arguments, on any number of processes."""
+    return _on_ranks([EXECUTABLE] + list(arguments), ranks), _environment()
+
+
 def run_perideal(arguments, ranks=1, timeout=3000, cwd=None):
     """Run the program with any arguments; returns (exit status, stdout, stderr)."""
-    done = subprocess.run(_on_ranks([EXECUTABLE] + list(arguments), ranks), stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          timeout=timeout, cwd=cwd, env=_environment())
+    command, environment = command_and_environment(arguments, ranks)
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=timeout, cwd=cwd,
+                          env=environment)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -234,8 +244,7 @@ def check_clean_error(run, what="the run"):
     text = run.stdout + run.stderr
     check(run.returncode == 1, f"{what}: exit status {run.returncode} where 1 was expected\n{text[-2000:]}")
     check(run.stderr.strip() != "", f"{what}: no message on stderr")
-    for trace in ("Stacktrace", "An error occurred in line", "terminate called", "Segmentation fault", "Signal:",
-                  "*** Process received signal", "Additional information", "MPI_ABORT"):
+    for trace in TRACES:
         check(trace not in text, f"{what}: '{trace}' in the output\n{text[-2000:]}")
 
 

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""What is wrong with the files in a folder of results, as sentences: torn files, lists of files that are not there, numbers that
+are none. Nothing is wrong with a folder in which a run has not yet written anything."""
+
+import csv
+import glob
+import json
+import math
+import os
+import xml.etree.ElementTree as ElementTree
+
+import h5py
+
+TABLES = ("probes.csv", "line.csv", "grid.csv", "totals.csv")
+
+
+def _refuse(word):
+    raise ValueError(f"{word} is no number")
+
+
+def read_summary(folder):
+    """The summary, or None where there is none. Raises ValueError where it is torn or says nan or inf."""
+    path = os.path.join(folder, "summary.json")
+    if not os.path.exists(path):
+        return None
+    with open(path) as file:
+        return json.load(file, parse_constant=_refuse)
+
+
+def status_of(folder):
+    summary = read_summary(folder)
+    return None if summary is None else summary.get("status")
+
+
+def nulls_in(value, path=""):
+    """Where a summary says null, which stands for a number that is none."""
+    if value is None:
+        yield path
+    elif isinstance(value, dict):
+        for key, part in value.items():
+            yield from nulls_in(part, f"{path}/{key}")
+    elif isinstance(value, list):
+        for k, part in enumerate(value):
+            yield from nulls_in(part, f"{path}/{k}")
+
+
+def wrong_numbers(folder):
+    """Numbers in the summary and the tables that are not finite."""
+    try:
+        read_summary(folder)
+    except ValueError as problem:
+        yield f"summary.json: {problem}"
+    for name in TABLES:
+        path = os.path.join(folder, name)
+        if not os.path.exists(path):
+            continue
+        with open(path, newline="") as file:
+            for row in csv.DictReader(file):
+                for column, text in row.items():
+                    if column in ("model", "quantity", "phase"):
+                        continue
+                    try:
+                        finite = math.isfinite(float(text))
+                    except (TypeError, ValueError):
+                        continue
+                    if not finite:
+                        yield f"{name}: {column} = {text} in {row}"
+                        break
+
+
+def _torn_xml(path):
+    try:
+        return ElementTree.parse(path).getroot(), None
+    except (ElementTree.ParseError, OSError) as problem:
+        return None, f"{os.path.basename(path)} ({os.path.getsize(path)} bytes): {problem}"
+
+
+def _wrong_pieces(path, seen):
+    """A file of pieces (.vtu, .pvtu) that something refers to."""
+    if path in seen:
+        return
+    seen.add(path)
+    if not os.path.isfile(path):
+        yield f"{os.path.basename(path)} is listed and does not exist"
+        return
+    root, problem = _torn_xml(path)
+    if problem:
+        yield problem
+        return
+    for piece in root.iter("Piece"):
+        if piece.get("Source"):
+            yield from _wrong_pieces(os.path.join(os.path.dirname(path), piece.get("Source")), seen)
+
+
+def _wrong_data_set(text, dimensions, folder, files):
+    name, _, inside = text.strip().partition(":")
+    path = os.path.join(folder, name)
+    if path not in files:
+        files[path] = None
+        if not os.path.isfile(path):
+            yield f"{name} is listed and does not exist"
+            return
+        try:
+            files[path] = h5py.File(path, "r")
+        except OSError as problem:
+            yield f"{name} ({os.path.getsize(path)} bytes): {problem}"
+            return
+    if files[path] is None:
+        return
+    if inside not in files[path]:
+        yield f"{name} has no data set {inside}"
+        return
+    found = files[path][inside].shape
+    files[path][inside][()]
+    if math.prod(found) != math.prod(int(number) for number in dimensions.split()):
+        yield f"{name}{inside} has {found} numbers where {dimensions} are listed"
+
+
+def wrong_files(folder):
+    """What is wrong with the lists of fields and what they refer to, and with the tables."""
+    seen, files = set(), {}
+    for path in sorted(glob.glob(os.path.join(folder, "*.pvd"))):
+        root, problem = _torn_xml(path)
+        if problem:
+            yield problem
+            continue
+        for entry in root.iter("DataSet"):
+            yield from _wrong_pieces(os.path.join(folder, entry.get("file")), seen)
+    for path in sorted(glob.glob(os.path.join(folder, "*.xdmf"))):
+        root, problem = _torn_xml(path)
+        if problem:
+            yield problem
+            continue
+        for item in root.iter("DataItem"):
+            if ".h5:" in (item.text or ""):
+                yield from _wrong_data_set(item.text, item.get("Dimensions"), folder, files)
+    for file in files.values():
+        if file is not None:
+            file.close()
+    for name in TABLES:
+        yield from _torn_table(os.path.join(folder, name))
+
+
+def _torn_table(path):
+    if not os.path.exists(path):
+        return
+    name = os.path.basename(path)
+    with open(path) as file:
+        text = file.read()
+    if not text:
+        return
+    if not text.endswith("\n"):
+        yield f"{name} ends within a line: {text[-60:]!r}"
+    lines = text.splitlines()
+    columns = len(next(csv.reader([lines[0]])))
+    for line in lines[1:]:
+        cells = next(csv.reader([line]))
+        if len(cells) != columns:
+            yield f"{name}: {len(cells)} cells where the head has {columns}: {line!r}"
+            return
+        try:
+            float(cells[0])
+        except ValueError:
+            yield f"{name}: no time: {line!r}"
+            return
+
+
+def wrong_results(folder, complete):
+    """All of it. complete: whether the run may say that it finished."""
+    try:
+        status = status_of(folder)
+    except ValueError as problem:
+        yield f"summary.json: {problem}"
+        status = None
+    if complete and status not in (None, "complete"):
+        yield f"summary.json says {status!r} of a complete run"
+    if not complete and status == "complete":
+        yield "summary.json says 'complete' of a run that was not"
+    if complete and not os.path.exists(os.path.join(folder, "summary.json")):
+        yield "no summary.json"
+    yield from wrong_files(folder)
