@@ -124,7 +124,7 @@ class Process:
     def __init__(self, arguments, case, ranks=1, environment=None, prepare=None, cwd=None):
         command, variables = command_and_environment(arguments, ranks)
         variables.pop("OMPI_MCA_orte_tmpdir_base", None)
-        variables.update(TMPDIR=case.temporary, **(environment or {}))
+        variables.update({"TMPDIR": case.temporary, **(environment or {})})
         self.streams = [tempfile.TemporaryFile(), tempfile.TemporaryFile()]
         self.began = time.monotonic()
         self.popen = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self.streams[0], stderr=self.streams[1],

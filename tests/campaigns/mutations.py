@@ -123,6 +123,16 @@ TEXTS = ["", " ", "true", "none", "auto", "left", "free", "x", "t", "T", "foo", 
          "cracks: 1e9", "adaptive", "follow", "computed", "circle(0.5, 0.5, -1)", "1: 0, 1,1", "9: 0, 1,1", "1: 0, 0,0", "1: 0, 1e9,0",
          "lattice harmonic(1, 1)", "bobaru 2012 example 1", "a" * 5000, "(" * 3000, "1+" * 3000 + "1", "1," * 3000 + "1", "0,0;" * 500 + "1,1"]
 BINARY = [b"\x00", b"\xff\xfe", b"\x80", b"\x1b[31m", b"\r", b"\x0b", b"\xef\xbb\xbf", b"\xc3\x28", bytes(range(256))]
+FACTORS = [0, -1, 0.1, 0.5, 2, 3, 10, 1e-3, 1e3, 1e-8, 1e8, 1e-30, 1e30, 1e-150, 1e150, 1e200, 1e-300, 1e300]
+FORMULAS = [("Material", "Conductivity"), ("Material", "Density"), ("Material", "Heat capacity"), ("Material", "Young modulus"),
+            ("Material", "Poisson ratio"), ("Material", "Fracture energy"), ("Material", "Critical stretch"), ("Material", "Thermal expansion"),
+            ("Initial and source", "Initial value"), ("Initial and source", "Source"), ("Elasticity", "Temperature change"),
+            ("Reference", "Solution"), ("Cracks", "Transmission"), ("Cracks", "Contact conductance"), ("Coupling", "Zone"),
+            ("Boundary conditions", "Dirichlet"), ("Boundary conditions", "Flux"), ("Boundary conditions", "Convection"),
+            ("Boundary conditions", "Displacement"), ("Boundary conditions", "Traction")]
+WILD = ["x", "y", "-x", "t", "T", "1+T", "1+t", "1+x", "1+x^2", "max(0, x-0.5)", "if(x>0.5, 1, 1e-12)", "if(x>0.5, 1, 1e12)", "if(x>0.5, 0/0, 1)",
+        "1/x", "1/(x-0.5)", "1/t", "1/T", "sqrt(x)", "sqrt(x-0.5)", "log(x)", "exp(100*x)", "exp(1000*x)", "exp(1000*t)", "exp(T)", "T^3", "T^2",
+        "1e300", "1e308", "-1e308", "1e-308", "1e150", "1e-150", "0", "-1", "1e30*x", "sin(1e6*t)", "1/(1-t)", "if(t>0, 1e300, 0)", "1e5*t", "if(t > 0.01, 0/0, 1)"]
 PHYSICS = ["heat", "moisture", "electricity", "elasticity", "thermoelasticity", "Heat", "magnetism"]
 MODELS = ["finite elements", "peridynamics", "coupled", "finite elements, peridynamics", "finite elements, peridynamics, coupled",
           "coupled, coupled", "auto", "finite elements,", ""]
@@ -133,9 +143,11 @@ class Mutator:
 
     def __init__(self, entries):
         self.entries = entries
-        self.kinds = [self.replace_value, self.replace_value, self.replace_value, self.replace_number, self.replace_number, self.choose,
-                      self.choose, self.add_entry, self.add_entry, self.add_entry, self.delete, self.duplicate, self.swap, self.move,
-                      self.typo, self.physics, self.models, self.dimension, self.brackets, self.count, self.structure, self.transplant]
+        form = [self.replace_value, self.replace_number, self.add_entry, self.delete, self.duplicate, self.swap, self.move, self.typo,
+                self.dimension, self.brackets, self.count, self.structure]
+        meaning = [self.scale_number, self.scale_number, self.scale_number, self.choose, self.choose, self.formula, self.formula, self.physics,
+                   self.models, self.transplant, self.add_number, self.add_number]
+        self.kinds = form + 2 * meaning
 
     def mutate(self, lines, random, others):
         """A changed copy, as bytes, and the names of the changes. others: scenes that lines are taken from."""
@@ -172,6 +184,40 @@ class Mutator:
         match = random.choice(found)
         value = lines[number][2]
         lines[number] = ("set", lines[number][1], value[:match.start()] + random.choice(NUMBERS) + value[match.end():])
+
+    def scale_number(self, lines, random):
+        """One number made larger or smaller, or turned round."""
+        number = self.entry(lines, random)
+        found = list(re.finditer(r"(?<![\w.])\d+(\.\d*)?(e[-+]?\d+)?", lines[number][2])) if number is not None else []
+        if not found:
+            return False
+        match = random.choice(found)
+        value = lines[number][2]
+        new = float(match.group()) * random.choice(FACTORS)
+        text = str(int(new)) if new.is_integer() and abs(new) < 1e6 else repr(new)
+        lines[number] = ("set", lines[number][1], value[:match.start()] + text + value[match.end():])
+
+    def formula(self, lines, random):
+        """Another formula where one is."""
+        section, entry = random.choice(FORMULAS)
+        number = find(lines, section, entry)
+        new = random.choice(WILD)
+        if number is None and section == "Boundary conditions":
+            return False
+        if section == "Boundary conditions":
+            side, _, rest = lines[number][2].partition(":")
+            parts = rest.split(";")[0].split(",")
+            parts[random.randrange(len(parts))] = " " + new
+            new = side + ":" + ",".join(parts) + (";" + rest.split(";", 1)[1] if ";" in rest else "")
+        set_value(lines, section, entry, new)
+
+    def add_number(self, lines, random):
+        """A number for an entry that takes one, given or not."""
+        numeric = [key for key, (default, choices) in sorted(self.entries.items())
+                   if not choices and re.fullmatch(r"[-+\d.e]+", default or "1")]
+        section, entry = random.choice(numeric)
+        default = self.entries[section, entry][0] or "1"
+        set_value(lines, section, entry, f"{float(default) * random.choice(FACTORS):g}")
 
     def choose(self, lines, random):
         """Another choice of an entry that has choices."""

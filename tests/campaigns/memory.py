@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Runs that may not take all the memory that they need: a limit on addresses at a random place between what the program takes to
+start and what the run takes.
+
+Each has to end with exit status 1 and one message that speaks of memory and says what to do, or complete.
+"""
+
+import os
+import resource
+
+from campaign import COMPLETE, GOOD, REFUSED, WRONG, Campaign, Process, run
+from result_folder import wrong_results
+
+TINY = "set Output directory = results\nsubsection Domain\n  set Cells = 4, 4\nend\nsubsection Time\n  set Steady = true\nend\n" \
+       "subsection Boundary conditions\n  set Dirichlet = left: 0; right: 1\nend\n"
+
+BASE = "set Output directory = results\nsubsection Time\n  set Steady = true\nend\n"
+
+ELASTIC = """
+set Physics = elasticity
+subsection Material
+  set Young modulus = 1
+  set Poisson ratio = 0.25
+end
+subsection Boundary conditions
+  set Displacement = left: {zeros}
+  set Traction = right: 0.001{more}
+end
+"""
+
+SCENES = {
+    "stored bonds": BASE + """
+set Models = peridynamics
+subsection Domain
+  set Cells = 250, 250
+end
+subsection Peridynamics
+  set Horizon ratio = 6
+  set Operator form = stored
+  set Boundary treatment = none
+end
+subsection Boundary conditions
+  set Dirichlet = left: 0; right: 1
+end
+""",
+    "block": BASE + """
+set Dimension = 3
+subsection Domain
+  set Lower corner = 0, 0, 0
+  set Upper corner = 1, 1, 1
+  set Cells = 40, 40, 40
+end
+subsection Boundary conditions
+  set Dirichlet = left: 0; right: 1
+end
+""",
+    "elements": BASE + """
+set Models = finite elements
+subsection Domain
+  set Cells = 600, 600
+end
+subsection Boundary conditions
+  set Dirichlet = left: 0; right: 1
+end
+""",
+    "elastic plate": BASE + ELASTIC.format(zeros="0, 0", more=", 0") + """
+subsection Domain
+  set Cells = 100, 100
+end
+""",
+    "elastic block": BASE + ELASTIC.format(zeros="0, 0, 0", more=", 0, 0") + """
+set Dimension = 3
+set Models = finite elements
+subsection Domain
+  set Lower corner = 0, 0, 0
+  set Upper corner = 1, 1, 1
+  set Cells = 28, 28, 28
+end
+""",
+    "crack": BASE + """
+set Models = coupled
+subsection Domain
+  set Cells = 250, 250
+end
+subsection Coupling
+  set Zone = everywhere
+end
+subsection Cracks
+  set Segments = 0.3, 0.5 ; 0.7, 0.5
+end
+subsection Boundary conditions
+  set Dirichlet = bottom: 0; top: 1
+end
+""",
+}
+
+
+def peak_of(process):
+    """The largest address space of any of the run's processes, looked at until it ends."""
+    peak = 0
+    while process.running:
+        for rank in process.ranks():
+            try:
+                with open(f"/proc/{rank}/status") as file:
+                    peak = max([peak] + [int(line.split()[1]) * 1024 for line in file if line.startswith("VmPeak")])
+            except OSError:
+                pass
+        try:
+            process.popen.wait(0.02)
+        except Exception:  # the time is over, and the run goes on
+            pass
+    return peak
+
+
+def need_of(case, name, text, ranks, known):
+    """Address space of an unlimited run, found once."""
+    if (name, ranks) not in known:
+        path = case.write("free.prm", text)
+        process = Process(["run", path, "-q", "-s", "Output directory=free"], case, ranks)
+        peak = peak_of(process)
+        end = process.wait(10)
+        if end.kind != COMPLETE:
+            raise SystemExit(f"{name} does not run: {end.detail}\n{end.text[-2000:]}")
+        known[name, ranks] = peak
+    return known[name, ranks]
+
+
+def main():
+    campaign = Campaign(__doc__, cases=10)
+    known = {}
+    for case in campaign:
+        name = sorted(SCENES)[case.number % len(SCENES)]
+        ranks = case.random.choice([1, 1, 2])
+        least = need_of(case, "start", TINY, ranks, known)
+        most = need_of(case, name, SCENES[name], ranks, known)
+        limit = round(least + case.random.uniform(0, 1) * (most - least))
+
+        def prepare():
+            resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+        end = run(["run", case.write("scene.prm", SCENES[name]), "-q"], case, ranks, 120, prepare=prepare)
+        kind, detail = end.kind, end.detail
+        problems = list(wrong_results(os.path.join(case.folder, "results"), end.status == 0))
+        if kind in GOOD and problems:
+            kind, detail = WRONG, "; ".join(problems[:4])
+        elif kind == REFUSED and not ("memory" in end.stderr and "check" in end.stderr):
+            kind = "says nothing of it"
+        case.count(f"{name}, {ranks} process{'es' if ranks > 1 else ''}", kind,
+                   f"{limit >> 20} MB, of {least >> 20} to start and {most >> 20} in all: {detail}")
+    campaign.finish()
+
+
+if __name__ == "__main__":
+    main()
