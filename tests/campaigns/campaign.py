@@ -57,7 +57,7 @@ class End:
             return CRASH, f"exit status {self.status}: {last}"
         found = [trace for trace in FAULTS if trace in self.text]
         if found:
-            return TRACE, f"'{found[0]}' in the output: {last}"
+            return TRACE, f"'{found[0]}' in the output: {' '.join(self.text.split())[:300]} ... {last[-200:]}"
         if self.status == 0:
             return COMPLETE, ""
         if self.status in (3, 130, 143):
