@@ -9,10 +9,11 @@ long has to stop when it is asked to.
 
 import glob
 import os
+import re
 import resource
 
 from campaign import COMPLETE, NO_MESSAGE, REFUSED, STOPPED, WRONG, Campaign, run
-from mutations import Mutator, make_small, read_lines, set_value, value_of
+from mutations import Mutator, make_small, read_lines, value_of
 from result_folder import nulls_in, read_summary, wrong_numbers, wrong_results
 from scene_test import SOURCE_DIR, run_perideal
 
@@ -50,14 +51,20 @@ def small_scenes():
         if value_of(lines, "Domain", "Node spacing"):
             continue
         make_small(lines, os.path.dirname(path))
-        set_value(lines, "", "Output directory", "results")
         scenes.append((os.path.relpath(path, os.path.join(SOURCE_DIR, "prm")), lines))
     return scenes
 
 
-def judge(case, end):
-    """Count the end of a run, with what its results say."""
+def says_nothing(text):
+    """Nothing but comments."""
+    return not any(line.split(b"#", 1)[0].strip() for line in re.split(b"[\r\n]", text))
+
+
+def judge(case, end, text):
+    """The kind of end, with what its results say."""
     results = os.path.join(case.folder, "results")
+    if end.kind == COMPLETE and says_nothing(text):
+        return WRONG, "a file without entries ran the default scene"
     if end.kind == COMPLETE:
         found = list(wrong_numbers(results)) + list(wrong_results(results, complete=True))
         if not found:
@@ -83,8 +90,8 @@ def main():
         text, changes = mutator.mutate(lines, case.random, [other for _, other in scenes])
         ranks = 2 if case.random.random() < 0.04 else 1
         path = case.write("scene.prm", text)
-        end = run(["run", path, "-q"], case, ranks, TIME, prepare=limit_memory)
-        kind, detail = judge(case, end)
+        end = run(["run", path, "-q", "-s", "Output directory=results"], case, ranks, TIME, prepare=limit_memory)
+        kind, detail = judge(case, end, text)
         case.count(f"{ranks} process{'es' if ranks > 1 else ''}", kind, f"{name}, {'+'.join(changes)}, {end.seconds:.1f} s: {detail}")
     campaign.finish()
 

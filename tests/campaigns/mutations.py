@@ -166,7 +166,7 @@ class Mutator:
 
     @staticmethod
     def entry(lines, random):
-        numbers = [number for number, line in enumerate(lines) if line[0] == "set" and line[1] != "Output directory"]
+        numbers = [number for number, line in enumerate(lines) if line[0] == "set"]
         return random.choice(numbers) if numbers else None
 
     def replace_value(self, lines, random):
