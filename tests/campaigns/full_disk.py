@@ -19,7 +19,7 @@ from campaign import COMPLETE, GOOD, REFUSED, WRONG, Campaign, Process, run
 from kills import FRAME, HEAT, LOADING, MOTION, files_in
 from result_folder import wrong_results
 
-SCENES = {"heat": (HEAT, 0.01, 0.15), "motion": (MOTION, 0.2, 3), "loading": (LOADING, 0.1, 1)}
+SCENES = {"heat": (HEAT, 0.01, 0.15), "motion": (MOTION, 0.1, 2), "loading": (LOADING, 0.05, 0.5)}
 
 OWN_SPACE = "PERIDEAL_CAMPAIGN_OWN_SPACE"
 
@@ -63,7 +63,7 @@ def small_disk(case, ranks):
     amount = case.random.randint(0, case.needed // 1024)
     mount(results, max(4, amount))
     try:
-        end = run(["run", case.scene, "-q"], case, ranks, 120)
+        end = run(["run", case.scene, "-q"], case, ranks, 240)
         problems = list(wrong_results(results, end.status == 0))
     finally:
         unmount(results)
@@ -80,7 +80,7 @@ def small_files(case, ranks):
         time.sleep(0.01)
     for rank in process.ranks():
         resource.prlimit(rank, resource.RLIMIT_FSIZE, (amount, amount))
-    end = process.wait(120)
+    end = process.wait(240)
     return f"files of {amount} of {case.largest} bytes", end, list(wrong_results(results, end.status == 0))
 
 
@@ -94,7 +94,7 @@ def disturbed(case, ranks, what, disturb):
         time.sleep(0.01)
     went_on = process.running
     undo = disturb(results)
-    end = process.wait(120)
+    end = process.wait(240)
     if undo:
         undo()
     problems = list(wrong_results(results, end.status == 0)) if os.path.isdir(results) and what != "removed" else []
@@ -145,7 +145,7 @@ def full_temporary(case, ranks):
     mount(folder, amount)
     fill(folder)
     try:
-        end = run(["run", case.scene, "-q"], case, ranks, 120, environment={"TMPDIR": folder})
+        end = run(["run", case.scene, "-q"], case, ranks, 240, environment={"TMPDIR": folder})
     finally:
         unmount(folder)
     return f"{amount} kB, all taken", end, list(wrong_results(os.path.join(case.folder, "results"), end.status == 0))

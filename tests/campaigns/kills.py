@@ -29,9 +29,8 @@ end
 """
 
 HEAT = """
-set Models = finite elements, peridynamics, coupled
 subsection Domain
-  set Cells = 24, 24
+  set Cells = 14, 14
 end
 subsection Boundary conditions
   set Dirichlet = left: sin(t); right: 0
@@ -44,7 +43,7 @@ end
 MOTION = """
 set Physics = elasticity
 subsection Domain
-  set Cells = 24, 24
+  set Cells = 14, 14
 end
 subsection Material
   set Young modulus = 1
@@ -62,7 +61,7 @@ end
 LOADING = """
 set Physics = elasticity
 subsection Domain
-  set Cells = 24, 24
+  set Cells = 14, 14
 end
 subsection Material
   set Young modulus = 1
@@ -74,7 +73,7 @@ end
 """
 
 # Name: scene, time between outputs, end, end of the run that follows.
-SCENES = {"heat": (HEAT, 0.01, 0.2, 0.02), "motion": (MOTION, 0.2, 6, 0.4), "loading": (LOADING, 0.05, 1, 0.1)}
+SCENES = {"heat": (HEAT, 0.005, 0.2, 0.01), "motion": (MOTION, 0.1, 4, 0.2), "loading": (LOADING, 0.05, 1, 0.1)}
 
 SIGNALS = {signal.SIGKILL: "SIGKILL", signal.SIGTERM: "SIGTERM", signal.SIGINT: "SIGINT"}
 
@@ -146,7 +145,7 @@ def judge(case, end, number, memory):
 
 def follow(case, path, scene, ranks, fresh):
     """A run in the same folder. What is wrong with it."""
-    end = run(["run", path, "-q", "-s", f"Time/End time={SCENES[scene][3]}"], case, ranks, 120)
+    end = run(["run", path, "-q", "-s", f"Time/End time={SCENES[scene][3]}"], case, ranks, 180)
     if end.kind != COMPLETE:
         return f"the run that follows: {end.kind}: {end.detail}"
     results = os.path.join(case.folder, "results")
@@ -171,7 +170,7 @@ def main():
         process = Process(["run", path, "-q"], case, ranks)
         time.sleep(share * seconds)
         _, memory = disturb(process, target, number, random)
-        kind, detail = judge(case, process.wait(30), number, memory)
+        kind, detail = judge(case, process.wait(30 + 4 * seconds), number, memory)
         what = f"{SIGNALS[number]}, {ranks} process{'es' if ranks > 1 else ''}"
         if kind in GOOD:
             problem = follow(case, path, scene, ranks, fresh)
