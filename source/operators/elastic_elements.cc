@@ -16,6 +16,7 @@
 #include <sstream>
 
 #include "elastic_cell_data.h"
+#include "inversion.h"
 
 namespace PeriDeal
 {
@@ -79,6 +80,26 @@ namespace PeriDeal
             positions[nodes->global_to_local(indices[i])] =
               mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i));
         }
+  }
+
+
+  template <int dim>
+  Inversion ElasticElements<dim>::inverted(const Vector &u) const
+  {
+    const auto corners =
+      cell_corners<dim>(dofs, nodes->locally_owned_size(), [&](const types::global_dof_index i) {
+        return nodes->in_local_range(i) || nodes->is_ghost_entry(i) ? nodes->global_to_local(i) :
+                                                                      numbers::invalid_unsigned_int;
+      });
+    u.update_ghost_values();
+    const Inversion result = find_inverted<dim>(
+      corners,
+      u,
+      [&](const unsigned int node) { return positions[node]; },
+      [](const CellCorner<dim> &) { return true; },
+      dofs.get_communicator());
+    u.set_ghost_state(false);
+    return result;
   }
 
 

@@ -47,6 +47,8 @@ namespace PeriDeal
     if (scene.time.steady)
       {
         write_output(0.);
+        for (const auto &model : models)
+          note_inversion(*model);
         return;
       }
     progress.begin("time");
@@ -64,7 +66,12 @@ namespace PeriDeal
       }
     progress.end();
     for (const auto &model : models)
-      progress.line(model->name() + ": " + std::to_string(model->n_iterations) + " iterations");
+      {
+        progress.line(model->name() + ": " + std::to_string(model->n_iterations) + " iterations");
+        if (!scene.warms_slowly()) // what warming does to the strain energy is not followed
+          note_energy(*model);
+        note_inversion(*model);
+      }
   }
 
 

@@ -95,9 +95,76 @@ namespace PeriDeal
                 }
             }
         now = t;
+        for (const auto &model : models)
+          model->stepper->examine(model->displacement, model->velocity, t);
         write_output(t);
       }
     progress.end();
+    for (const auto &model : models)
+      {
+        note_steps(*model);
+        note_energy(*model);
+        note_inversion(*model);
+      }
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::note_steps(const ElasticRun<dim> &model)
+  {
+    const double first    = StepLimit::share * model.stable_step,
+                 shortest = model.stepper->shortest_step();
+    if (scene.time.time_step < 0. && model.stepper->name() == "verlet" && shortest < first)
+      record->notes.push_back(model.name() +
+                              ": the automatic time step followed the body's deformation, from " +
+                              number_text(first) + " down to " + number_text(shortest) + ".");
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::note_energy(const ElasticRun<dim> &model)
+  {
+    constexpr double tolerable = 0.01;
+    double           imbalance, given, lost;
+    if (model.stepper)
+      {
+        const MotionEnergy energy = model.stepper->energy(model.displacement, model.velocity);
+        imbalance                 = energy.imbalance();
+        given                     = energy.start + std::abs(energy.work);
+        lost                      = energy.released;
+      }
+    else
+      {
+        const LoadingEnergy energy = model.loading->energy(model.displacement);
+        imbalance                  = energy.imbalance();
+        given                      = energy.start + std::abs(energy.work);
+        lost                       = energy.dissipated;
+      }
+    const bool   of_bonds = model.op().brittle() && lost > 0.;
+    const double whole    = of_bonds ? std::min(lost, given) : given;
+    if (std::abs(imbalance) > tolerable * whole)
+      record->notes.push_back(
+        model.name() + ": the energy balance does not close. What " +
+        (imbalance < 0. ? "is missing" : "has come from nowhere") + " at the end, " +
+        number_text(std::abs(imbalance)) + ", is " +
+        number_text(100. * std::abs(imbalance) / whole) + " % of " +
+        (of_bonds ? "what broken bonds have dissipated" : "what start and loads have brought in") +
+        ". A smaller 'Time step' in section 'Time' makes it less: half the step a quarter.");
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::note_inversion(const ElasticRun<dim> &model)
+  {
+    if (model.op().nonlinear()) // such runs have ended
+      return;
+    const Inversion found = model.op().inverted(model.displacement);
+    if (found.n_nodes > 0)
+      record->notes.push_back(
+        model.name() + ": the displacements turn cells inside out at " +
+        std::to_string(found.n_nodes) + " nodes, worst at " + found.place +
+        ". They are far beyond the small displacements that 'Kinematics = linear' in section 'Elasticity' is for: read them as those of a "
+        "load of 1, in proportion to the load, or make the load smaller.");
   }
 
 
@@ -129,6 +196,7 @@ namespace PeriDeal
         const MotionEnergy energy = model.stepper->energy(model.displacement, model.velocity);
         add("kinetic", "kinetic energy", energy.kinetic);
         add_all(energy, energy.released);
+        add("drift", "energy drift", energy.drift);
       }
     else
       {
@@ -139,10 +207,12 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                               \
-  template void                   ElasticSimulation<dim>::make_steppers();                      \
-  template void                   ElasticSimulation<dim>::move();                               \
-  template nlohmann::ordered_json ElasticSimulation<dim>::add_energies(const ElasticRun<dim> &, \
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template void                   ElasticSimulation<dim>::make_steppers();                         \
+  template void                   ElasticSimulation<dim>::move();                                  \
+  template void                   ElasticSimulation<dim>::note_energy(const ElasticRun<dim> &);    \
+  template void                   ElasticSimulation<dim>::note_inversion(const ElasticRun<dim> &); \
+  template nlohmann::ordered_json ElasticSimulation<dim>::add_energies(const ElasticRun<dim> &,    \
                                                                        const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

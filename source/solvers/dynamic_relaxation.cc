@@ -23,7 +23,7 @@ namespace PeriDeal
       DynamicRelaxation(ElasticOperator &op, const StaticOptions &options)
         : op(op)
         , options(options)
-        , inverse_mass(inverse_capacity(op))
+        , inverse_mass((require_mass(op), inverse_capacity(op)))
         , stiffest(op.spectrum().sharp)
         , most_damped(op.damping_bound())
       {

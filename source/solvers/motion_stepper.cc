@@ -8,16 +8,29 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    std::string number(const double x)
+    {
+      std::ostringstream text;
+      text << x;
+      return text.str();
+    }
+  } // namespace
+
 
   MotionStepper::MotionStepper(ElasticOperator &op, const double dt)
     : op(op)
     , inverse_mass(inverse_capacity(op))
     , held(held_unknowns(op))
     , longest(dt)
+    , shortest(dt)
     , work_of_forces(op)
   {
     for (Vector *v : {&unbalanced, &last, &last_velocity, &change})
@@ -56,7 +69,35 @@ namespace PeriDeal
   }
 
 
+  double MotionStepper::missing_kinetic(const Vector &u, const Vector &v, const double dt) const
+  {
+    const double factor = kept_with_accelerations() * dt * dt;
+    if (factor == 0.)
+      return 0.;
+    Vector image;
+    op.initialize_vector(image);
+    op.linearize(u);
+    op.multiply(image, v);
+    double sum = 0.;
+    for (unsigned int i = 0; i < held.size(); ++i)
+      if (!held[i])
+        sum += v.local_element(i) * image.local_element(i);
+    return factor * Utilities::MPI::sum(sum, v.get_mpi_communicator());
+  }
+
+
   MotionEnergy MotionStepper::energy(const Vector &u, const Vector &v) const
+  {
+    MotionEnergy result = energy_of_velocities(u, v);
+    if (!started)
+      return result;
+    result.start += missing_start;
+    result.kinetic += missing_kinetic(u, v, step_now);
+    return result;
+  }
+
+
+  MotionEnergy MotionStepper::energy_of_velocities(const Vector &u, const Vector &v) const
   {
     MotionEnergy result;
     result.kinetic  = kinetic_energy(v, false);
@@ -65,20 +106,39 @@ namespace PeriDeal
     result.start    = started ? start : result.kinetic + result.strain;
     // What supports give to the nodes that they hold themselves.
     result.work = started ? work + kinetic_energy(v, true) - support_start : 0.;
+    if (started)
+      result.drift = result.imbalance() - (kept_back(step_now) - jumps);
     return result;
   }
 
 
-  void MotionStepper::begin(const Vector &u, const Vector &v, const double t)
+  double MotionStepper::kept_back(const double dt) const
   {
+    const double factor = kept_with_accelerations() * dt * dt;
+    if (factor == 0.)
+      return 0.;
+    double sum = 0.;
+    for (unsigned int i = 0; i < held.size(); ++i)
+      if (!held[i])
+        sum += unbalanced.local_element(i) * unbalanced.local_element(i) * inverse_mass[i];
+    return factor * Utilities::MPI::sum(sum, unbalanced.get_mpi_communicator());
+  }
+
+
+  void MotionStepper::begin(const Vector &u, const Vector &v, const double t, const double dt)
+  {
+    // What is kept back at the end of the steps so far, or of none.
+    const double before = started ? kept_back(step_now) : 0.;
     op.unbalanced(unbalanced, u, t);
     work_of_forces.begin(unbalanced, t);
+    jumps += kept_back(step_now) - before;
     fresh = false;
     if (started)
       return;
     started       = true;
     start         = kinetic_energy(v, false) + op.energy(u);
     support_start = kinetic_energy(v, true);
+    missing_start = missing_kinetic(u, v, dt);
   }
 
 
@@ -95,44 +155,113 @@ namespace PeriDeal
     AssertThrow(
       message.str().empty(),
       UserError("The run became unstable: stepper '" + name() + "' " + message.str() +
-                " before t = " +
-                [&] {
-                  std::ostringstream time;
-                  time << t;
-                  return time.str();
-                }() +
+                " before t = " + number(t) +
                 ". Choose a smaller 'Time step', or 'Stepper = newmark', in section 'Time'."));
+  }
+
+
+  void MotionStepper::check_drift(const Vector &u, const Vector &v, const double t)
+  {
+    const MotionEnergy found = energy_of_velocities(u, v);
+    exchanged                = std::max(exchanged, start + std::abs(found.work));
+    std::ostringstream message;
+    if (!(std::abs(found.drift) <= allowed_drift * exchanged))
+      message << "The energy of the motion is not kept: before t = " << t << " stepper '" << name()
+              << "' has " << (found.drift < 0. ? "lost " : "made ") << std::abs(found.drift)
+              << " of it, more than " << 100. * allowed_drift
+              << " % of what start and loads have brought in, " << exchanged
+              << ". The body deforms too much within a step of " << step_now
+              << ": choose a smaller 'Time step' in section 'Time', or a smaller load.";
+    AssertThrow(message.str().empty(), UserError(message.str()));
+  }
+
+
+  void MotionStepper::check_inversion(const Vector &u, const double t) const
+  {
+    if (!op.nonlinear())
+      return;
+    const Inversion found = op.inverted(u);
+    AssertThrow(found.n_nodes == 0,
+                UserError("Before t = " + number(t) + " " + inverted_text(found)));
+  }
+
+
+  bool MotionStepper::follow_body(const Vector &u, const double t)
+  {
+    const double before = longest;
+    if (limit)
+      longest = limit->follow(u, t, spent.steps);
+    shortest = std::min(shortest, longest);
+    return longest != before;
+  }
+
+
+  void MotionStepper::set_limit(std::unique_ptr<StepLimit> new_limit)
+  {
+    limit = std::move(new_limit);
+  }
+
+
+  void MotionStepper::examine(const Vector &u, const Vector &v, const double t)
+  {
+    check(v, t);
+    if (!started)
+      return;
+    check_inversion(u, t);
+    check_drift(u, v, t);
+  }
+
+
+  void MotionStepper::break_bonds(const Vector &u, const double t)
+  {
+    // Between two steps: within one, half a step of their force would be lost and with it energy of order dt.
+    if (op.break_bonds(u) == 0)
+      return;
+    jumps -= kept_back(step_now);
+    operator_changed();
+    op.unbalanced(unbalanced, u, t);
+    work_of_forces.begin(unbalanced, t);
+    jumps += kept_back(step_now);
   }
 
 
   void MotionStepper::advance(Vector &u, Vector &v, const double t, const double t_end)
   {
-    constexpr unsigned int between_checks = 20;
+    constexpr unsigned int between_checks = 20, between_examinations = 50;
+    constexpr double       same = 1e-9;
+    double                 from = t;
+    unsigned long long     n = n_equal_steps(t_end - t, longest), k = 0;
     if (fresh)
-      begin(u, v, t);
-    const unsigned long long n  = n_equal_steps(t_end - t, longest);
-    const double             dt = (t_end - t) / n;
-    for (unsigned long long k = 0; k < n; ++k)
+      begin(u, v, t, (t_end - t) / n);
+    for (double now = t; k < n;)
       {
-        const double now = t + k * dt, next = k + 1 == n ? t_end : t + (k + 1) * dt;
+        const double next = k + 1 == n ? t_end : from + (k + 1) * ((t_end - from) / n);
+        if (std::abs(next - now - step_now) > same * step_now)
+          jumps += kept_back(next - now) - kept_back(step_now);
+        step_now      = next - now;
         last          = u;
         last_velocity = v;
-        step(u, v, now, next - now);
+        step(u, v, now, step_now);
         ++spent.steps;
         change = u;
         change -= last;
         const double gain = work_of_forces.step(change, unbalanced, next);
         work += gain;
         effort += std::abs(gain);
-        // Bonds break between two steps: within one, half a step of their force would be lost and with it energy of order dt.
-        if (op.break_bonds(u) > 0)
+        break_bonds(u, next);
+        now = next;
+        // Of linear bodies there is nothing to be found: what their steps keep they keep to round-off.
+        if (op.nonlinear() && spent.steps % between_examinations == 0)
+          examine(u, v, now);
+        else if (spent.steps % between_checks == 0 || k + 1 == n)
+          check(v, now);
+        ++k;
+        if (spent.steps % StepLimit::between_looks == 0 && follow_body(u, now) && k < n)
           {
-            operator_changed();
-            op.unbalanced(unbalanced, u, next);
-            work_of_forces.begin(unbalanced, next);
+            from = now;
+            n    = n_equal_steps(t_end - from, longest);
+            k    = 0;
           }
-        if (k % between_checks == between_checks - 1 || k + 1 == n)
-          check(v, next);
       }
   }
 
@@ -154,16 +283,17 @@ namespace PeriDeal
                                                      ElasticOperator      &op,
                                                      const StepperOptions &options)
   {
-    constexpr double share = 0.8, many = 5.;
+    constexpr double many          = 5.;
     const bool       explicit_step = name == "auto" || name == "verlet";
     AssertThrow(
       explicit_step || name == "newmark",
       UserError("'Stepper' in section 'Time' is '" + name +
                 "', which is not for motion. Known: " + join_names(motion_stepper_names()) + "."));
+    require_mass(op);
     StepperOptions chosen = options;
     const double   limit  = explicit_step || options.time_step < 0. ? stable_motion_step(op) : 0.;
     if (options.time_step < 0.)
-      chosen.time_step = (explicit_step ? share : many) * limit;
+      chosen.time_step = (explicit_step ? StepLimit::share : many) * limit;
     else if (explicit_step)
       {
         std::ostringstream message;
@@ -173,6 +303,11 @@ namespace PeriDeal
           << " only (2/omega of the fastest motion). Choose a smaller step, 'Time step = auto', or 'Stepper = newmark'.";
         AssertThrow(options.time_step <= limit, UserError(message.str()));
       }
-    return explicit_step ? make_verlet(op, chosen) : make_newmark(op, chosen);
+    if (!explicit_step)
+      return make_newmark(op, chosen);
+    auto stepper = make_verlet(op, chosen);
+    if (op.nonlinear() || op.brittle())
+      stepper->set_limit(std::make_unique<StepLimit>(op, chosen.time_step, options.time_step < 0.));
+    return stepper;
   }
 } // namespace PeriDeal

@@ -35,6 +35,11 @@ namespace PeriDeal
       }
 
     protected:
+      double kept_with_accelerations() const override
+      {
+        return 0.;
+      }
+
       void step(Vector &u, Vector &v, const double t, const double dt) override
       {
         const double factor = 4. / (dt * dt);

@@ -5,6 +5,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/slow_loading.h>
+#include <perideal/solvers/step_tools.h>
 
 #include <algorithm>
 #include <sstream>
@@ -51,7 +52,20 @@ namespace PeriDeal
         u = last;
         throw UserError(message.str());
       }
+    check_inversion(u, t);
     op.linearize(u);
+  }
+
+
+  void SlowLoading::check_inversion(const Vector &u, const double t) const
+  {
+    if (!op.nonlinear())
+      return;
+    const Inversion    found = op.inverted(u);
+    std::ostringstream message;
+    message << "In the equilibrium that '" << solver->name() << "' has found at t = " << t << ' '
+            << inverted_text(found);
+    AssertThrow(found.n_nodes == 0, UserError(message.str()));
   }
 
 

@@ -87,6 +87,31 @@ namespace PeriDeal
   }
 
 
+  void require_mass(const ElasticOperator &op)
+  {
+    const Vector      &mass = op.lumped_capacity();
+    std::ostringstream message;
+    for (unsigned int i = 0; i < mass.locally_owned_size() && message.str().empty(); ++i)
+      if (!(mass.local_element(i) > 0.))
+        message << "'Density' in section 'Material' is "
+                << (mass.local_element(i) < 0. ? "negative" : "zero") << " at " << op.place_of(i)
+                << ": what moves needs a positive density everywhere. Bodies at rest need none: "
+                   "'Solver = linear' or 'conjugate gradients' in section 'Elasticity'.";
+    throw_on_all_if_any(mass.get_mpi_communicator(), message.str());
+  }
+
+
+  std::string inverted_text(const Inversion &found)
+  {
+    return "the body is inside out at " + std::to_string(found.n_nodes) +
+           (found.n_nodes == 1 ? " node" : " nodes, worst at ") + (found.n_nodes == 1 ? ", " : "") +
+           found.place +
+           ": neighbours that bonds hold together have passed through each other, which bonds do not prevent. "
+           "Such a state means nothing: make the load smaller, or let it grow more slowly with t; spread it by 'Traction layer' in section "
+           "'Boundary conditions', or use larger cells where it acts on a single row of nodes.";
+  }
+
+
   unsigned long long n_equal_steps(const double span, const double dt)
   {
     return std::max(1ULL, static_cast<unsigned long long>(std::ceil(span / dt * (1. - 1e-10))));

@@ -23,6 +23,11 @@ namespace PeriDeal
       }
 
     protected:
+      double kept_with_accelerations() const override
+      {
+        return 0.125;
+      }
+
       void step(Vector &u, Vector &v, const double t, const double dt) override
       {
         accelerate(acceleration, unbalanced);

@@ -68,6 +68,7 @@ namespace PeriDeal
     void                mechanical_loads(Vector &loads, const double t) const override;
     void                initialize_nodal_vector(Vector &vector) const override;
     void                set_temperature_change(const Vector &nodal) override;
+    Inversion           inverted(const Vector &u) const override;
 
     /** Place of a node of this process, by local number. */
     const dealii::Point<dim> &position(const unsigned int node) const;

@@ -25,6 +25,15 @@ namespace PeriDeal
   };
 
 
+  /** Where a body has been turned inside out: nodes have passed through neighbours to which bonds or elements hold them. */
+  struct Inversion
+  {
+    unsigned long long n_nodes = 0;
+    std::string
+      place; // of the worst of them in the undeformed body, as `(x, y)`; empty if there are none
+  };
+
+
   /**
    * A body of linear elastic material: M u'' = f(t) - K u, u the displacement. Component c of node i is the unknown dim i + c. K is symmetric and positive
    * semidefinite, its null space the rigid motions of the body and of parts that nothing holds together. C of the interface is the lumped mass M.
@@ -77,6 +86,9 @@ namespace PeriDeal
       return spectrum().sharp;
     }
 
+    /** At least (as sharp_bound() is) the largest eigenvalue of M^{-1} K, K that of the last linearize(), to no more digits than show that it is below @p enough. Collective. */
+    double fastest_bound(const double enough) const;
+
     /** At least (as sharp_bound() is) the largest eigenvalue of diag(K)^{-1} K. Collective. */
     double scaled_bound() const;
 
@@ -88,6 +100,21 @@ namespace PeriDeal
 
     /** Make K the tangent at u. Collective. */
     virtual void linearize(const Vector &) {}
+
+    /** The largest |Y|/x - 1, either sign, of unbroken bonds Y that were x long; 0 where nonlinear() is not. Collective. */
+    virtual double largest_stretch(const Vector & /*u*/) const
+    {
+      return 0.;
+    }
+
+    /**
+     * The nodes at which a corner of a cell that u deforms has no positive volume (cell_corners()); those do not count that have lost a bond, since what has broken
+     * off may fold over. Collective.
+     */
+    virtual Inversion inverted(const Vector & /*u*/) const
+    {
+      return {};
+    }
 
     /** Bonds of the body may break. Not collective. */
     virtual bool brittle() const

@@ -5,6 +5,7 @@
 
 #include <perideal/bonds/families.h>
 #include <perideal/laws/elasticity.h>
+#include <perideal/mesh/cell_corners.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/displacement_conditions.h>
 #include <perideal/operators/elastic_operator.h>
@@ -94,6 +95,8 @@ namespace PeriDeal
     double              damping_bound() const override;
     bool                nonlinear() const override;
     void                linearize(const Vector &u) override;
+    double              largest_stretch(const Vector &u) const override;
+    Inversion           inverted(const Vector &u) const override;
     bool                brittle() const override;
     unsigned long long  break_bonds(const Vector &u, const double share = 0.) override;
     double              released_energy() const override;
@@ -194,6 +197,8 @@ namespace PeriDeal
     void sum_deformed_forces(Vector &y, const Vector &u) const;
     void find_forces(Vector &y, const Vector &u) const;
 
+    bool holds(const CellCorner<dim> &corner) const; // no bond of its node has broken
+
     /** xi + u_j - u_i. */
     dealii::Tensor<1, dim> deformed_bond(const double      *u,
                                          const unsigned int i,
@@ -248,7 +253,8 @@ namespace PeriDeal
     Vector         mass, stiffness_diagonal, thermal_loads, constant_loads;
     double         thermal_energy = 0.;
     bool           loads_vary     = false;
-    mutable Vector scratch, source, tau; // tau_i = c_i theta_i/q_i
+    mutable Vector scratch, source, tau;          // tau_i = c_i theta_i/q_i
+    mutable std::vector<CellCorner<dim>> corners; // once they have been asked for
   };
 
 

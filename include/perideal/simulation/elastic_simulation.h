@@ -56,6 +56,9 @@ namespace PeriDeal
     void                   make_steppers();
     void                   set_start(ElasticRun<dim> &model) const;
     void                   move();
+    void                   note_steps(const ElasticRun<dim> &model);
+    void                   note_energy(const ElasticRun<dim> &model);
+    void                   note_inversion(const ElasticRun<dim> &model);
     void                   write_output(const double t);
     void                   write_state(const double t);
     void                   write_points(const double t);

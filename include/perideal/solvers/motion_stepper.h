@@ -4,22 +4,32 @@
 #pragma once
 
 #include <perideal/operators/elastic_operator.h>
+#include <perideal/solvers/step_limit.h>
 #include <perideal/solvers/stepper.h>
 #include <perideal/solvers/work_of_forces.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace PeriDeal
 {
-  /** Energies of a moving body (J; in 2D per unit thickness). */
+  /**
+   * Energies of a moving body (J; in 2D per unit thickness).
+   *
+   * The velocities of `verlet` are chords over two steps, u(t + dt) - u(t - dt) = 2 dt v, and shorter than the arcs. With H that of these velocities its steps keep H - dt^2/8
+   * a.Ma for linear bodies exactly, a the accelerations, so that H goes up and down with these, and falls for good where loads set in or bonds break. What they keep but for
+   * higher orders, there too, is H + dt^2/8 v.Kv: so much is added to the kinetic energy.
+   */
   struct MotionEnergy
   {
     double kinetic = 0., strain = 0.;
     double start    = 0.; // kinetic and strain energy at the start
     double work     = 0.; // of loads and supports since then
     double released = 0.; // by broken bonds since then
+    double drift =
+      0.; // what the steps have made, or lost: the change of what they keep less the work; of linear bodies round-off at any step
 
     /** What has come from nowhere: of order dt^2 with `verlet`, round-off of the linear solver with `newmark` and linear kinematics. */
     double imbalance() const
@@ -40,10 +50,21 @@ namespace PeriDeal
     virtual std::string name() const = 0;
 
     /**
-     * From u and v at time t to exactly t_end > t in equal steps of at most current_step(). u comes and goes distributed; prescribed unknowns have the velocity of
-     * their last step. Throws UserError, with what to change, if values are not finite or the energy grows out of nothing. Collective.
+     * From u and v at time t to exactly t_end > t in equal steps of at most current_step(), which may change on the way. u comes and goes distributed; prescribed unknowns have the velocity of
+     * their last step. Throws UserError, with what to change, if values are not finite, and what examine() throws, which is asked now and then. Collective.
      */
     void advance(Vector &u, Vector &v, const double t, const double t_end);
+
+    /**
+     * Throws UserError, with what to change, if the drift of the energy is more than allowed_drift of what start and loads have brought in, the body of full kinematics is
+     * inside out, or a given step is no longer stable. Costs two applications at most. Collective.
+     */
+    void examine(const Vector &u, const Vector &v, const double t);
+
+    static constexpr double allowed_drift = 0.01;
+
+    /** Let the step follow the body, or refuse one that has been given and no longer is stable. */
+    void set_limit(std::unique_ptr<StepLimit> limit);
 
     /** Forget the past: operator, displacement or velocity have changed abruptly. */
     void restart();
@@ -51,6 +72,12 @@ namespace PeriDeal
     double current_step() const
     {
       return longest;
+    }
+
+    /** The shortest of all that current_step() has been. */
+    double shortest_step() const
+    {
+      return shortest;
     }
 
     const StepperCost &cost() const
@@ -68,6 +95,9 @@ namespace PeriDeal
      */
     virtual void step(Vector &u, Vector &v, const double t, const double dt) = 0;
 
+    /** c, where steps of linear bodies keep the energy H - c dt^2 a.Ma. */
+    virtual double kept_with_accelerations() const = 0;
+
     /** Bonds have broken: K is another one. */
     virtual void operator_changed() {}
 
@@ -84,15 +114,27 @@ namespace PeriDeal
     StepperCost               spent;
 
   private:
-    void   begin(const Vector &u, const Vector &v, const double t);
-    double kinetic_energy(const Vector &v, const bool supports_only) const;
-    void   check(const Vector &v, const double t) const;
+    void         begin(const Vector &u, const Vector &v, const double t, const double dt);
+    double       kinetic_energy(const Vector &v, const bool supports_only) const;
+    double       missing_kinetic(const Vector &u, const Vector &v, const double dt) const;
+    MotionEnergy energy_of_velocities(const Vector &u, const Vector &v) const;
+    void         check(const Vector &v, const double t) const;
+    void         check_drift(const Vector &u, const Vector &v, const double t);
+    void         check_inversion(const Vector &u, const double t) const;
+    bool         follow_body(const Vector &u, const double t);
+    void         break_bonds(const Vector &u, const double t);
+    double       kept_back(const double dt) const;
 
-    const double longest;
-    bool         started = false, fresh = true;
-    double       start = 0., work = 0., effort = 0., support_start = 0.;
-    Vector       change; // of a step
-    WorkOfForces work_of_forces;
+    double                     longest, shortest;
+    std::unique_ptr<StepLimit> limit; // null: none
+    bool                       started = false, fresh = true;
+    double                     start = 0., work = 0., effort = 0., support_start = 0.;
+    double                     missing_start = 0.; // of the kinetic energy
+    double                     step_now      = 0.; // the last one
+    double                     jumps         = 0.; // of what steps keep back
+    double                     exchanged     = 0.; // the most that start and work have been so far
+    Vector                     change;             // of a step
+    WorkOfForces               work_of_forces;
   };
 
 
@@ -104,7 +146,7 @@ namespace PeriDeal
 
   /**
    * The one factory; `auto` is `verlet`. A step that is not given is 0.8 of the stable one of `verlet`, with `newmark` 5 times it. Throws UserError
-   * for a step of `verlet` above the stable one (with both numbers). Collective.
+   * for a step of `verlet` above the stable one (with both numbers), and for nodes without mass. Collective.
    */
   std::unique_ptr<MotionStepper> make_motion_stepper(const std::string    &name,
                                                      ElasticOperator      &op,

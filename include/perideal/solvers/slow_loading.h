@@ -48,7 +48,7 @@ namespace PeriDeal
 
     /**
      * From the equilibrium u to that at time t. Collective. Throws UserError if there is none to be found, among others since the body has come apart under loads that
-     * nothing bears any more; u is the last equilibrium then.
+     * nothing bears any more; u is the last equilibrium then. So it does where full kinematics end with the body inside out.
      */
     void step(Vector &u, const double t);
 
@@ -69,6 +69,7 @@ namespace PeriDeal
   private:
     void solve(Vector &u, const double t);
     void break_bonds(Vector &u, const double t);
+    void check_inversion(const Vector &u, const double t) const;
 
     ElasticOperator              &op;
     std::unique_ptr<StaticSolver> solver;

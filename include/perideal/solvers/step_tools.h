@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/operators/operator.h>
+#include <perideal/operators/elastic_operator.h>
 
 #include <initializer_list>
 #include <string>
@@ -34,6 +34,12 @@ namespace PeriDeal
 
   /** Throws a UserError that says what to change if u is not finite. Collective. */
   void check_finite(const Vector &u, const std::string &stepper, const double t);
+
+  /** Throws UserError, with the place, if a node of a body that is to move has no mass, or a negative one. Collective. */
+  void require_mass(const ElasticOperator &op);
+
+  /** What to say of a body that is inside out: a sentence that goes on after a time, and what to change. */
+  std::string inverted_text(const Inversion &found);
 
   /** Number of equal steps, each at most dt, that fill a span; a span that is dt up to round-off counts as one. */
   unsigned long long n_equal_steps(const double span, const double dt);

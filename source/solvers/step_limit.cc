@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/solvers/step_limit.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace PeriDeal
+{
+  StepLimit::StepLimit(ElasticOperator &op, const double step, const bool may_change)
+    : op(op)
+    , first(step)
+    , may_change(may_change)
+    , step(step)
+    , n_broken(op.n_broken_bonds())
+  {}
+
+
+  double StepLimit::estimate(const Vector &u, const double enough)
+  {
+    const unsigned long long before = op.n_applications();
+    op.linearize(u);
+    const double limit = 2. / std::sqrt(op.fastest_bound(enough));
+    spent += op.n_applications() - before + 1;
+    return limit;
+  }
+
+
+  double StepLimit::follow(const Vector &u, const double t, const unsigned long long n_steps)
+  {
+    // Stretches that differ by a tenth change the limit by a few percent; 0.8 of it leaves room for 25.
+    constexpr double much = 0.1, alarming = 0.5, near = 0.9, cost = 0.03, at_first = 15.;
+    const double     now     = op.largest_stretch(u);
+    const bool       grown   = now > stretch + std::max(much, 0.25 * stretch);
+    const bool       relaxed = step < first && now < 0.5 * stretch;
+    const bool       broken  = op.n_broken_bonds() > n_broken;
+    if (!grown && !relaxed && !broken)
+      return step;
+    if (spent > at_first + cost * n_steps && now < (1. + alarming) * (stretch + alarming))
+      return step;
+    const double allowed = (may_change ? near : 1.) * 2. / step; // omega_max of the step
+    const double limit   = estimate(u, relaxed ? 0. : allowed * allowed);
+    stretch              = now;
+    n_broken             = op.n_broken_bonds();
+    std::ostringstream message;
+    if (!may_change && !(step <= limit))
+      message
+        << "'Time step' in section 'Time' is " << step << ", but at t = " << t
+        << " 'verlet' is stable up to " << limit
+        << " only: the deformed body is stiffer than the body at rest. Choose a smaller step, 'Time step = auto', which follows the deformation, or "
+           "'Stepper = newmark'.";
+    AssertThrow(message.str().empty(), UserError(message.str()));
+    if (may_change && (step > near * limit || relaxed))
+      step = std::min(first, share * limit);
+    return step;
+  }
+} // namespace PeriDeal
