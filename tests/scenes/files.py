@@ -218,7 +218,7 @@ def files():
             check_fields(run, dim)
             check_summary(run, dim)
             kept = sorted(os.listdir(run.folder))
-            check(not [name for name in kept if name.endswith(".part") or name.startswith(".")], f"left over: {kept}")
+            check(not [name for name in kept if name.endswith(".part") or name.startswith(".") and name != ".perideal"], f"left over: {kept}")
             again = run_scene(os.path.join(run.folder, "scene.prm"), {})
             check(again.probes == run.probes, f"{dim}D, {place}: the written scene.prm gives other values")
     # several processes and a horizon shorter than a cell's diagonal: all values of ghost vertices have to be there
