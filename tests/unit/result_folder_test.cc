@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/output/tables.h>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace
+{
+  using namespace PeriDeal;
+  namespace fs = std::filesystem;
+
+  /** A folder that all processes use and that goes with the test. */
+  class ResultFolderTest : public ::testing::Test
+  {
+  protected:
+    void SetUp() override
+    {
+      std::string name;
+      if (is_first())
+        {
+          std::string pattern = (fs::temp_directory_path() / "perideal_XXXXXX").string();
+          name                = mkdtemp(pattern.data());
+        }
+      place = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, name, 0);
+    }
+
+    void TearDown() override
+    {
+      MPI_Barrier(MPI_COMM_WORLD);
+      if (is_first())
+        fs::remove_all(place);
+    }
+
+    static bool is_first()
+    {
+      return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+    }
+
+    std::string content(const std::string &name) const
+    {
+      std::ifstream in(place + "/" + name);
+      return {std::istreambuf_iterator<char>(in), {}};
+    }
+
+    bool there_is(const std::string &name) const
+    {
+      return fs::exists(place + "/" + name);
+    }
+
+    /** The message of a run that is refused, empty if it is not. */
+    std::string refusal(const std::vector<std::string> &names) const
+    {
+      try
+        {
+          ResultFolder folder(place, "scene.prm", names, MPI_COMM_WORLD);
+        }
+      catch (const UserError &error)
+        {
+          return error.message();
+        }
+      return "";
+    }
+
+    /** A run that ends well. */
+    void run(const std::vector<std::string> &names) const
+    {
+      ResultFolder folder(place, "scene.prm", names, MPI_COMM_WORLD);
+      for (const std::string &name : names)
+        folder.write(name, "of " + name);
+      folder.commit();
+      folder.check();
+    }
+
+    std::string place;
+  };
+
+
+  TEST_F(ResultFolderTest, a_run_replaces_what_the_one_before_wrote_and_no_more)
+  {
+    run({"a.csv", "b.csv"});
+    if (is_first())
+      std::ofstream(place + "/mine.txt") << "mine";
+    MPI_Barrier(MPI_COMM_WORLD);
+    run({"b.csv"});
+    if (!is_first())
+      return;
+    EXPECT_FALSE(there_is("a.csv"));
+    EXPECT_EQ(content("b.csv"), "of b.csv");
+    EXPECT_EQ(content("mine.txt"), "mine");
+    EXPECT_FALSE(there_is(".perideal/lock"));
+    EXPECT_FALSE(there_is(".perideal/previous"));
+  }
+
+
+  TEST_F(ResultFolderTest, without_results_everything_is_as_before)
+  {
+    run({"a.csv", "fields/a_0000.h5"});
+    {
+      ResultFolder folder(place, "scene.prm", {"a.csv", "b.csv"}, MPI_COMM_WORLD);
+      folder.write("a.csv", "new");
+      folder.write("b.csv", "new");
+      if (is_first())
+        {
+          EXPECT_EQ(content("a.csv"), "new");
+          EXPECT_FALSE(there_is("fields/a_0000.h5"));
+        }
+    }
+    if (!is_first())
+      return;
+    EXPECT_EQ(content("a.csv"), "of a.csv");
+    EXPECT_EQ(content("fields/a_0000.h5"), "of fields/a_0000.h5");
+    EXPECT_FALSE(there_is("b.csv"));
+  }
+
+
+  TEST_F(ResultFolderTest, a_killed_run_leaves_the_results_before_it)
+  {
+    run({"a.csv"});
+    if (is_first()) // what a run that was killed before it had results leaves
+      {
+        fs::create_directories(place + "/.perideal/previous");
+        fs::rename(place + "/a.csv", place + "/.perideal/previous/a.csv");
+        fs::rename(place + "/.perideal/files", place + "/.perideal/previous/files");
+        std::ofstream(place + "/.perideal/files") << "b.csv\n";
+        std::ofstream(place + "/b.csv") << "half";
+        std::ofstream(place + "/.perideal/lock") << "process 1 on nowhere\n";
+      }
+    MPI_Barrier(MPI_COMM_WORLD);
+    EXPECT_EQ(refusal({"b.csv"}), ""); // and ends without results
+    if (!is_first())
+      return;
+    EXPECT_EQ(content("a.csv"), "of a.csv");
+    EXPECT_FALSE(there_is("b.csv"));
+  }
+
+
+  TEST_F(ResultFolderTest, files_of_another_origin_are_refused_by_name)
+  {
+    if (is_first())
+      {
+        fs::create_directories(place + "/fields");
+        std::ofstream(place + "/totals.csv") << "mine";
+        std::ofstream(place + "/fields/peridynamics_0003.h5") << "mine";
+      }
+    MPI_Barrier(MPI_COMM_WORLD);
+    EXPECT_NE(refusal({"scene.prm", "totals.csv"}).find("'totals.csv'"), std::string::npos);
+    EXPECT_NE(refusal({"fields/peridynamics_*"}).find("peridynamics_0003.h5"), std::string::npos);
+    EXPECT_EQ(refusal({"probes.csv", "fields/coupled_*"}), "");
+    if (!is_first())
+      return;
+    EXPECT_EQ(content("totals.csv"), "mine");
+    EXPECT_FALSE(there_is(".perideal"));
+  }
+
+
+  TEST_F(ResultFolderTest, a_folder_has_one_run_at_a_time)
+  {
+    const ResultFolder folder(place, "scene.prm", {"a.csv"}, MPI_COMM_WORLD);
+    const std::string  message = refusal({"a.csv"});
+    EXPECT_NE(message.find("another run"), std::string::npos) << message;
+    EXPECT_NE(message.find("process "), std::string::npos) << message;
+    if (is_first())
+      {
+        EXPECT_TRUE(there_is(".perideal/lock"));
+        FolderLock other;
+        EXPECT_EQ(other.take(place + "/.perideal/lock"), FolderLock::Outcome::taken);
+      }
+  }
+
+
+  TEST_F(ResultFolderTest, what_cannot_be_written_is_everybodys_error)
+  {
+    ResultFolder folder(place, "scene.prm", {"a.csv"}, MPI_COMM_WORLD);
+    folder.write("a.csv", "well");
+    EXPECT_NO_THROW(folder.check());
+    folder.write("not/there/a.csv", "badly");
+    EXPECT_EQ(folder.failed(), is_first());
+    EXPECT_THROW(folder.check(), UserError);
+  }
+
+
+  TEST_F(ResultFolderTest, tables_grow_line_by_line)
+  {
+    ResultFolder folder(place, "scene.prm", {"probes.csv"}, MPI_COMM_WORLD);
+    PointTable   table(folder, "probes.csv", {{0.1, 0.2}, {0.3, 0.4}}, 2);
+    table.add(0.5, "coupled", {1. / 3., 2.});
+    if (is_first())
+      {
+        EXPECT_EQ(content("probes.csv"),
+                  "time,model,x,y,value\n0.5,coupled,0.1,0.2,0.333333333333333\n"
+                  "0.5,coupled,0.3,0.4,2\n");
+      }
+    EXPECT_NO_THROW(folder.check());
+  }
+} // namespace
