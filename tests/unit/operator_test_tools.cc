@@ -240,9 +240,9 @@ namespace PeriDeal
     template struct Problem<1>;
     template struct Problem<2>;
     template struct Problem<3>;
-    template std::map<std::array<long, 1>, double> gathered(const Problem<1> &, const Vector &);
-    template std::map<std::array<long, 2>, double> gathered(const Problem<2> &, const Vector &);
-    template std::map<std::array<long, 3>, double> gathered(const Problem<3> &, const Vector &);
+    template std::map<std::array<long, 1>, double> gathered<1>(const Problem<1> &, const Vector &);
+    template std::map<std::array<long, 2>, double> gathered<2>(const Problem<2> &, const Vector &);
+    template std::map<std::array<long, 3>, double> gathered<3>(const Problem<3> &, const Vector &);
     template double                                difference(const Problem<1> &,
                                                               const Vector &,
                                                               const Problem<1> &,
