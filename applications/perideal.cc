@@ -4,10 +4,12 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/process_end.h>
+#include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/field_writer.h>
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/elastic_simulation.h>
+#include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
 #include <perideal/study/study.h>
 #include <perideal/study/work_precision.h>
@@ -21,13 +23,40 @@ namespace
 {
   using namespace PeriDeal;
 
+  /** What `perideal check` says of a scene that is not built. */
   template <int dim>
-  void compute(const SceneText &text, const MPI_Comm communicator, const bool dry, const bool quiet)
+  void print_estimate(const Scene<dim> &scene, const MPI_Comm communicator, const bool quiet)
+  {
+    const Progress progress(communicator, quiet);
+    progress.line(scene.general.title);
+    for (const std::string &line :
+         describe_estimate(estimate_run(scene, communicator), communicator))
+      progress.line(line);
+    progress.line("The entries of the scene are valid. Nothing was computed.");
+  }
+
+
+  /** What is asked of a scene. */
+  enum class Action
+  {
+    run,
+    check,
+    estimate
+  };
+
+
+  template <int dim>
+  void compute(const SceneText &text,
+               const MPI_Comm   communicator,
+               const Action     action,
+               const bool       quiet)
   {
     Scene<dim> scene;
     parse_scene(text, scene);
+    if (action == Action::estimate || (action == Action::check && is_large(scene, communicator)))
+      return print_estimate(scene, communicator, quiet);
     const auto compute = [&](auto &&simulation) {
-      if (dry)
+      if (action == Action::check)
         simulation.dry_run();
       else
         simulation.run();
@@ -41,7 +70,7 @@ namespace
 
   void compute(const std::string              &file,
                const std::vector<std::string> &overrides,
-               const bool                      dry,
+               const Action                    action,
                const bool                      quiet)
   {
     const MPI_Comm  communicator = MPI_COMM_WORLD;
@@ -49,11 +78,11 @@ namespace
     switch (dimension_of(text))
       {
         case 1:
-          return compute<1>(text, communicator, dry, quiet);
+          return compute<1>(text, communicator, action, quiet);
         case 2:
-          return compute<2>(text, communicator, dry, quiet);
+          return compute<2>(text, communicator, action, quiet);
         default:
-          return compute<3>(text, communicator, dry, quiet);
+          return compute<3>(text, communicator, action, quiet);
       }
   }
 
@@ -63,7 +92,7 @@ namespace
   {
     std::string              scene, format = "prm";
     std::vector<std::string> overrides;
-    bool                     quiet = false;
+    bool                     quiet = false, estimate = false;
 
     std::vector<std::string> files,
       variations; // of a study: one study file, or scenes and what varies
@@ -230,6 +259,10 @@ namespace
           ->allow_extra_args(false);
         command->add_flag("-q,--quiet", request.quiet, "print nothing but errors");
       }
+    check->add_flag(
+      "--estimate",
+      request.estimate,
+      "build two coarse lattices in place of the scene and estimate from them; scenes of more than some 500,000 unknowns are always estimated");
     describe_study(app, request);
     CLI::App *parameters = app.add_subcommand(
       "parameters",
@@ -308,7 +341,12 @@ namespace
     else if (app.got_subcommand("study"))
       compute_study(request);
     else
-      compute(request.scene, request.overrides, app.got_subcommand("check"), request.quiet);
+      compute(request.scene,
+              request.overrides,
+              request.estimate            ? Action::estimate :
+              app.got_subcommand("check") ? Action::check :
+                                            Action::run,
+              request.quiet);
   }
 
 

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/picture.h>
+#include <perideal/base/text_file.h>
 #include <perideal/base/user_error.h>
 
 #include <png.h>
@@ -10,8 +11,6 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 
 namespace PeriDeal
 {
@@ -35,6 +34,15 @@ namespace PeriDeal
                "is too large: " + std::to_string(n_columns) + " x " + std::to_string(n_rows) +
                  " pixels, more than the " + std::to_string(most_pixels) +
                  " that are read. Make it smaller.");
+    }
+
+
+    /** A head may claim any size; the pixels are asked of the file before there is memory for them. */
+    void require_enough(const std::string &name, const std::size_t available, const double needed)
+    {
+      if (static_cast<double>(available) < needed)
+        refuse(name,
+               "is cut short: the file is too small for as many pixels as it claims to have.");
     }
 
 
@@ -91,21 +99,55 @@ namespace PeriDeal
       return true;
     }
 
-    bool read_rows(PNGReader &reader, png_bytep pixels)
+    /** @param indices the numbers of colours in the palette, a byte each, else pixels */
+    bool read_rows(PNGReader &reader, const bool indices, png_bytep to)
     {
       if (setjmp(png_jmpbuf(reader.png)))
         return false;
-      png_set_expand(reader.png);   // palettes, less than 8 bits, transparency
-      png_set_scale_16(reader.png); // rounds
-      png_set_gray_to_rgb(reader.png);
-      png_set_add_alpha(reader.png, 255, PNG_FILLER_AFTER);
+      const std::size_t width = (indices ? 1 : 4) * std::size_t(reader.n_columns);
+      if (indices)
+        png_set_packing(reader.png); // less than 8 bits
+      else
+        {
+          png_set_expand(reader.png);   // less than 8 bits, transparency
+          png_set_scale_16(reader.png); // rounds
+          png_set_gray_to_rgb(reader.png);
+          png_set_add_alpha(reader.png, 255, PNG_FILLER_AFTER);
+        }
       const int n_passes = png_set_interlace_handling(reader.png);
       png_read_update_info(reader.png, reader.info);
       for (int pass = 0; pass < n_passes; ++pass)
         for (png_uint_32 row = 0; row < reader.n_rows; ++row)
-          png_read_row(reader.png, pixels + std::size_t(4) * reader.n_columns * row, nullptr);
+          png_read_row(reader.png, to + width * row, nullptr);
       png_read_end(reader.png, nullptr);
       return true;
+    }
+
+
+    /** libpng would take black for colours that the palette does not have. */
+    void expand_palette(PNGReader                        &reader,
+                        const std::vector<unsigned char> &indices,
+                        const std::string                &name,
+                        std::vector<Pixel>               &pixels)
+    {
+      png_colorp palette  = nullptr;
+      png_bytep  opacity  = nullptr;
+      int        n_colors = 0, n_opacities = 0;
+      png_get_PLTE(reader.png, reader.info, &palette, &n_colors);
+      png_get_tRNS(reader.png, reader.info, &opacity, &n_opacities, nullptr);
+      for (std::size_t k = 0; k < indices.size(); ++k)
+        {
+          const int index = indices[k];
+          if (index >= n_colors)
+            refuse(name,
+                   "is a broken PNG picture: it uses colour " + std::to_string(index + 1) +
+                     " of a palette of " + std::to_string(n_colors) + ".");
+          const png_color &color = palette[index];
+          pixels[k]              = {color.red,
+                                    color.green,
+                                    color.blue,
+                       index < n_opacities ? opacity[index] : std::uint8_t(255)};
+        }
     }
 
 
@@ -133,11 +175,24 @@ namespace PeriDeal
       };
       require(read_head(reader, source));
       require_size(name, reader.n_columns, reader.n_rows);
+      // Deflate makes 1032 bytes of one at most. Interlaced rows have the same bits in more rows.
+      constexpr double most_packed = 1032.;
+      const double     n_bits      = static_cast<double>(reader.n_columns) * reader.n_rows *
+                            png_get_bit_depth(reader.png, reader.info) *
+                            png_get_channels(reader.png, reader.info);
+      require_enough(name, bytes.size(), n_bits / 8. / most_packed);
       Picture picture;
       picture.n_columns = reader.n_columns;
       picture.n_rows    = reader.n_rows;
       picture.pixels.resize(static_cast<std::size_t>(reader.n_columns) * reader.n_rows);
-      require(read_rows(reader, picture.pixels.front().data()));
+      if (png_get_color_type(reader.png, reader.info) == PNG_COLOR_TYPE_PALETTE)
+        {
+          std::vector<unsigned char> indices(picture.pixels.size());
+          require(read_rows(reader, true, indices.data()));
+          expand_palette(reader, indices, name, picture.pixels);
+        }
+      else
+        require(read_rows(reader, false, picture.pixels.front().data()));
       return picture;
     }
 
@@ -216,7 +271,9 @@ namespace PeriDeal
       const std::size_t n        = static_cast<std::size_t>(n_columns) * n_rows;
       const bool        two      = largest > 255;
       const unsigned    n_values = colored ? 3 : 1;
-      if (!is_text)
+      if (is_text) // a digit and a blank
+        require_enough(name, bytes.size(), 2. * n * n_values - 1.);
+      else
         source.begin_binary(n * n_values * (two ? 2 : 1));
       Picture picture;
       picture.n_columns = static_cast<unsigned int>(n_columns);
@@ -272,16 +329,14 @@ namespace PeriDeal
     if (rank == 0)
       try
         {
-          std::ifstream      file(file_name, std::ios::binary);
-          std::ostringstream bytes;
-          const bool         readable = file && file.peek() != std::ifstream::traits_type::eof();
-          if (readable)
-            bytes << file.rdbuf();
-          if (!file && !file.eof())
+          std::string       fault;
+          const std::string bytes = read_file(file_name, most_bytes_of_data, fault);
+          if (!fault.empty())
             refuse(
               file_name,
-              "cannot be read. Check its path, relative to the working directory or to the folder of the scene file.");
-          picture = decode_picture(bytes.str(), file_name);
+              fault +
+                ". Check its path, relative to the working directory or to the folder of the scene file.");
+          picture = decode_picture(bytes, file_name);
         }
       catch (const UserError &error)
         {

@@ -15,7 +15,12 @@ namespace PeriDeal
 {
   UserError::UserError(const std::string &message)
     : text(message)
-  {}
+  {
+    // A file that is none of ours may have one line of any length, which messages quote.
+    constexpr std::size_t most = 4000, end = 500;
+    if (text.size() > most)
+      text = text.substr(0, most - end) + " [...] " + text.substr(text.size() - end);
+  }
 
 
   const std::string &UserError::message() const
@@ -64,7 +69,9 @@ namespace PeriDeal
       return std::tolower(static_cast<unsigned char>(x)) ==
              std::tolower(static_cast<unsigned char>(y));
     };
-    const std::size_t         n = b.size();
+    const std::size_t n = b.size();
+    if (std::max(a.size(), n) > 200) // no name
+      return static_cast<unsigned int>(std::max(a.size(), n));
     std::vector<unsigned int> before(n + 1), last(n + 1), now(n + 1);
     for (std::size_t j = 0; j <= n; ++j)
       last[j] = static_cast<unsigned int>(j);

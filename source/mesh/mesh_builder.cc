@@ -6,15 +6,17 @@
 #include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <perideal/base/text_file.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/crack_faces.h>
 #include <perideal/mesh/grading.h>
 #include <perideal/mesh/mesh_builder.h>
+#include <perideal/mesh/msh_check.h>
 #include <perideal/scene/boundary_conditions.h>
 
 #include <cmath>
-#include <fstream>
 #include <map>
+#include <sstream>
 
 namespace PeriDeal
 {
@@ -141,15 +143,38 @@ namespace PeriDeal
     using BoundaryIds = std::map<std::pair<unsigned int, unsigned int>, types::boundary_id>;
 
 
+    /** The text of a mesh file, once it is known that deal.II can read it. Collective. */
     template <int dim>
-    CoarseMesh<dim> read_mesh_file(const std::string &file_name, BoundaryIds &ids)
+    std::string checked_mesh_file(const std::string &file_name, const MPI_Comm communicator)
     {
-      std::ifstream file(file_name);
-      AssertThrow(file,
-                  UserError("'Mesh file' in section 'Domain': cannot read '" + file_name + "'."));
-      const std::string hint =
-        " PeriDeal reads Gmsh files (.msh, versions 2 and 4) of quadrilaterals in 2D and hexahedra in 3D only "
-        "(in Gmsh: recombine all surfaces, or use transfinite or extruded volumes).";
+      std::string text, message;
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        try
+          {
+            std::string fault;
+            text = read_file(file_name, most_bytes_of_data, fault);
+            AssertThrow(fault.empty(),
+                        UserError("'Mesh file' in section 'Domain': '" + file_name + "' " + fault +
+                                  ". Check its path, relative to the working directory or to the "
+                                  "folder of the scene file."));
+            check_msh(parse_msh(text, file_name, dim), file_name, dim);
+          }
+        catch (const UserError &error)
+          {
+            message = error.message();
+          }
+      throw_on_all_if_any(communicator, message);
+      share_text(text, communicator);
+      return text;
+    }
+
+
+    template <int dim>
+    CoarseMesh<dim> read_mesh_file(const std::string &file_name,
+                                   const MPI_Comm     communicator,
+                                   BoundaryIds       &ids)
+    {
+      std::istringstream file(checked_mesh_file<dim>(file_name, communicator));
       Triangulation<dim> mesh;
       try
         {
@@ -161,11 +186,10 @@ namespace PeriDeal
           AssertThrow(false,
                       UserError("'Mesh file' in section 'Domain': '" + file_name +
                                 "' is not a mesh of dimension " + std::to_string(dim) +
-                                " that can be used, or it is broken." + hint));
+                                " that deal.II can use, or it is broken."));
         }
       AssertThrow(mesh.n_active_cells() > 0 && mesh.all_reference_cells_are_hyper_cube(),
-                  UserError("'Mesh file' in section 'Domain': '" + file_name +
-                            "' has no quadrilaterals or hexahedra, or other cells too." + hint));
+                  ExcInternalError());
       CoarseMesh<dim> coarse;
       SubCellData     faces;
       std::tie(coarse.vertices, coarse.cells, faces) = GridTools::get_coarse_mesh_description(mesh);
@@ -256,7 +280,7 @@ namespace PeriDeal
     BoundaryIds     ids;
     unsigned int    n_refinements = 0;
     if (domain.shape == Shape::mesh_file)
-      coarse = read_mesh_file<dim>(domain.mesh_file, ids);
+      coarse = read_mesh_file<dim>(domain.mesh_file, communicator, ids);
     else if (domain.shape == Shape::plate_with_hole)
       {
         coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {

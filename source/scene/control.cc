@@ -13,7 +13,7 @@ namespace PeriDeal
   {
     constexpr double       time_slack   = 1e-12;
     constexpr unsigned int max_n_writes = 100000;
-    constexpr unsigned int max_n_points = 10000000;
+    constexpr unsigned int max_n_points = 1000000;
   } // namespace
 
 

@@ -3,6 +3,9 @@
 
 // `Shape = image`: the entries of section `Domain` for it, and the body that they describe.
 
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/memory.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/domain.h>
 #include <perideal/scene/lists.h>
@@ -10,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <vector>
 
 namespace PeriDeal
@@ -141,6 +145,18 @@ namespace PeriDeal
       error("Pixels per cell",
             "found " + text("Pixels per cell") + ", more than the image has: " +
               std::to_string(picture.n_columns) + " x " + std::to_string(picture.n_rows) + ".");
+    constexpr double   bytes_of_cell = 16.; // of what every process knows of the image
+    const unsigned int n_parts       = whole_number("Cells per pixel");
+    const double       n_cells =
+      std::pow(n_parts, 2.) * (picture.n_columns / block) * (picture.n_rows / block);
+    const double room =
+      available_memory(communicator) / Utilities::MPI::n_mpi_processes(communicator);
+    if (n_cells * bytes_of_cell > room || n_cells > std::numeric_limits<unsigned int>::max())
+      error(n_parts > 1 ? "Cells per pixel" : "Pixels per cell",
+            "found " + text(n_parts > 1 ? "Cells per pixel" : "Pixels per cell") +
+              ", which makes " + number_text(n_cells) + " cells of the " +
+              std::to_string(picture.n_columns) + " x " + std::to_string(picture.n_rows) +
+              " pixels, more than memory can hold.");
     const ImageColors colors(text("Image colors"), tolerance, where("Image colors"));
     image = std::make_shared<PhaseMap>(make_phase_map(picture,
                                                       colors,

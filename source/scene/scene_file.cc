@@ -3,13 +3,13 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <perideal/base/text_file.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/scene.h>
 #include <perideal/scene/scene_lines.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -180,15 +180,10 @@ namespace PeriDeal
       std::string text, message;
       if (rank == 0)
         {
-          std::ifstream      in(file_name);
-          std::ostringstream all;
-          if (in && in.peek() != std::ifstream::traits_type::eof())
-            all << in.rdbuf();
-          text = all.str();
-          if (!in)
-            message =
-              "The scene file '" + file_name +
-              "' cannot be read. Check its path, which is relative to the working directory.";
+          text = read_file(file_name, most_bytes_of_text, message);
+          if (!message.empty())
+            message = "The scene file '" + file_name + "' " + message +
+                      ". Check its path, which is relative to the working directory.";
           else if (trimmed(text).empty())
             message = "The scene file '" + file_name + "' is empty.";
           else if (text.find('\0') != std::string::npos)
@@ -196,10 +191,7 @@ namespace PeriDeal
         }
       throw_on_all_if_any(communicator, message);
 
-      unsigned long long size = text.size();
-      MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, communicator);
-      text.resize(size);
-      MPI_Bcast(&text[0], static_cast<int>(size), MPI_CHAR, 0, communicator);
+      share_text(text, communicator);
       // the mark that some editors put at the beginning of a UTF-8 file
       if (text.compare(0, 3, "\xEF\xBB\xBF") == 0)
         text.erase(0, 3);

@@ -15,6 +15,10 @@ namespace PeriDeal
     const std::string command_line_mark = "# from the command line";
 
 
+    // deeper than any scene is, and than what ParameterHandler and the paths in messages stand
+    constexpr std::size_t deepest_section = 16;
+
+
     [[noreturn]] void line_error(const std::string &file_name,
                                  const unsigned int line,
                                  const std::string &what)
@@ -99,6 +103,11 @@ namespace PeriDeal
       {
         if (name.empty())
           line_error(file_name, line, "'subsection' needs a name.");
+        if (open.size() == deepest_section)
+          line_error(file_name,
+                     line,
+                     "found a subsection within " + std::to_string(deepest_section) +
+                       " others, more than any scene has. Is an 'end' missing?");
         open.emplace_back(name, line);
         result.sections.emplace_back(section_path(open), line);
       }

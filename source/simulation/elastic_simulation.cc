@@ -10,6 +10,7 @@
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/elastic_simulation.h>
+#include <perideal/simulation/estimate.h>
 #include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
@@ -238,6 +239,7 @@ namespace PeriDeal
   void ElasticSimulation<dim>::run()
   {
     refuse_what_is_not_computed(scene);
+    require_memory(scene, communicator);
     files = std::make_unique<RunFiles>(scene, text, communicator);
     with_orderly_end(*files, progress, [&] { compute(); });
     files.reset();

@@ -9,6 +9,7 @@
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/operators/bond_operator.h>
 #include <perideal/scene/lists.h>
+#include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
 #include <perideal/solvers/linear_solver.h>
 
@@ -253,6 +254,7 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::run()
   {
+    require_memory(scene, communicator);
     files = std::make_unique<RunFiles>(scene, text, communicator);
     with_orderly_end(*files, progress, [&] { compute(); });
     files.reset();

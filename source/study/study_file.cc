@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/text_file.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/scene.h>
@@ -10,9 +11,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "study_json.h"
 
@@ -81,18 +80,13 @@ namespace PeriDeal
     /** The file, on rank 0, and what is wrong with it. */
     std::string read_text(const std::string &file_name, std::string &message)
     {
-      std::error_code    no_directory;
-      std::ifstream      in(file_name);
-      std::ostringstream all;
-      if (in && !fs::is_directory(file_name, no_directory) &&
-          in.peek() != std::ifstream::traits_type::eof())
-        all << in.rdbuf();
-      if (!in || fs::is_directory(file_name, no_directory))
-        message = "The study file '" + file_name +
-                  "' cannot be read. Check its path, which is relative to the working directory.";
-      else if (trimmed(all.str()).empty())
+      const std::string text = read_file(file_name, most_bytes_of_text, message);
+      if (!message.empty())
+        message = "The study file '" + file_name + "' " + message +
+                  ". Check its path, which is relative to the working directory.";
+      else if (trimmed(text).empty())
         message = "The study file '" + file_name + "' is empty.";
-      return all.str();
+      return text;
     }
 
 

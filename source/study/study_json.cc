@@ -166,9 +166,13 @@ namespace PeriDeal
 
   Json parse_study_text(const std::string &text, const std::string &file_name)
   {
+    constexpr int deepest = 32; // what is made of the text calls itself for each level
     std::vector<std::set<std::string>> open;
     std::string                        message;
-    const auto refuse_twice = [&](int, const Json::parse_event_t event, Json &parsed) {
+    const auto refuse_twice = [&](const int depth, const Json::parse_event_t event, Json &parsed) {
+      AssertThrow(depth <= deepest,
+                  UserError(file_name + ": found brackets within " + std::to_string(deepest) +
+                            " others, more than any study has."));
       if (event == Json::parse_event_t::object_start)
         open.emplace_back();
       else if (event == Json::parse_event_t::object_end)

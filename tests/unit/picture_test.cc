@@ -178,6 +178,12 @@ TEST(Picture, mistakes)
   std::string broken = png;
   broken[png.size() - 25] ^= 0x55;
   expect_fault(broken, {"broken PNG"});
+  std::string checksum = png;
+  checksum.back() ^= 1;
+  expect_fault(checksum, {"broken PNG"});
+  const std::vector<png_color> palette{{255, 0, 0}, {0, 255, 0}, {10, 20, 30}};
+  expect_fault(png_file(PNG_COLOR_TYPE_PALETTE, 2, 3, {{0x1C}}, palette),
+               {"broken PNG", "colour 4", "palette of 3"});
   expect_fault("P2 3 1 255 1 2", {"cut short"});
   expect_fault("P5 3 1 255\n12", {"cut short"});
   expect_fault("P2 3 1 255 1 x 2", {"broken", "whole number"});
@@ -188,6 +194,41 @@ TEST(Picture, mistakes)
   std::string huge = png; // the width in the head, and its checksum
   huge[16]         = 0x40;
   expect_fault(huge, {"'wire.png'"});
+}
+
+
+/** The head of a file can claim any size, with a right checksum; memory is taken only for what the file can hold. */
+TEST(Picture, sizes_that_are_claimed)
+{
+  const std::string small = png_file(PNG_COLOR_TYPE_RGB, 8, 2, {{1, 2, 3, 255, 128, 0}});
+  const auto        claim = [&](const unsigned int width, const unsigned int height) {
+    std::string head = small.substr(12, 17); // IHDR and its data
+    for (unsigned int k = 0; k < 4; ++k)
+      {
+        head[4 + k] = static_cast<char>(width >> (24 - 8 * k));
+        head[8 + k] = static_cast<char>(height >> (24 - 8 * k));
+      }
+    unsigned int sum = ~0u;
+    for (const char c : head)
+      {
+        sum ^= static_cast<unsigned char>(c);
+        for (unsigned int k = 0; k < 8; ++k)
+          sum = (sum >> 1) ^ ((sum & 1) != 0 ? 0xEDB88320u : 0u);
+      }
+    std::string check(4, '\0');
+    for (unsigned int k = 0; k < 4; ++k)
+      check[k] = static_cast<char>(~sum >> (24 - 8 * k));
+    return small.substr(0, 12) + head + check + small.substr(33);
+  };
+  EXPECT_EQ(decode_picture(claim(2, 1), "test").pixels.size(), 2u);
+  expect_fault(claim(10000, 10000), {"cut short", "too small for as many pixels"});
+  expect_fault(claim(100000, 100000), {"too large"});
+  expect_fault(claim(2, 3), {"cut short"});
+  expect_fault(claim(0, 1), {"broken PNG"});
+  expect_fault(claim(1, 0), {"broken PNG"});
+  expect_fault(claim(0x80000000u, 1), {"broken PNG"});
+  expect_fault("P2 10000 10000 255 1 2 3", {"cut short", "too small for as many pixels"});
+  expect_fault("P6 10000 10000 255 123", {"cut short"});
 }
 
 

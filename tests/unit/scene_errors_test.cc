@@ -373,7 +373,7 @@ namespace PeriDeal
     expect_fault(fault(s, "Grid = 4"), s, "Grid", {"'4'", "2 numbers of cells"});
     expect_fault(fault(s, "Grid = 4, 4 ; 0, 4"), s, "Grid", {"found 0"});
     expect_fault(fault(s, "Grid = 4, x"), s, "Grid", {"'x'"});
-    expect_fault(fault(s, "Grid = 5000, 5000"), s, "Grid", {"more than 10000000 points"});
+    expect_fault(fault(s, "Grid = 5000, 5000"), s, "Grid", {"more than 1000000 points"});
     expect_fault(fault("subsection Domain\nset Shape = plate with hole\nend\n"
                        "subsection Output\nset Grid = 4, 4\nend\n"),
                  s,

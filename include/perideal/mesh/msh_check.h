@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** An element of a Gmsh file, and where it stands. */
+  struct MshElement
+  {
+    int          number = 0;
+    unsigned int line   = 0; // of the file, from 1
+    unsigned int n      = 0; // nodes: 2 of a line, 4 of a quadrilateral, 8 of a hexahedron
+    int          id     = 0; // physical, 0 without one
+    std::array<unsigned int, 8> nodes{}; // in Gmsh's order, as indices of MshMesh::points
+  };
+
+
+  /** What PeriDeal uses of a Gmsh file: cells of the dimension, and the elements of one less, which name sides of the body. */
+  struct MshMesh
+  {
+    std::vector<std::array<double, 3>> points;
+    std::vector<int>                   numbers; // of the points in the file
+    std::vector<MshElement>            cells, sides;
+  };
+
+
+  /**
+   * Read a Gmsh file as text, of the versions 2 to 2.2, 4.0 and 4.1, as deal.II's GridIn::read_msh() does, which follows wrong counts and missing ends of sections
+   * blindly. Checked: header, order and ends of sections, counts, whole and finite numbers, numbers of nodes and elements given once, entities and nodes that are
+   * named exist, types of elements that a mesh of that dimension can have.
+   *
+   * @param name of the file, for messages. Throws UserError: one sentence with the line, what was found and what is expected. Not collective.
+   */
+  MshMesh parse_msh(const std::string &text, const std::string &name, const unsigned int dim);
+
+  /**
+   * Whether the cells are a mesh. Each has a positive length, area or volume at each of its nodes (or a negative one at each: then deal.II turns it around), none is there
+   * twice, each face belongs to at most two, which lie on opposite sides of it; each side is a face of one cell and has one id. What has passed this can be ordered by
+   * GridTools::consistently_order_cells(), which loops on folded cells.
+   *
+   * Throws UserError as parse_msh() does. Not collective.
+   */
+  void check_msh(const MshMesh &mesh, const std::string &name, const unsigned int dim);
+} // namespace PeriDeal

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/memory.h>
+#include <perideal/base/progress.h>
+#include <perideal/base/user_error.h>
+#include <perideal/simulation/estimate.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene_sample.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Measured on scenes of all kinds: bytes that a node takes at least in the mesh and in the vectors of a model, and when fields are written.
+    constexpr double bytes_of_node = 400., bytes_of_written_corner = 200.;
+
+    /** Nodes above which a scene is not built in order to be described. */
+    constexpr double many_nodes = 500000.;
+
+
+    /** Members of a full family: the volume of the horizon over that of a cell. */
+    template <int dim>
+    double family_size(const Scene<dim> &scene)
+    {
+      double size = dim == 1 ? 2. : dim == 2 ? 3.1416 : 4.1888;
+      for (unsigned int d = 0; d < dim; ++d)
+        size *= scene.horizon() / scene.domain.spacing()[d];
+      return size;
+    }
+
+
+    template <int dim>
+    bool has_bonds(const Scene<dim> &scene)
+    {
+      return std::any_of(scene.general.models.begin(),
+                         scene.general.models.end(),
+                         [](const Model model) { return model != Model::finite_elements; });
+    }
+
+
+    /** Cells of the body. */
+    template <int dim>
+    double number_of_cells(const Scene<dim> &scene)
+    {
+      const Domain<dim> &domain = scene.domain;
+      if (domain.image)
+        return static_cast<double>(domain.image->phases.size()) -
+               static_cast<double>(domain.image->counts().back());
+      return number_of<dim>(domain.cells, 0);
+    }
+
+
+    /** What no run of the scene can do without. */
+    template <int dim>
+    RunEstimate least(const Scene<dim> &scene)
+    {
+      RunEstimate result;
+      result.cells          = number_of_cells(scene);
+      const double per_node = scene.general.physics == Physics::elasticity ? dim : 1;
+      const double family   = has_bonds(scene) ? family_size(scene) : 0.;
+      result.memory         = 32. * family;
+      for (const Model model : scene.general.models)
+        {
+          ModelEstimate estimate;
+          estimate.name     = to_string(model);
+          estimate.unknowns = per_node * result.cells;
+          if (model == Model::peridynamics)
+            estimate.bonds = 0.5 * result.cells * std::min(family, result.cells);
+          result.memory += bytes_of_node * result.cells * std::sqrt(per_node);
+          result.models.push_back(estimate);
+        }
+      return result;
+    }
+
+
+    /** a n + b n^((d-1)/d) through two values, neither of which is taken to be negative. */
+    class Growth
+    {
+    public:
+      Growth(const unsigned int dim, const double n1, const double n2, const double n)
+        : dim(dim)
+        , n1(n1)
+        , n2(n2)
+        , n(n)
+      {}
+
+      double operator()(const double v1, const double v2) const
+      {
+        const double r1 = rim(n1), r2 = rim(n2), a = (v1 * r2 - v2 * r1) / (n1 * r2 - n2 * r1),
+                     b = (v2 - a * n2) / r2;
+        if (a < 0.)
+          return v2 * rim(n) / r2;
+        return b < 0. && a * n + b * rim(n) < v2 ? v2 * n / n2 : a * n + b * rim(n);
+      }
+
+      /** As a power of the number of nodes. */
+      double power(const double v1, const double v2) const
+      {
+        return v1 > 0. && v2 > 0. ? v2 * std::pow(n / n2, std::log(v2 / v1) / std::log(n2 / n1)) :
+                                    0.;
+      }
+
+    private:
+      double rim(const double n) const
+      {
+        return std::pow(n, (dim - 1.) / dim);
+      }
+
+      const unsigned int dim;
+      const double       n1, n2, n;
+    };
+
+
+    /** Why there is no coarse lattice to learn from; empty if there is. */
+    template <int dim>
+    std::string obstacle(const Scene<dim> &scene, const double sample_nodes)
+    {
+      if (scene.domain.shape != Shape::box && scene.domain.shape != Shape::plate_with_hole)
+        return "the body is no box";
+      if (scene.domain.coarsening > 0 || scene.domain.has_extra_layers())
+        return "the lattice is graded or has extra layers";
+      if (has_bonds(scene))
+        {
+          if (sample_nodes * family_size(scene) > 2e7 * dim)
+            return "the horizon is too many cells long";
+          const auto coarse = coarse_cells<dim>(scene.domain.cells, sample_nodes / 4.);
+          double     m      = 1e300;
+          for (unsigned int d = 0; d < dim; ++d)
+            m = std::min(m, scene.horizon() / scene.domain.spacing()[d]);
+          if (*std::max_element(coarse.begin(), coarse.end()) < 2. * m)
+            return "the horizon is too many cells long";
+        }
+      return "";
+    }
+  } // namespace
+
+
+  template <int dim>
+  RunEstimate estimate_run(const Scene<dim> &scene, const MPI_Comm communicator)
+  {
+    RunEstimate      result       = least(scene);
+    constexpr double sample_nodes = dim == 1 ? 10000. : dim == 2 ? 24000. : 12000.;
+    const double     nodes        = number_of<dim>(scene.domain.cells, 1);
+    result.reason                 = nodes < 2. * sample_nodes ? "the lattice is small" :
+                                                                obstacle(scene, sample_nodes);
+    if (!result.reason.empty())
+      return result;
+    std::vector<Sample> samples;
+    try
+      {
+        for (const double n : {sample_nodes / 4., sample_nodes})
+          {
+            const auto coarse = coarse_scene<dim>(scene, coarse_cells<dim>(scene.domain.cells, n));
+            if (samples.empty())
+              take_sample(*coarse, communicator); // what is loaded and kept once counts for neither
+            samples.push_back(take_sample(*coarse, communicator));
+          }
+      }
+    catch (const UserError &fault)
+      {
+        result.reason = "a coarse lattice cannot be used: " + fault.message();
+        return result;
+      }
+    const Sample &one = samples[0], &two = samples[1];
+    const Growth  growth(dim, one.nodes, two.nodes, nodes);
+    result.sampled       = true;
+    result.cells         = growth(one.cells, two.cells);
+    result.time_to_build = growth(one.time_to_build, two.time_to_build);
+    if (scene.domain.shape == Shape::box)
+      result.cells = number_of<dim>(scene.domain.cells, 0);
+    // files of both formats are written one after the other
+    const double written = scene.output.hdf5 ? 2. : scene.output.vtu ? 1. : 0.;
+    result.memory        = std::max(result.memory,
+                             growth(one.memory, two.memory) +
+                               written * bytes_of_written_corner * (1u << dim) * result.cells);
+    for (unsigned int k = 0; k < result.models.size(); ++k)
+      {
+        ModelEstimate       &model = result.models[k];
+        const ModelEstimate &a = one.models[k], &b = two.models[k];
+        model.unknowns            = growth(a.unknowns, b.unknowns);
+        model.bonds               = growth(a.bonds, b.bonds);
+        model.applications        = growth.power(a.applications, b.applications);
+        model.time_of_application = growth(a.time_of_application, b.time_of_application);
+        model.time_of_solution    = growth(a.time_of_solution, b.time_of_solution);
+      }
+    return result;
+  }
+
+
+  namespace
+  {
+    /** Two digits: more would be made up. */
+    std::string about(const double value)
+    {
+      const double unit =
+        std::pow(10., std::max(0., std::floor(std::log10(std::max(value, 1.))) - 1.));
+      return "about " +
+             readable_count(static_cast<unsigned long long>(unit * std::round(value / unit)));
+    }
+  } // namespace
+
+
+  std::vector<std::string> describe_estimate(const RunEstimate &estimate,
+                                             const MPI_Comm     communicator)
+  {
+    std::vector<std::string> lines;
+    lines.push_back("estimated, nothing was built" +
+                    std::string(estimate.sampled ?
+                                  " but the same body on two coarse lattices:" :
+                                  ", from numbers of nodes alone, so that more may be needed (" +
+                                    estimate.reason + "):"));
+    lines.push_back("mesh: " + about(estimate.cells) + " cells");
+    double time = estimate.time_to_build;
+    for (const ModelEstimate &model : estimate.models)
+      {
+        std::string line = model.name + ": " + about(model.unknowns) + " unknowns";
+        if (model.bonds > 0.)
+          line += ", " + about(model.bonds) + " bonds";
+        lines.push_back(line);
+        if (model.applications > 0.)
+          lines.push_back("  estimated: " + about(model.applications) + " operator applications, " +
+                          readable_duration(model.applications * model.time_of_application));
+        else if (model.time_of_application > 0.)
+          lines.push_back("  estimated: " + readable_duration(model.time_of_application) +
+                          " for each operator application");
+        time += model.applications * model.time_of_application + model.time_of_solution;
+      }
+    if (estimate.sampled)
+      lines.push_back("time: about " + readable_duration(estimate.time_to_build) + " to build, " +
+                      readable_duration(time) + " with all that is told above, without output");
+    const double available = available_memory(communicator),
+                 taken     = Utilities::MPI::sum(resident_memory(), communicator);
+    lines.push_back(std::string("memory: ") + (estimate.sampled ? "about " : "at least ") +
+                    readable_bytes(taken + estimate.memory) + " at its peak, " +
+                    readable_bytes(taken) + " of it taken already; " + readable_bytes(available) +
+                    " are available" + (estimate.memory > available ? ": a run is refused." : "."));
+    return lines;
+  }
+
+
+  namespace
+  {
+    /** What no scene needs as much as: that of the costliest kinds of nodes and bonds. */
+    template <int dim>
+    double most(const Scene<dim> &scene, const double nodes, const double n_bonds)
+    {
+      constexpr double most_of_node = 20000., most_of_bond = 100.;
+      const double     factor = scene.general.physics == Physics::elasticity ? dim : 1.;
+      return factor * (most_of_node * nodes + most_of_bond * factor * n_bonds);
+    }
+
+
+    template <int dim>
+    double bonds_of_full_families(const Scene<dim> &scene)
+    {
+      const double nodes = number_of_cells(scene);
+      return has_bonds(scene) ? nodes * std::min(nodes, family_size(scene)) : 0.;
+    }
+  } // namespace
+
+
+  template <int dim>
+  bool is_large(const Scene<dim> &scene, const MPI_Comm communicator)
+  {
+    if (scene.domain.shape == Shape::mesh_file)
+      return false; // no larger than its file
+    const double nodes = number_of_cells(scene), n_bonds = bonds_of_full_families(scene);
+    const double factor = scene.general.physics == Physics::elasticity ? dim : 1.;
+    return nodes * factor > many_nodes || n_bonds * factor > 100. * many_nodes ||
+           most(scene, nodes, n_bonds) > 0.5 * available_memory(communicator);
+  }
+
+
+  template <int dim>
+  void require_memory(const Scene<dim> &scene, const MPI_Comm communicator)
+  {
+    if (scene.domain.shape == Shape::mesh_file)
+      return;
+    const double available = available_memory(communicator);
+    if (most(scene, number_of_cells(scene), bonds_of_full_families(scene)) < available)
+      return;
+    const double      least_of_all = least(scene).memory;
+    const RunEstimate estimate     = least_of_all > available ? least(scene) :
+                                                                estimate_run(scene, communicator);
+    if (estimate.memory <= available)
+      return;
+    const std::string entry = scene.domain.shape == Shape::image ? "Cells per pixel" : "Cells";
+    AssertThrow(
+      false,
+      UserError("The scene needs " + std::string(estimate.sampled ? "about " : "at least ") +
+                readable_bytes(estimate.memory) + " of memory for " + about(estimate.cells) +
+                " cells, but " + readable_bytes(available) + " are available. Choose fewer '" +
+                entry + "' in section 'Domain'" +
+                (has_bonds(scene) ? ", a smaller 'Horizon ratio' in section 'Peridynamics'" :
+                                    std::string()) +
+                " or fewer 'Models'; `perideal check` tells what a scene needs."));
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                        \
+  template RunEstimate estimate_run(const Scene<dim> &, const MPI_Comm); \
+  template bool        is_large(const Scene<dim> &, const MPI_Comm);     \
+  template void        require_memory(const Scene<dim> &, const MPI_Comm);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

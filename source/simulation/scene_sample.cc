@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "scene_sample.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/memory.h>
+#include <perideal/mesh/mesh_builder.h>
+#include <perideal/scene/lists.h>
+#include <perideal/simulation/elastic_run.h>
+#include <perideal/simulation/simulation.h>
+#include <perideal/solvers/linear_solver.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  double number_of(const std::array<unsigned int, dim> &cells, const unsigned int more)
+  {
+    double result = 1.;
+    for (const unsigned int k : cells)
+      result *= static_cast<double>(k) + more;
+    return result;
+  }
+
+
+  template <int dim>
+  std::array<unsigned int, dim> coarse_cells(const std::array<unsigned int, dim> &cells,
+                                             const double                         nodes)
+  {
+    const auto divide = [&](const unsigned int q) {
+      std::array<unsigned int, dim> n = cells;
+      for (unsigned int &k : n)
+        k = std::max(2u, (k + q / 2) / q);
+      return n;
+    };
+    const auto ideal =
+      static_cast<unsigned int>(std::ceil(std::pow(number_of<dim>(cells, 1) / nodes, 1. / dim)));
+    for (unsigned int q = std::max(2u, ideal); q < 2 * ideal; ++q)
+      if (std::all_of(cells.begin(), cells.end(), [q](const unsigned int k) { return k % q == 0; }))
+        return divide(q);
+    return divide(std::max(2u, ideal));
+  }
+
+
+  template <int dim>
+  std::shared_ptr<Scene<dim>> coarse_scene(const Scene<dim>                    &scene,
+                                           const std::array<unsigned int, dim> &cells)
+  {
+    const auto                        coarse = std::make_shared<Scene<dim>>();
+    const std::vector<SceneSection *> to     = coarse->sections(),
+                                      from   = const_cast<Scene<dim> &>(scene).sections();
+    for (unsigned int k = 0; k < from.size(); ++k)
+      for (const Entry &entry : from[k]->entries())
+        to[k]->set(entry.name, entry.text);
+    std::string text;
+    double      smallest = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        text += (d > 0 ? ", " : "") + std::to_string(cells[d]);
+        const double h = (scene.domain.upper[d] - scene.domain.lower[d]) / cells[d];
+        smallest       = d == 0 ? h : std::min(smallest, h);
+      }
+    coarse->domain.set("Node spacing", "");
+    coarse->domain.set("Cells", text);
+    if (scene.peridynamics.horizon > 0.)
+      {
+        const Tensor<1, dim> h   = scene.domain.spacing();
+        double               own = h[0];
+        for (unsigned int d = 1; d < dim; ++d)
+          own = std::min(own, h[d]);
+        coarse->peridynamics.set("Horizon", number_text(scene.horizon() / own * smallest));
+      }
+    for (const char *const entry : {"Probes", "Line", "Grid"})
+      coarse->output.set(entry, "");
+    coarse->domain.scene_folder = scene.domain.scene_folder;
+    coarse->domain.communicator = scene.domain.communicator;
+    coarse->parse_and_validate();
+    return coarse;
+  }
+
+
+  namespace
+  {
+    class Watch
+    {
+    public:
+      double seconds() const
+      {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      }
+
+    private:
+      const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    };
+
+
+    double time_of_application(const Operator &op)
+    {
+      Vector x, y;
+      op.initialize_vector(x);
+      op.initialize_vector(y);
+      op.apply(y, x);
+      constexpr unsigned int n_trials = 5;
+      const Watch            watch;
+      for (unsigned int k = 0; k < n_trials; ++k)
+        op.apply(y, x);
+      return watch.seconds() / n_trials;
+    }
+
+
+    template <int dim>
+    void take_heat(const Scene<dim>                          &scene,
+                   const std::shared_ptr<Triangulation<dim>> &mesh,
+                   const MPI_Comm                             communicator,
+                   Sample                                    &sample)
+    {
+      const SceneText text{"", "", communicator};
+      const Watch     building;
+      Simulation<dim> simulation(scene, text, communicator, true);
+      simulation.build_on(mesh);
+      sample.time_to_build += building.seconds();
+      const Watch solving;
+      if (scene.time.steady)
+        simulation.advance_to(0.);
+      for (unsigned int k = 0; k < sample.models.size(); ++k)
+        {
+          const ModelRun<dim> &run   = simulation.model(k);
+          ModelEstimate       &model = sample.models[k];
+          const OperatorSize   size  = run.op().size();
+          model.unknowns             = static_cast<double>(size.unknowns);
+          model.bonds                = static_cast<double>(size.bonds);
+          model.time_of_application  = time_of_application(run.op());
+          if (scene.time.steady)
+            model.time_of_solution = solving.seconds() / sample.models.size();
+          else if (run.stepper)
+            model.applications = run.stepper->expected_applications(scene.time.end_time);
+        }
+    }
+
+
+    template <int dim>
+    void take_elasticity(const Scene<dim>                          &scene,
+                         const std::shared_ptr<Triangulation<dim>> &mesh,
+                         Sample                                    &sample)
+    {
+      std::vector<std::unique_ptr<ElasticRun<dim>>> runs;
+      for (unsigned int k = 0; k < sample.models.size(); ++k)
+        {
+          const Watch building;
+          runs.push_back(make_elastic_run(scene.general.models[k], *mesh, scene));
+          ElasticOperator   &op    = runs.back()->op();
+          ModelEstimate     &model = sample.models[k];
+          const OperatorSize size  = op.size();
+          model.unknowns           = static_cast<double>(size.unknowns);
+          model.bonds              = static_cast<double>(size.bonds);
+          sample.time_to_build += building.seconds();
+          model.time_of_application = time_of_application(op);
+          if (!scene.elasticity.is_static() || scene.elasticity.solver != ElasticSolver::linear)
+            continue;
+          const Watch solving;
+          Vector      u, r, change;
+          for (Vector *const v : {&u, &r, &change})
+            op.initialize_vector(*v);
+          op.distribute(u, 0.);
+          op.residual(r, u, 0.);
+          LinearSolver solver(op,
+                              scene.solver.tolerance,
+                              scene.solver.max_iterations,
+                              scene.solver.direct_up_to);
+          solver.solve(0., 1., change, r);
+          model.time_of_solution = solving.seconds();
+        }
+    }
+  } // namespace
+
+
+  template <int dim>
+  Sample take_sample(const Scene<dim> &scene, const MPI_Comm communicator)
+  {
+    Sample sample;
+    sample.nodes        = number_of<dim>(scene.domain.cells, 1);
+    const bool   known  = forget_peak_memory();
+    const double before = resident_memory();
+    for (const Model model : scene.general.models)
+      sample.models.push_back({to_string(model)});
+    std::vector<std::string>                  notes;
+    const Watch                               building;
+    const std::shared_ptr<Triangulation<dim>> mesh = build_mesh(scene, communicator, notes);
+    sample.cells         = static_cast<double>(mesh->n_global_active_cells());
+    sample.time_to_build = building.seconds();
+    if (scene.general.physics == Physics::elasticity)
+      take_elasticity(scene, mesh, sample);
+    else
+      take_heat(scene, mesh, communicator, sample);
+    const double own = known ? peak_memory() - before : 0.;
+    sample.memory    = Utilities::MPI::sum(own, communicator);
+    for (ModelEstimate &model : sample.models) // to be the same on all processes
+      for (double *const time : {&model.time_of_application, &model.time_of_solution})
+        *time = Utilities::MPI::max(*time, communicator);
+    sample.time_to_build = Utilities::MPI::max(sample.time_to_build, communicator);
+    return sample;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template double number_of<dim>(const std::array<unsigned int, dim> &, const unsigned int);       \
+  template std::array<unsigned int, dim> coarse_cells<dim>(const std::array<unsigned int, dim> &,  \
+                                                           const double);                          \
+  template std::shared_ptr<Scene<dim>>   coarse_scene<dim>(const Scene<dim> &,                     \
+                                                         const std::array<unsigned int, dim> &); \
+  template Sample                        take_sample<dim>(const Scene<dim> &, const MPI_Comm);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
