@@ -3,7 +3,7 @@
 """Pictures damaged at random: PNG files of all kinds, PGM and PPM files, with changed bytes, chunks deleted, doubled and swapped, wrong
 checksums, heads that claim other sizes and kinds, packed data that are none, files cut short, bytes at random.
 
-Each has to be read, or refused with exit status 1 and one message that names the file, within 20 seconds and 3 GB of addresses.
+Each has to be read, or refused with exit status 1 and one message that names the file or tells of its colours, within 20 seconds and 3 GB of addresses.
 """
 
 import struct
@@ -162,7 +162,7 @@ def main():
         case.write("damaged.png", damage(case.random))
         scene = case.write("scene.prm", SCENE)
         end = run(["check", scene], case, timeout=TIME, prepare=limit_memory)
-        judge(case, damage.__name__.replace("_", " "), end, "damaged.png")
+        judge(case, damage.__name__.replace("_", " "), end, "damaged.png'", "of the image")
     campaign.finish()
 
 
