@@ -3,7 +3,13 @@
 #
 # Shell functions that ./run and ./check share. They expect $root, the folder of PeriDeal.
 
-build=$root/build/release
+# The preset of CMakePresets.json that is built: release, or the one given here.
+use_preset()
+{
+    preset=$1
+    build=$root/build/$1
+}
+use_preset release
 
 # Install what is missing. Takes 0.1 s when nothing is.
 install_packages()
@@ -32,7 +38,7 @@ parallel_environment()
     export PMIX_MCA_gds=hash # else a full folder for temporary files (TMPDIR) ends in a bus error
 }
 
-# Configure the release build where that has not been done, or was done for a tree that stood elsewhere.
+# Configure the build where that has not been done, or was done for a tree that stood elsewhere.
 configure()
 {
     local log=$build/configure.log
@@ -43,7 +49,7 @@ configure()
     fi
     mkdir -p "$build"
     echo "Configuring ..."
-    if ! (cd "$root" && cmake $fresh --preset release) >"$log" 2>&1 </dev/null; then
+    if ! (cd "$root" && cmake $fresh --preset $preset) >"$log" 2>&1 </dev/null; then
         grep -A 12 -m 3 'CMake Error' "$log" || tail -n 30 "$log"
         echo "Configuring failed (log: $log)."
         exit 1

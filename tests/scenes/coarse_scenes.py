@@ -22,9 +22,13 @@ CELLS = {1: 40, 2: 400, 3: 500}  # at most
 
 # What a coarse lattice needs beside fewer cells.
 IMAGE = {"Domain/Pixels per cell": "8", "Peridynamics/Horizon ratio": "2", "Domain/Extra layers": "3"}
+CORNER = {"Domain/Upper corner": "0.6, 0.6, 0.6", "Domain/Cells": "9, 9, 9"}  # the horizon is a length
 OVERRIDES = {
     "coupling/adaptive_zone.prm": {"Domain/Cells": "24, 24"},  # halved three times
     "coupling/graded_mesh.prm": {"Domain/Cells": "24, 24"},
+    "fracture/cracked_block.prm": {"Domain/Cells": "16, 32, 2"},  # two layers, or bonds would lie in a plane
+    "papers/diyaroglu_2017/example_d.prm": CORNER,
+    "papers/diyaroglu_2017/example_d_paper.prm": CORNER,
     "papers/le_2014/example_1_paper.prm": {"Peridynamics/Horizon": "9"},  # the edges are larger
     "papers/le_2014/example_2_paper.prm": {"Peridynamics/Horizon": "9"},
 }
