@@ -69,35 +69,7 @@ namespace PeriDeal
   }
 
 
-  double MotionStepper::missing_kinetic(const Vector &u, const Vector &v, const double dt) const
-  {
-    const double factor = kept_with_accelerations() * dt * dt;
-    if (factor == 0.)
-      return 0.;
-    Vector image;
-    op.initialize_vector(image);
-    op.linearize(u);
-    op.multiply(image, v);
-    double sum = 0.;
-    for (unsigned int i = 0; i < held.size(); ++i)
-      if (!held[i])
-        sum += v.local_element(i) * image.local_element(i);
-    return factor * Utilities::MPI::sum(sum, v.get_mpi_communicator());
-  }
-
-
   MotionEnergy MotionStepper::energy(const Vector &u, const Vector &v) const
-  {
-    MotionEnergy result = energy_of_velocities(u, v);
-    if (!started)
-      return result;
-    result.start += missing_start;
-    result.kinetic += missing_kinetic(u, v, step_now);
-    return result;
-  }
-
-
-  MotionEnergy MotionStepper::energy_of_velocities(const Vector &u, const Vector &v) const
   {
     MotionEnergy result;
     result.kinetic  = kinetic_energy(v, false);
@@ -105,7 +77,8 @@ namespace PeriDeal
     result.released = op.released_energy();
     result.start    = started ? start : result.kinetic + result.strain;
     // What supports give to the nodes that they hold themselves.
-    result.work = started ? work + kinetic_energy(v, true) - support_start : 0.;
+    result.work      = started ? work + kinetic_energy(v, true) - support_start : 0.;
+    result.exchanged = std::max(exchanged, result.start + std::abs(result.work));
     if (started)
       result.drift = result.imbalance() - (kept_back(step_now) - jumps);
     return result;
@@ -125,7 +98,7 @@ namespace PeriDeal
   }
 
 
-  void MotionStepper::begin(const Vector &u, const Vector &v, const double t, const double dt)
+  void MotionStepper::begin(const Vector &u, const Vector &v, const double t)
   {
     // What is kept back at the end of the steps so far, or of none.
     const double before = started ? kept_back(step_now) : 0.;
@@ -138,7 +111,6 @@ namespace PeriDeal
     started       = true;
     start         = kinetic_energy(v, false) + op.energy(u);
     support_start = kinetic_energy(v, true);
-    missing_start = missing_kinetic(u, v, dt);
   }
 
 
@@ -162,14 +134,13 @@ namespace PeriDeal
 
   void MotionStepper::check_drift(const Vector &u, const Vector &v, const double t)
   {
-    const MotionEnergy found = energy_of_velocities(u, v);
-    exchanged                = std::max(exchanged, start + std::abs(found.work));
+    const MotionEnergy found = energy(u, v);
     std::ostringstream message;
-    if (!(std::abs(found.drift) <= allowed_drift * exchanged))
+    if (!(std::abs(found.drift) <= allowed_drift * found.exchanged))
       message << "The energy of the motion is not kept: before t = " << t << " stepper '" << name()
               << "' has " << (found.drift < 0. ? "lost " : "made ") << std::abs(found.drift)
               << " of it, more than " << 100. * allowed_drift
-              << " % of what start and loads have brought in, " << exchanged
+              << " % of what start and loads have brought in, " << found.exchanged
               << ". The body deforms too much within a step of " << step_now
               << ": choose a smaller 'Time step' in section 'Time', or a smaller load.";
     AssertThrow(message.str().empty(), UserError(message.str()));
@@ -204,9 +175,9 @@ namespace PeriDeal
 
   void MotionStepper::examine(const Vector &u, const Vector &v, const double t)
   {
-    check(v, t);
     if (!started)
       return;
+    check(v, t);
     check_inversion(u, t);
     check_drift(u, v, t);
   }
@@ -232,7 +203,7 @@ namespace PeriDeal
     double                 from = t;
     unsigned long long     n = n_equal_steps(t_end - t, longest), k = 0;
     if (fresh)
-      begin(u, v, t, (t_end - t) / n);
+      begin(u, v, t);
     for (double now = t; k < n;)
       {
         const double next = k + 1 == n ? t_end : from + (k + 1) * ((t_end - from) / n);
@@ -248,6 +219,7 @@ namespace PeriDeal
         const double gain = work_of_forces.step(change, unbalanced, next);
         work += gain;
         effort += std::abs(gain);
+        exchanged = std::max(exchanged, start + std::abs(work));
         break_bonds(u, next);
         now = next;
         // Of linear bodies there is nothing to be found: what their steps keep they keep to round-off.

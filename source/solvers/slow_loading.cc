@@ -127,6 +127,7 @@ namespace PeriDeal
     before = u;
     before -= last;
     so_far.work += work_of_forces.step(before, unbalanced, t);
+    so_far.exchanged = std::max(so_far.exchanged, so_far.start + std::abs(so_far.work));
     break_bonds(u, t);
     before.sadd(-1., 1., u);
     has_before = true;
@@ -140,6 +141,7 @@ namespace PeriDeal
   {
     LoadingEnergy result = so_far;
     result.strain        = op.energy(u);
+    result.exchanged     = std::max(result.exchanged, so_far.start + std::abs(so_far.work));
     return result;
   }
 } // namespace PeriDeal

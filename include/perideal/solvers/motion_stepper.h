@@ -18,9 +18,9 @@ namespace PeriDeal
   /**
    * Energies of a moving body (J; in 2D per unit thickness).
    *
-   * The velocities of `verlet` are chords over two steps, u(t + dt) - u(t - dt) = 2 dt v, and shorter than the arcs. With H that of these velocities its steps keep H - dt^2/8
-   * a.Ma for linear bodies exactly, a the accelerations, so that H goes up and down with these, and falls for good where loads set in or bonds break. What they keep but for
-   * higher orders, there too, is H + dt^2/8 v.Kv: so much is added to the kinetic energy.
+   * With H the sum of kinetic and strain energy steps of `verlet` keep H - dt^2/8 a.Ma of linear bodies exactly, a the accelerations, those of `newmark` H. So with `verlet` H goes up and
+   * down with the accelerations, by an amount of order dt^2, and changes for good where these jump because a load sets in or bonds break: the imbalance. The drift
+   * is what the steps have made beside that.
    */
   struct MotionEnergy
   {
@@ -29,7 +29,9 @@ namespace PeriDeal
     double work     = 0.; // of loads and supports since then
     double released = 0.; // by broken bonds since then
     double drift =
-      0.; // what the steps have made, or lost: the change of what they keep less the work; of linear bodies round-off at any step
+      0.; // change of what the steps keep, less the work: of linear bodies round-off at any step
+    double exchanged =
+      0.; // the most that start and work together have been so far: what the others are to be compared with
 
     /** What has come from nowhere: of order dt^2 with `verlet`, round-off of the linear solver with `newmark` and linear kinematics. */
     double imbalance() const
@@ -114,26 +116,23 @@ namespace PeriDeal
     StepperCost               spent;
 
   private:
-    void         begin(const Vector &u, const Vector &v, const double t, const double dt);
-    double       kinetic_energy(const Vector &v, const bool supports_only) const;
-    double       missing_kinetic(const Vector &u, const Vector &v, const double dt) const;
-    MotionEnergy energy_of_velocities(const Vector &u, const Vector &v) const;
-    void         check(const Vector &v, const double t) const;
-    void         check_drift(const Vector &u, const Vector &v, const double t);
-    void         check_inversion(const Vector &u, const double t) const;
-    bool         follow_body(const Vector &u, const double t);
-    void         break_bonds(const Vector &u, const double t);
-    double       kept_back(const double dt) const;
+    void   begin(const Vector &u, const Vector &v, const double t);
+    double kinetic_energy(const Vector &v, const bool supports_only) const;
+    void   check(const Vector &v, const double t) const;
+    void   check_drift(const Vector &u, const Vector &v, const double t);
+    void   check_inversion(const Vector &u, const double t) const;
+    bool   follow_body(const Vector &u, const double t);
+    void   break_bonds(const Vector &u, const double t);
+    double kept_back(const double dt) const;
 
     double                     longest, shortest;
     std::unique_ptr<StepLimit> limit; // null: none
     bool                       started = false, fresh = true;
     double                     start = 0., work = 0., effort = 0., support_start = 0.;
-    double                     missing_start = 0.; // of the kinetic energy
-    double                     step_now      = 0.; // the last one
-    double                     jumps         = 0.; // of what steps keep back
-    double                     exchanged     = 0.; // the most that start and work have been so far
-    Vector                     change;             // of a step
+    double                     step_now  = 0.; // the last one
+    double                     jumps     = 0.; // of what steps keep back
+    double                     exchanged = 0.; // the most that start and work have been so far
+    Vector                     change;         // of a step
     WorkOfForces               work_of_forces;
   };
 

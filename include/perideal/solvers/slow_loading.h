@@ -13,9 +13,10 @@ namespace PeriDeal
   /** Energies of a body that goes from one equilibrium to the next (J; in 2D per unit thickness). */
   struct LoadingEnergy
   {
-    double strain = 0.;
-    double start  = 0.; // strain energy of the first equilibrium, before any bond broke
-    double work   = 0.; // of loads and supports since then
+    double strain    = 0.;
+    double start     = 0.; // strain energy of the first equilibrium, before any bond broke
+    double work      = 0.; // of loads and supports since then
+    double exchanged = 0.; // the most that start and work together have been so far
     double dissipated =
       0.; // by broken bonds, and by the motion that a real body would make before it is at rest again
 

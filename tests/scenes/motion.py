@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Bodies in motion: the energy stays within 1 % of what start and loads bring in, or the run stops and says why.
+
+    motion.py kept | stopped | ranks | supplied | refused
+"""
+
+import math
+import sys
+
+from scene_test import Comparison, check, check_close, check_message, finish, run_scene
+
+PD = "peridynamics"
+BODY = """
+set Dimension = 2
+set Physics = elasticity
+set Models = peridynamics
+subsection Domain
+  set Cells = 24, 24
+end
+subsection Material
+  set Young modulus = 1
+  set Poisson ratio = 0.25
+  set Density = 1
+end
+subsection Elasticity
+  set Solver = dynamics
+  set Kinematics = full
+end
+subsection Output
+  set Write every = 1
+  set Fields = none
+end
+"""
+HELD = {"Boundary conditions/Displacement": "left: 0, 0"}
+
+
+def history(run, quantity, model=PD):
+    return [row["value"] for row in run.totals if row["model"] == model and row["quantity"] == quantity]
+
+
+def energy_kept(table, what, run, model=PD, drift=0.01, imbalance=0.01):
+    """Drift and imbalance at all times of output, over the most that start and work have been."""
+    start = run.model(model)["energy balance"]["start"]
+    given = start + max(abs(w) for w in history(run, "work of loads and supports", model))
+    check(given > 0, f"{what}: something happens")
+    table.add_limit(f"{what}: energy drift", max(abs(d) for d in history(run, "energy drift", model)) / given, drift)
+    table.add_limit(f"{what}: energy imbalance", max(abs(d) for d in history(run, "energy imbalance", model)) / given, imbalance)
+
+
+def kept():
+    """Motions that are followed to the end."""
+    table = Comparison("Energy over what start and loads have brought in")
+    pulled = run_scene(BODY, {**HELD, "Boundary conditions/Traction": "right: 0.1, 0", "Time/End time": "20"})
+    energy_kept(table, "pulled", pulled)
+    # A strip that bends through a right angle and swings back.
+    strip = {"Domain/Cells": "60, 6", "Domain/Upper corner": "1, 0.1", **HELD, "Time/End time": "60", "Output/Write every": "2",
+             "Output/Probes": "1, 0.05", "Boundary conditions/Traction": "right: 0, -2e-4"}
+    bent = run_scene(BODY, strip)
+    energy_kept(table, "bent", bent)
+    tip = min(row["uy"] for row in bent.probes)
+    check(tip < -0.5, f"the strip bends far: {tip}")
+    # Flight: nothing holds the body, which turns twice while it flies away.
+    turns = {"Domain/Cells": "12, 12", "Initial and source/Initial velocity": "0.2 - 0.6*(y - 0.5), 0.1 + 0.6*(x - 0.5)",
+             "Time/End time": "20", "Output/Probes": "0.5, 0.5; 1, 0.5"}
+    flight = run_scene(BODY, turns)
+    energy_kept(table, "flight", flight)
+    middle = [(row["ux"], row["uy"]) for row in flight.rows(PD, (0.5, 0.5), 20)]
+    check_close(middle[0], (4, 2), relative=1e-9, what="where the middle is")
+    # Breaking: a strip with an edge crack, large displacements.
+    breaking = {"Domain/Cells": "40, 20", "Domain/Lower corner": "0, -0.5", "Domain/Upper corner": "2, 0.5", "Cracks/Segments": "0,0; 0.7,0",
+                "Material/Fracture energy": "2e-3", "Boundary conditions/Traction": "top: 0, 0.04; bottom: 0, -0.04", "Time/End time": "12"}
+    broken = run_scene(BODY, breaking)
+    energy_kept(table, "breaking", broken)
+    lost = broken.model(PD)["energy balance"]
+    check(lost["broken bonds"] > 200, f"bonds break: {lost['broken bonds']}")
+    table.add_limit("breaking: energy imbalance over energy released", abs(lost["imbalance"]) / lost["released"], 0.05)
+    # Impact: a block flies onto its own support.
+    impact = run_scene(BODY, {**HELD, "Initial and source/Initial velocity": "-0.1, 0", "Time/End time": "10"})
+    energy_kept(table, "impact", impact)
+    table.show()
+
+
+def stopped():
+    """Motions and an equilibrium that mean nothing any more end with a message."""
+    for settings in ({"Boundary conditions/Traction": "right: -0.1, 0"},
+                     {"Boundary conditions/Traction": "right: -0.1, 0", "Time/Time step": "0.04"},
+                     {"Boundary conditions/Traction": "right: -0.3, 0; top: 0, -0.3; bottom: 0, 0.3"},
+                     {"Initial and source/Initial velocity": "-1, 0"}):
+        run = run_scene(BODY, {**HELD, "Time/End time": "20", **settings}, expect_error=True)
+        check_message(run, "Before t = ", "the body is inside out at", "worst at (", "make the load smaller")
+    still = {**HELD, "Boundary conditions/Traction": "right: -0.2, 0", "Elasticity/Solver": "conjugate gradients"}
+    run = run_scene(BODY.replace("  set Write every = 1\n", ""), still, expect_error=True)
+    check_message(run, "'conjugate gradients' has found", "the body is inside out at", "make the load smaller")
+    # Small displacements by definition: a note.
+    linear = {**HELD, "Boundary conditions/Traction": "right: -2, 0", "Elasticity/Kinematics": "linear", "Time/End time": "1.5"}
+    run = run_scene(BODY, linear)
+    check(any("inside out" in note and "'Kinematics = linear'" in note for note in run.summary["notes"]), f"a note: {run.summary['notes']}")
+
+
+def ranks():
+    """The same on 1, 2 and 4 processes."""
+    squeezed = {**HELD, "Domain/Cells": "16, 16", "Boundary conditions/Traction": "right: -0.1, 0", "Time/End time": "20"}
+    ends = [run_scene(BODY, squeezed, ranks=n, expect_error=True).stderr for n in (1, 2, 4)]
+    check("inside out" in ends[0] and ends[0] == ends[1] == ends[2], f"the same message: {ends}")
+    pulled = {**HELD, "Domain/Cells": "16, 8", "Boundary conditions/Displacement": "left: 0, 0; right: 2.5*(t/20)^2, 0", "Time/End time": "20",
+              "Output/Write every": "5"}
+    runs = [run_scene(BODY, pulled, ranks=n) for n in (1, 2, 4)]
+    check(any("followed the body's deformation" in note for note in runs[0].summary["notes"]), f"the step follows: {runs[0].summary['notes']}")
+    for run in runs[1:]:
+        check(run.model(PD)["steps"] == runs[0].model(PD)["steps"], "as many steps")
+        for quantity in ("kinetic energy", "strain energy", "work of loads and supports"):
+            check_close(history(run, quantity), history(runs[0], quantity), relative=1e-9, what=quantity)
+
+
+def supplied():
+    """Ten times the steps of the supplied motions."""
+    table = Comparison("Ten times as long")
+    wave = run_scene("prm/elasticity/wave_in_bar.prm", {"Time/End time": "1e-3", "Output/Write at": "", "Output/Write every": "5e-5", "Output/Fields": "none"})
+    for model in (PD, "finite elements"):
+        energy_kept(table, f"wave, {model}", wave, model)
+    branches = run_scene("prm/fracture/branching_crack.prm", {"Time/End time": "4e-4", "Output/Write every": "2e-5", "Output/Fields": "none"})
+    energy_kept(table, "branches", branches)
+    table.show()
+
+
+def refused():
+    """Nodes without mass."""
+    for density in ("max(0, x - 0.5)", "x - 0.5"):
+        run = run_scene(BODY, {**HELD, "Material/Density": density, "Time/End time": "1"}, expect_error=True)
+        check_message(run, "'Density' in section 'Material'", "at (0, 0)", "positive density everywhere")
+
+
+def main():
+    parts = {function.__name__: function for function in (kept, stopped, ranks, supplied, refused)}
+    for name in sys.argv[1:] or parts:
+        parts[name]()
+    finish()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// What ends a motion or an equilibrium: bodies inside out, steps that have become too long, nodes without mass.
+
+#include <perideal/solvers/motion_stepper.h>
+#include <perideal/solvers/slow_loading.h>
+
+#include "elastic_test_tools.h"
+#include "scene_test_tools.h"
+
+namespace PeriDeal
+{
+  using namespace OperatorTests;
+  using namespace SceneTests;
+  using dealii::Point;
+  using dealii::Tensor;
+
+  namespace
+  {
+    const Settings moving{{"Elasticity/Solver", "dynamics"}};
+    const Settings full = moving + Settings{{"Elasticity/Kinematics", "full"}};
+    const Settings centers{{"Domain/Nodes", "cell centers"}};
+
+
+    bool is_near(const Point<2> &p, const double x, const double y)
+    {
+      return std::abs(p[0] - x) + std::abs(p[1] - y) < 1e-9;
+    }
+
+
+    template <int dim>
+    void check_inversions(const Settings &more, const Model model = Model::peridynamics)
+    {
+      const Body<dim>          body(box<dim>() + more, model);
+      const unsigned long long all   = body.op().lumped_capacity().size() / dim;
+      const auto               found = [&](const auto &field) {
+        return body.op().inverted(body.values(field)).n_nodes;
+      };
+      EXPECT_EQ(found([](const Point<dim> &) { return Tensor<1, dim>(); }), 0u);
+      // Half a turn, and squeezed to a thousandth.
+      const auto turned = [](const Point<dim> &p) {
+        Tensor<1, dim> u;
+        for (unsigned int d = 0; d < dim; ++d)
+          u[d] = d < 2 && dim > 1 ? -2. * p[d] : -0.999 * p[d];
+        return u;
+      };
+      EXPECT_EQ(found(turned), 0u);
+      // Turned inside out by a mirror; nothing left of a direction.
+      for (const double share : {2., 1.})
+        EXPECT_EQ(found([&](const Point<dim> &p) {
+                    Tensor<1, dim> u;
+                    u[0] = -share * p[0];
+                    return u;
+                  }),
+                  all);
+    }
+
+
+    double largest_eigenvalue(const Body<2> &body, const Vector &u)
+    {
+      body.op().linearize(u);
+      return body.op().spectrum().sharp;
+    }
+
+
+    /** Three times as long at the end and a half, in a time of many sound waves. */
+    const Settings stretched =
+      full + Settings{{"Domain/Cells", "16, 4"},
+                      {"Domain/Upper corner", "1, 0.25"},
+                      {"Boundary conditions/Displacement", "left: 0, 0; right: 2.5*(t/20)^2, 0"}};
+  } // namespace
+
+
+  TEST(Inversion, mirrored_and_turned)
+  {
+    check_inversions<1>({});
+    check_inversions<2>({});
+    check_inversions<3>({});
+    check_inversions<2>(full);
+    check_inversions<3>(full);
+    check_inversions<1>(centers);
+    check_inversions<2>(full + centers);
+    check_inversions<3>(centers);
+    check_inversions<2>({}, Model::finite_elements);
+    check_inversions<3>({}, Model::finite_elements);
+  }
+
+
+  TEST(Inversion, single_node)
+  {
+    // A node that has passed its right neighbour: its own corners and some of those around it.
+    const Body<2> body(box<2>() + full + Settings{{"Domain/Cells", "8, 6"}}, Model::peridynamics);
+    for (const double share : {0.9, 1.1})
+      {
+        const Vector    u     = body.values([&](const Point<2> &p) {
+          return Tensor<1, 2>({is_near(p, 0.5, 0.375) ? 0.125 * share : 0., 0.});
+        });
+        const Inversion found = body.op().inverted(u);
+        EXPECT_EQ(found.n_nodes, share < 1. ? 0u : 2u);
+        if (share > 1.)
+          EXPECT_TRUE(found.place == "(0.5, 0.375)" || found.place == "(0.625, 0.375)");
+        // The bond to the left neighbour.
+        EXPECT_NEAR(body.op().largest_stretch(u), share < 1. ? 0.9 : 1.1, 1e-12);
+      }
+  }
+
+
+  TEST(Inversion, what_has_broken_off_may_fold)
+  {
+    // The node is torn out of the body far away, and lies on the other side of its neighbours.
+    const Body<2> body(box<2>() + full +
+                         Settings{{"Domain/Cells", "8, 6"}, {"Material/Critical stretch", "0.5"}},
+                       Model::peridynamics);
+    const auto    moved = [&](const double by) {
+      return body.values([&](const Point<2> &p) {
+        return Tensor<1, 2>({is_near(p, 1., 0.375) ? by : 0., 0.});
+      });
+    };
+    EXPECT_GT(body.op().inverted(moved(-0.3)).n_nodes, 0u);
+    EXPECT_GT(body.op().break_bonds(moved(10.)), 10u);
+    EXPECT_EQ(body.op().inverted(moved(-0.3)).n_nodes, 0u);
+  }
+
+
+  TEST(Inversion, ends_equilibria)
+  {
+    // Pushed through its own support.
+    const Body<2> body(
+      box<2>() + Settings{{"Domain/Cells", "8, 6"},
+                          {"Elasticity/Solver", "conjugate gradients"},
+                          {"Elasticity/Kinematics", "full"},
+                          {"Boundary conditions/Displacement", "left: 0, 0; right: -1.5, 0"}},
+      Model::peridynamics);
+    StaticOptions options;
+    options.tolerance = 1e-6;
+    SlowLoading loading(body.op(),
+                        make_static_solver("conjugate gradients", body.op(), options),
+                        options);
+    Vector      u;
+    expect_parts(message_of([&] { loading.begin(u, 0.); }),
+                 {"inside out", "t = 0", "'conjugate gradients'", "make the load smaller"});
+  }
+
+
+  TEST(StepLimit, follows_the_deformation)
+  {
+    const Body<2> body(box<2>() + stretched, Model::peridynamics);
+    const double  limit   = stable_motion_step(body.op());
+    const auto    stepper = make_motion_stepper("auto", body.op(), {});
+    Vector        u, v;
+    body.op().initialize_vector(u);
+    body.op().initialize_vector(v);
+    EXPECT_DOUBLE_EQ(stepper->current_step(), 0.8 * limit);
+    stepper->advance(u, v, 0., 20.);
+    const double omega = std::sqrt(largest_eigenvalue(body, u));
+    // The step at the start would be within a few percent of the limit, or above it.
+    EXPECT_GT(0.8 * limit * omega, 1.82);
+    EXPECT_LT(stepper->current_step() * omega, 1.8);
+    EXPECT_GT(stepper->current_step() * omega, 1.4);
+    EXPECT_EQ(stepper->shortest_step(), stepper->current_step());
+    const MotionEnergy energy = stepper->energy(u, v);
+    EXPECT_LT(std::abs(energy.drift), 1e-3 * energy.exchanged);
+    // What it takes to follow.
+    EXPECT_LT(body.op().n_applications(), 1.15 * stepper->cost().steps + 100);
+  }
+
+
+  TEST(StepLimit, refuses_a_given_step_that_has_become_too_long)
+  {
+    const Body<2>  body(box<2>() + stretched, Model::peridynamics);
+    StepperOptions options;
+    options.time_step  = 0.97 * stable_motion_step(body.op());
+    const auto stepper = make_motion_stepper("verlet", body.op(), options);
+    Vector     u, v;
+    body.op().initialize_vector(u);
+    body.op().initialize_vector(v);
+    expect_parts(message_of([&] { stepper->advance(u, v, 0., 20.); }),
+                 {"'Time step' in section 'Time'", "but at t =", "stable up to", "auto"});
+  }
+
+
+  TEST(MotionSteppers, nodes_without_mass)
+  {
+    for (const std::string density : {"max(0, x - 0.5)", "x - 0.5"})
+      for (const std::string name : {"verlet", "newmark"})
+        {
+          const Body<2> body(box<2>() + moving + Settings{{"Material/Density", density}},
+                             Model::peridynamics);
+          expect_parts(message_of([&] { make_motion_stepper(name, body.op(), {}); }),
+                       {"'Density' in section 'Material'",
+                        density[0] == 'm' ? "zero at (" : "negative at (",
+                        "positive density everywhere"});
+        }
+  }
+} // namespace PeriDeal
