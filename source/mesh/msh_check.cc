@@ -244,8 +244,8 @@ namespace PeriDeal
             if (one.positive == two.positive || one.across != two.across)
               msh_error(name,
                         cell.line,
-                        "the cells " + text_of(other) + " and " + text_of(cell) + " share a " +
-                          face_name() +
+                        "the cells " + text_of(other) + " and " + text_of(cell) +
+                          (dim == 3 ? " share a " : " share an ") + face_name() +
                           (one.across != two.across ? " whose nodes they take in different orders" :
                                                       " and lie on the same side of it") +
                           ": found a folded mesh, expected that cells do not overlap.");
