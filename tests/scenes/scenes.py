@@ -30,10 +30,14 @@ COARSER = {
     "fracture/cracked_block.prm": {"Domain/Cells": "16, 32, 2"},
     "fracture/double_cantilever.prm": {"Domain/Cells": "100, 20"},
     "papers/bobaru_2012/example_4_paper.prm": {"Domain/Cells": "60, 60"},
-    "papers/bobaru_2012/example_5_paper.prm": {"Domain/Cells": "60, 60"},
+    "papers/bobaru_2012/example_5.prm": {"Domain/Cells": "60, 60"},
+    "papers/bobaru_2012/example_5_paper.prm": {"Domain/Cells": "30, 30"},
     "papers/bobaru_2012/example_6_paper.prm": {"Domain/Cells": "60, 60"},
+    "papers/diyaroglu_2017/example_b.prm": {"Domain/Cells": "50, 50"},
+    "papers/diyaroglu_2017/example_b_paper.prm": {"Domain/Cells": "50, 50"},
     "papers/diyaroglu_2017/example_d.prm": {"Domain/Cells": "105, 94, 3", "Peridynamics/Horizon": "0.34665"},
     "papers/diyaroglu_2017/example_d_paper.prm": {"Domain/Cells": "105, 94, 3", "Peridynamics/Horizon": "0.34665"},
+    **{f"papers/le_2014/{name}.prm": {"Domain/Pixels per cell": "2"} for name in ("aspect_ratio", "circular_void", "slanted_void", "void_length")},
 }
 
 FORCE_LOST = 9e-8  # measured: 5.7e-8, the bimetal strip; solvers stop at 1e-10 of the loads
