@@ -99,7 +99,9 @@ namespace PeriDeal
         const Inversion found = body.op().inverted(u);
         EXPECT_EQ(found.n_nodes, share < 1. ? 0u : 2u);
         if (share > 1.)
-          EXPECT_TRUE(found.place == "(0.5, 0.375)" || found.place == "(0.625, 0.375)");
+          {
+            EXPECT_TRUE(found.place == "(0.5, 0.375)" || found.place == "(0.625, 0.375)");
+          }
         // The bond to the left neighbour.
         EXPECT_NEAR(body.op().largest_stretch(u), share < 1. ? 0.9 : 1.1, 1e-12);
       }
