@@ -15,6 +15,7 @@
 #include <perideal/study/work_precision.h>
 
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
 #include <algorithm>
 #include <iostream>
@@ -358,7 +359,7 @@ namespace
     if (first_rank || !all)
       std::cerr << "\nperideal: " << message << std::endl;
     if (!all)
-      MPI_Abort(MPI_COMM_WORLD, number);
+      PMPI_Abort(MPI_COMM_WORLD, number);
     return number;
   }
 
@@ -370,6 +371,18 @@ namespace
                   ExitStatus::fault);
   }
 } // namespace
+
+
+/** Trilinos and p4est end the program this way, above all where memory runs out; MPI leaves its names to programs that want to know of it. */
+extern "C" int MPI_Abort(MPI_Comm communicator, int)
+{
+  const int status = PeriDeal::leave_after_abort();
+  int       n_proc = 1;
+  PMPI_Comm_size(MPI_COMM_WORLD, &n_proc);
+  if (n_proc == 1)
+    _exit(status); // without Open MPI's words
+  return PMPI_Abort(communicator, status);
+}
 
 
 int main(int argc, char **argv)

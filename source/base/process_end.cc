@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <memory>
 #include <new>
 
@@ -89,17 +90,34 @@ namespace PeriDeal
     }
 
 
-    void fail(int signal)
+    /** Another process may have the same to say, and ends this one meanwhile. */
+    void prepare_to_speak()
     {
       leave_in_order(farewell.load());
-      speaker = true; // the others may know nothing of it
-      if (memory_is_short())
-        {
-          say("\nperideal: error: ");
-          say(out_of_memory.c_str());
-          say("\n");
-          _exit(static_cast<int>(ExitStatus::error));
-        }
+      if (speaker)
+        return;
+      const timespec a_while = {2, 0};
+      nanosleep(&a_while, nullptr);
+      speaker = true;
+    }
+
+
+    bool say_if_memory_is_short()
+    {
+      if (!memory_is_short())
+        return false;
+      say("\nperideal: error: ");
+      say(out_of_memory.c_str());
+      say("\n");
+      return true;
+    }
+
+
+    void fail(int signal)
+    {
+      prepare_to_speak();
+      if (say_if_memory_is_short())
+        _exit(static_cast<int>(ExitStatus::error));
       if (signal == SIGBUS)
         {
           say(
@@ -124,6 +142,16 @@ namespace PeriDeal
   } // namespace
 
 
+  int leave_after_abort()
+  {
+    prepare_to_speak();
+    if (say_if_memory_is_short())
+      return static_cast<int>(ExitStatus::error);
+    say("\nperideal: internal error: a library gave up. Please report it with the scene file.\n");
+    return static_cast<int>(ExitStatus::fault);
+  }
+
+
   void prepare_mpi_environment()
   {
     set_default("PMIX_MCA_gds", "hash");
@@ -144,7 +172,8 @@ namespace PeriDeal
       struct sigaction action = {};
       action.sa_handler       = handler;
       action.sa_flags         = flags;
-      sigfillset(&action.sa_mask); // one end is enough
+      sigemptyset(
+        &action.sa_mask); // one process that fails is told to end when another one has spoken
       sigaction(signal, &action, nullptr);
     };
     on(SIGTERM, stop, 0);

@@ -36,6 +36,12 @@ namespace PeriDeal
   void handle_signals(const bool speaks);
 
   /**
+   * A library ends all processes by MPI_Abort(): what set_farewell() has asked for, and one message. Returns the status to end with. A program calls it from an MPI_Abort of
+   * its own, which takes the place of the library's.
+   */
+  int leave_after_abort();
+
+  /**
    * What a process that is told to end still does: the file is replaced as a whole by the text, then the message is printed. Only what is prepared here
    * can be written then, since nothing may be computed in a signal handler.
    */
