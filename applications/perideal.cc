@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <iostream>
 
 namespace
@@ -358,6 +359,7 @@ namespace
     const bool all    = all_processes_arrive(MPI_COMM_WORLD);
     if (first_rank || !all)
       std::cerr << "\nperideal: " << message << std::endl;
+    std::signal(SIGTERM, SIG_DFL); // mpirun ends those who are left, which need not be said
     if (!all)
       PMPI_Abort(MPI_COMM_WORLD, number);
     return number;
