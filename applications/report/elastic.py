@@ -2,7 +2,6 @@
 # Copyright (C) 2026 the PeriDeal authors
 """The sections of the report that are different for elastic bodies."""
 
-from html import escape
 
 import numpy as np
 
@@ -97,7 +96,7 @@ class ElasticSections:
         if not any((self.values(field, i) > ROUND_OFF).any() for i in self.shown):
             return
         self.page.section(field.title, field.name)
-        self.page.add(f"<p>{escape(field.about)}</p>")
+        self.page.paragraph(field.about)
         draw([field], self.shown, self.factor)
 
     def under_stress(self):
@@ -109,7 +108,7 @@ class ElasticSections:
         if not bare or len(bare) == len(self.shown):
             return self.shown
         listed = ", ".join(self.words.at_time(self.run.written_times()[i]) for i in bare)
-        self.page.add(f"<p>No stress is left at {escape(listed)}: not drawn.</p>")
+        self.page.paragraph(f"No stress is left at {listed}: not drawn.")
         return [i for i in self.shown if i not in bare]
 
     def stressed(self):
@@ -147,8 +146,8 @@ class ElasticSections:
                                   else self.values(field, i)) for i in indices)
             (silent if zero else shown).append(field)
         if silent:
-            self.page.add(f"<p>Zero everywhere, not drawn: "
-                          f"{escape(', '.join(f.text for f in silent))}.</p>")
+            self.page.paragraph("Zero everywhere, not drawn: "
+                                f"{', '.join(f.text for f in silent)}.")
         return shown
 
     def bar_fields(self, fields, indices, factor=None):
@@ -175,10 +174,10 @@ class ElasticSections:
                 continue
             scale = contours.common_scale(self.run, written, field)
             if factor is not None:
-                self.page.add(f"<p>The deformed shape, with {deformed.factor_text(factor)}; the body "
-                              f"at rest is dashed. {self.picture_text(scale, field)}</p>")
+                self.page.paragraph(f"The deformed shape, with {deformed.factor_text(factor)}; the body "
+                                    f"at rest is dashed. {self.picture_text(scale, field)}")
             elif len(written) > 1 or field.name in ("von_mises", "damage"):
-                self.page.add(f"<p>{self.picture_text(scale, field)}</p>")
+                self.page.paragraph(self.picture_text(scale, field))
             for index in written:
                 self.body_field(field, index, scale, factor, len(indices) > 1)
 
@@ -214,11 +213,11 @@ class ElasticSections:
         shown, opposite = loading.forces(self.run)
         figure = loading.force_figure(self.run, self.words, shown)
         if figure is not None:
-            self.page.figure(figure, "forces", escape(
-                loading.force_caption(self.run, shown, opposite)), True)
+            self.page.figure(figure, "forces",
+                             loading.force_caption(self.run, shown, opposite), True)
         figure = loading.energy_figure(self.run, self.words)
         if figure is not None:
-            self.page.figure(figure, "energies", escape(loading.energy_caption(self.run)), True)
+            self.page.figure(figure, "energies", loading.energy_caption(self.run), True)
 
     def line(self):
         """Plots along the line, a panel for each column."""
@@ -237,8 +236,8 @@ class ElasticSections:
                 "; upright lines are cracks."
             self.page.figure(figure, "line", caption, True)
         if silent:
-            self.page.add("<p>Zero along the line, not drawn: "
-                          f"{escape(', '.join(self.words.column(c).text for c in silent))}.</p>")
+            self.page.paragraph("Zero along the line, not drawn: "
+                                f"{', '.join(self.words.column(c).text for c in silent)}.")
 
     def probes(self):
         """Values at the probes, and over time where there are several."""
@@ -265,7 +264,7 @@ class ElasticSections:
             per = {1: "", 2: ", per unit thickness", 3: ""}[self.run.dimension]
             when = f" at {self.words.at_time(self.run.end_time)}" \
                 if loading.is_slow(self.run) and self.run.end_time is not None else ""
-            self.page.add(f"<p>What acts on the body from outside{escape(when)}{per}.</p>")
+            self.page.paragraph(f"What acts on the body from outside{when}{per}.")
             self.page.add(f'<div class="wide">{html}</div>')
 
     def totals(self):

@@ -86,24 +86,24 @@ def largest_forces(run, words):
 
 
 def are_balanced(run):
-    """The balance of forces; against the largest load of a slowly loaded body, which may end in pieces."""
+    """The balance of forces, against the size of forces in the body until then: it may end without any load or stress, or in pieces."""
     shares = {}
     largest = {m: max(v for _, v in s) for m, s in run.totals.get("throughput", {}).items()} \
         if loading.is_slow(run) else {}
     for model in run.models:
         found = run.summary["models"][model].get("force balance") or {}
         imbalance = found.get("imbalance")
-        throughput = largest.get(model, found.get("throughput"))
-        if imbalance is not None and throughput:
-            shares[model] = abs(imbalance / throughput)
+        scale = found.get("scale") or largest.get(model, found.get("throughput"))
+        if imbalance is not None and scale:
+            shares[model] = abs(imbalance / scale)
     if not shares:
         return None
     worst = max(shares, key=shares.get)
     if shares[worst] < 1e-6:
         return ("The forces on the body are in balance: their sum is at most "
-                f"{plain(shares[worst], 2)} of the force that passes through it.")
-    return (f"The forces on the body add up to {findings.percent(shares[worst])} of the force that "
-            f"passes through it (worst: {worst}): {name(worst)} "
+                f"{plain(shares[worst], 2)} of the largest force in it.")
+    return (f"The forces on the body add up to {findings.percent(shares[worst])} of the largest "
+            f"force in it (worst: {worst}): {name(worst)} "
             f"{findings.is_or_are(worst)} not in equilibrium, or the body accelerates.")
 
 

@@ -183,6 +183,25 @@ def is_conserved(run, words):
             f"(worst: {worst[0]}).")
 
 
+def is_kept(run, words):
+    """The balance since the start, against the largest of what came in and what the body held or holds."""
+    worst = None
+    for model in run.models:
+        found = balance(run.summary["models"][model], words).get("cumulative") or {}
+        content = [abs(v) for _, v in run.totals.get(words.content, {}).get(model, [])]
+        moved = max([abs(found.get(k) or 0) for k in ("entered", "stored")] + content)
+        if found.get("imbalance") is None or not moved:
+            continue
+        share = abs(found["imbalance"]) / moved
+        if worst is None or share > worst[1]:
+            worst = (model, share)
+    if worst is None:
+        return None
+    amount = f"at most {plain(worst[1], 2)}" if worst[1] < 1e-6 else percent(worst[1])
+    return (f"Since the start, what the body stores differs from the {words.quantity} that entered by {amount} of the larger of what "
+            f"entered and what it holds (worst: {worst[0]}).")
+
+
 def what_broke(run, words):
     """Models whose pictures have holes since values are not finite."""
     if not run.not_finite:
@@ -197,5 +216,5 @@ def sentences(run, words, difference):
     found = [what_ran(run, words), what_broke(run, words),
              how_far_apart(run, words, difference), how_far_coupled(run), how_wrong(run),
              what_it_cost(run),
-             is_conserved(run, words)]
+             is_conserved(run, words), is_kept(run, words)]
     return [s for s in found if s]

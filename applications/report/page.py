@@ -9,6 +9,9 @@ import re
 from html import escape
 from pathlib import Path
 
+from matplotlib.mathtext import MathTextParser
+from matplotlib.text import Text
+
 STYLE = (Path(__file__).parent / "page.css")
 
 
@@ -33,6 +36,10 @@ class Page:
         """Appends ready HTML."""
         self.parts.append(html)
 
+    def paragraph(self, text):
+        """Appends text, which is escaped here, as a paragraph."""
+        self.add(f"<p>{escape(text)}</p>")
+
     def section(self, title, mark, contents=True):
         """Starts a section."""
         if self.parts and mark != "problem":
@@ -42,7 +49,9 @@ class Page:
             self.contents.append((title, mark))
 
     def figure(self, figure, name, caption, vector=False, heading=None):
-        """Embeds a figure, as SVG where it is lines and as PNG where it is pixels."""
+        """Embeds a figure, as SVG where it is lines and as PNG where it is pixels.
+
+        caption and heading are text, which is escaped here."""
         data, kind = encode(figure, vector)
         if self.figure_directory:
             target = self.figure_directory / f"{name}.png"
@@ -50,10 +59,9 @@ class Page:
         width = int(figure.get_figwidth() * 100)
         uri = f"data:{kind};base64,{base64.b64encode(data).decode('ascii')}"
         title = f"<h3>{escape(heading)}</h3>" if heading else ""
-        text = f"<figcaption>{caption}</figcaption>" if caption else ""
-        plain_caption = re.sub("<[^>]*>", "", caption or heading or name)
+        text = f"<figcaption>{escape(caption)}</figcaption>" if caption else ""
         self.add(f'<figure>{title}<img src="{uri}" width="{width}" '
-                 f'alt="{escape(plain_caption, quote=True)}" />{text}</figure>')
+                 f'alt="{escape(caption or heading or name, quote=True)}" />{text}</figure>')
 
     def html(self, title, header):
         """The whole document."""
@@ -67,9 +75,21 @@ class Page:
                 f"</main></body></html>\n")
 
 
+def leave_dollars_alone(figure):
+    """Texts of the user that are no formulas of matplotlib, though they have dollar signs, are drawn as they are."""
+    parser = MathTextParser("path")
+    for text in figure.findobj(Text):
+        if "$" in text.get_text():
+            try:
+                parser.parse(text.get_text())
+            except ValueError:
+                text.set_parse_math(False)
+
+
 def encode(figure, vector):
     """(bytes, media type) of a figure."""
     buffer = io.BytesIO()
+    leave_dollars_alone(figure)
     if vector:
         figure.savefig(buffer, format="svg", metadata={"Date": None})
         return buffer.getvalue(), "image/svg+xml"

@@ -154,7 +154,7 @@ class Report:
                 continue
             self.page.section(field.title, field.name)
             if field.about:
-                self.page.add(f"<p>{escape(field.about)}</p>")
+                self.page.paragraph(field.about)
             if self.run.dimension > 1:
                 self.pictures(field)
             elif solution and self.line_is_body():
@@ -169,14 +169,14 @@ class Report:
         self.page.figure(figure, field.name, "Nodal values over the body" + (
             "." if len(self.run.models) == 1 else ", and their difference below."), vector=True)
         largest = difference.largest(self.run, self.shown[-1], field.name)
-        self.page.add(f"<p>{self.picture_caption(largest, field)}</p>")
+        self.page.paragraph(self.picture_caption(largest, field))
 
     def pictures(self, field):
         """The pictures of a field at all shown times."""
         run = self.run
         module = contours if run.dimension == 2 else solids
         scale = contours.common_scale(run, self.shown, field)
-        self.page.add(f"<p>{self.picture_text(scale, field)}</p>")
+        self.page.paragraph(self.picture_text(scale, field))
         times = run.written_times()
         for index in self.shown:
             largest = difference.largest(run, index, field.name)
@@ -187,8 +187,8 @@ class Report:
                              name(heading) if self.steady else heading)
         hidden = [plain(t) for i, t in enumerate(times) if i not in self.shown]
         if hidden:
-            self.page.add(f"<p>Also written, not shown: t = {', '.join(hidden)} "
-                          f"{self.words.time}.</p>")
+            self.page.paragraph(f"Also written, not shown: t = {', '.join(hidden)} "
+                                f"{self.words.time}.")
 
     def scale_text(self, scale, field):
         """What the colours have in common."""
@@ -285,7 +285,7 @@ class Report:
     def series_text(zero):
         """How to read plots over time; zero: names of what is not drawn."""
         text = "Computed at the marked times; lines only join the marks."
-        return text + (f" Zero at all times, not drawn: {escape(', '.join(zero))}." if zero
+        return text + (f" Zero at all times, not drawn: {', '.join(zero)}." if zero
                        else "")
 
     def flux(self):
@@ -298,11 +298,11 @@ class Report:
             return
         self.page.section(self.words.flux.title, "flux")
         if figure is None:
-            self.page.add(f"<p>{escape(text)}</p>")
+            self.page.paragraph(text)
             return
         when = self.words.at_time(self.run.written_times()[index], self.steady)
         self.page.figure(figure, self.words.flux.name,
-                         f"{self.words.flux.title}, {escape(when)}. {escape(text)}",
+                         f"{self.words.flux.title}, {when}. {text}",
                          vector=self.run.dimension == 1)
 
     def cost(self):
@@ -311,7 +311,7 @@ class Report:
         self.page.add(f'<div class="wide">{tables.cost_table(self.run, self.words)}</div>')
         shared = tables.shared_cost(self.run)
         if shared:
-            self.page.add(f"<p>{escape(shared)}</p>")
+            self.page.paragraph(shared)
         html = tables.error_table(self.run, self.words)
         if html:
             self.page.add(f'<h3>Over time</h3><div class="wide">{html}</div>' if not self.steady
@@ -335,7 +335,7 @@ class Report:
         for quantity in self.words.plotted_apart:
             figure = series.apart_figure(self.run.totals, self.words, quantity)
             if figure is not None:
-                self.page.figure(figure, quantity.replace(" ", "_"), f"{escape(name(quantity))} "
+                self.page.figure(figure, quantity.replace(" ", "_"), f"{name(quantity)} "
                                  f"over time. {self.series_text([])}", True)
         figure, zero = series.totals_figure(self.run.totals, self.words)
         if figure is not None:

@@ -136,7 +136,7 @@ def page_of(study, directory):
             continue
         if not drawn:
             page.section("Figures", "figures")
-        page.figure(figure, wanted["name"], escape(remark), True, wanted["title"])
+        page.figure(figure, wanted["name"], remark, True, wanted["title"])
         drawn += 1
     table = rows_table(study)
     if table:

@@ -146,6 +146,10 @@ def error_rows(run, words):
     for part in ("throughput", "imbalance"):
         errors += model_rows(run, f"{name(words.quantity)} {part}",
                              lambda m, p=part: findings.balance(m, words).get(p))
+    for part, title in (("entered", "entered since the start"), ("stored", "stored since the start"),
+                        ("imbalance", "missing since the start")):
+        errors += model_rows(run, f"{name(words.quantity)} {title}",
+                             lambda m, p=part: entry("cumulative", p)(findings.balance(m, words)))
     return errors
 
 

@@ -192,7 +192,7 @@ def add_to(page, data):
         page.add("<p>Only the reference was computed.</p>")
         return
     for x in ("work", "wall time"):
-        page.figure(draw(data, x), f"error_over_{x.replace(' ', '_')}", escape(caption(data, x)), True, f"Error over {x}")
+        page.figure(draw(data, x), f"error_over_{x.replace(' ', '_')}", caption(data, x), True, f"Error over {x}")
     if data["left out"]:
         page.add('<ul class="notes">' + "".join(f"<li>Left out: {escape(s)}</li>" for s in data["left out"]) + "</ul>")
     page.section("What errors cost", "costs")

@@ -39,14 +39,7 @@ namespace PeriDeal
     std::vector<typename Families<dim>::Bond> family;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        const auto site = nodes.lattice()->index(nodes.position(i));
-        bool       near = false;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            const int reach = static_cast<int>(bonds.reach() / nodes.lattice()->spacing[d]) + 1;
-            near = near || site[d] < reach || site[d] >= nodes.lattice()->n_sites[d] - reach;
-          }
-        if (!near)
+        if (!reaches_outside(i))
           continue;
         bonds.bonds_of(i, family);
         for (const auto &bond : family)
@@ -168,7 +161,101 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  double BondOperator<dim>::through_prescribed(const Vector      &y,
+                                               const unsigned int begin,
+                                               const unsigned int end) const
+  {
+    double sum = 0.;
+    for (auto node = std::lower_bound(held.begin(), held.end(), begin);
+         node != held.end() && *node < end;
+         ++node)
+      if (constraints->kind(*node) == NodeConstraints<dim>::prescribed)
+        sum += y.local_element(*node);
+    return sum;
+  }
+
+
+  template <int dim>
+  double BondOperator<dim>::through_sides(const Vector &x, const double *outside) const
+  {
+    double sum = 0.;
+    for (const auto &[node, h] : convection_diagonal)
+      sum -= h * x.local_element(node);
+    if (bonds.fictitious().empty())
+      return sum;
+    if (!outside_sums.known)
+      find_outside_sums();
+    for (std::size_t f = 0; f < outside_sums.of_outside.size(); ++f)
+      sum += outside_sums.of_outside[f] * outside[f];
+    for (const auto &[node, weight] : outside_sums.of_nodes)
+      sum -= weight * x.local_element(node);
+    return sum;
+  }
+
+
+  template <int dim>
+  double BondOperator<dim>::through_slaves(const double t) const
+  {
+    if (scene.peridynamics.flux_treatment == FluxTreatment::natural)
+      return 0.;
+    const Nodes<dim> &nodes = bonds.nodes();
+    double            sum   = 0.;
+    for (const BoundaryShare &share : nodes.boundary_shares())
+      if (const auto *flux =
+            BoundaryConditions<dim>::find(scene.boundary_conditions.flux, share.id);
+          flux != nullptr && constraints->kind(share.node) == NodeConstraints<dim>::slave)
+        sum += share.area * flux->value.value(nodes.position(share.node), t);
+    return sum;
+  }
+
+
+  template <int dim>
+  bool BondOperator<dim>::reaches_outside(const unsigned int node) const
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    const auto        site  = nodes.lattice()->index(nodes.position(node));
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const int reach = static_cast<int>(bonds.reach() / nodes.lattice()->spacing[d]) + 1;
+        if (site[d] < reach || site[d] >= nodes.lattice()->n_sites[d] - reach)
+          return true;
+      }
+    return false;
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::find_outside_sums() const
+  {
+    const unsigned int n_local = bonds.nodes().n_local();
+    outside_sums               = OutsideSums();
+    outside_sums.known         = true;
+    outside_sums.of_outside.assign(bonds.fictitious().size(), 0.);
+    std::vector<typename Families<dim>::Bond> family;
+    for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
+      if (reaches_outside(i))
+        {
+          bonds.bonds_of(i, family);
+          double sum = 0.;
+          for (const auto &bond : family)
+            if (bond.neighbor >= n_local)
+              {
+                outside_sums.of_outside[bond.neighbor - n_local] += bond.weight;
+                sum += bond.weight;
+              }
+          outside_sums.of_nodes.emplace_back(i, sum);
+        }
+  }
+
+
 #define PERIDEAL_INSTANTIATE(dim)                                                                   \
+  template double  BondOperator<dim>::through_prescribed(const Vector &,                            \
+                                                        const unsigned int,                        \
+                                                        const unsigned int) const;                 \
+  template double  BondOperator<dim>::through_sides(const Vector &, const double *) const;          \
+  template double  BondOperator<dim>::through_slaves(const double) const;                           \
+  template bool    BondOperator<dim>::reaches_outside(const unsigned int) const;                    \
   template void    BondOperator<dim>::add_fictitious_heat(const Vector &, Balance &) const;         \
   template void    BondOperator<dim>::add_side_heat(const Vector &, const double, Balance &) const; \
   template void    BondOperator<dim>::add_crack_heat(const Vector &, Balance &) const;              \

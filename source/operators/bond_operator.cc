@@ -43,7 +43,7 @@ namespace PeriDeal
       {
         Vector loads;
         initialize_vector(loads);
-        add_loads_now(loads, 0.);
+        free_loads = add_loads_now(loads, 0.);
         if (std::any_of(loads.begin(), loads.end(), [](const double load) { return load != 0.; }))
           constant_loads.swap(loads);
       }
@@ -73,6 +73,12 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes = bonds.nodes();
     std::string       message;
+    if (scene.time.steady) // it only sets a scale then
+      {
+        for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+          capacity.local_element(i) = nodes.volume(i);
+        return;
+      }
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const double T       = u != nullptr ?
@@ -244,11 +250,13 @@ namespace PeriDeal
     const auto &fictitious = bonds.fictitious();
     for (std::size_t f = 0; f < fictitious.size(); ++f)
       outside_signs_only[f] = fictitious[f].sign * input->local_element(fictitious[f].mirror);
+    entering_now = through_sides(*input, outside_signs_only.data());
     form->apply(y.begin(),
                 input->begin(),
                 outside_signs_only.data(),
                 [&](const unsigned int begin, const unsigned int end) {
                   add_convection(y, *input, begin, end);
+                  entering_now += through_prescribed(y, begin, end);
                   clear_held(y, begin, end);
                   finish(begin, end);
                 });
@@ -272,6 +280,7 @@ namespace PeriDeal
     ++applications;
     u.update_ghost_values();
     fictitious_values(u, t, outside_values);
+    entering_now = through_sides(u, outside_values.data()) + through_slaves(t) + free_loads;
     double       *values = r.begin();
     const double *loads  = constant_loads.size() > 0 ? constant_loads.begin() : nullptr;
     form->apply(values,
@@ -279,6 +288,7 @@ namespace PeriDeal
                 outside_values.data(),
                 [&](const unsigned int begin, const unsigned int end) {
                   add_convection(r, u, begin, end);
+                  entering_now += through_prescribed(r, begin, end);
                   if (loads != nullptr)
                     NodeLoops::subtract_from(values + begin, loads + begin, end - begin);
                   else
@@ -290,7 +300,7 @@ namespace PeriDeal
     u.set_ghost_state(false);
     if (loads_vary)
       {
-        add_loads_now(r, t);
+        entering_now += add_loads_now(r, t);
         const unsigned int n = r.locally_owned_size();
         clear_held(r, 0, n);
         finish(0, n);
@@ -309,20 +319,26 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondOperator<dim>::add_loads_now(Vector &r, const double t) const
+  double BondOperator<dim>::add_loads_now(Vector &r, const double t) const
   {
     const Nodes<dim> &nodes  = bonds.nodes();
     const Expression &source = scene.initial_and_source.source;
+    double            sum    = 0.;
+    const auto        add    = [&](const unsigned int i, const double load) {
+      r.local_element(i) += load;
+      if (constraints->kind(i) == NodeConstraints<dim>::free)
+        sum += load;
+    };
     if (!source.is_constant() || source.value(Point<dim>()) != 0.)
       for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-        r.local_element(i) += nodes.volume(i) * source.value(nodes.position(i), t);
+        add(i, nodes.volume(i) * source.value(nodes.position(i), t));
     for (const SideLoad &load : fluxes)
-      r.local_element(load.node) +=
-        load.area * load.condition->value.value(nodes.position(load.node), t);
+      add(load.node, load.area * load.condition->value.value(nodes.position(load.node), t));
     for (std::size_t k = 0; k < convections.size(); ++k)
-      r.local_element(convections[k].node) +=
-        convection_diagonal[k].second *
-        convections[k].condition->value.value(nodes.position(convections[k].node), t);
+      add(convections[k].node,
+          convection_diagonal[k].second *
+            convections[k].condition->value.value(nodes.position(convections[k].node), t));
+    return sum;
   }
 
 

@@ -7,6 +7,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/operators/bond_operator.h>
+#include <perideal/operators/heat_content.h>
 
 #include <algorithm>
 #include <sstream>
@@ -143,6 +144,11 @@ namespace PeriDeal
     if (constraints->any_slave())
       constraints = std::make_unique<NodeConstraints<dim>>(bonds, scene);
     form->update_rows(rows, bond_diagonal.begin());
+    if (!bonds.fictitious().empty() &&
+        std::any_of(rows.begin(), rows.end(), [&](const unsigned int i) {
+          return reaches_outside(i);
+        }))
+      outside_sums.known = false;
     std::string message;
     for (std::size_t k = 0; k < rows.size() && message.empty(); ++k)
       message = isolation(rows[k]);
@@ -169,6 +175,28 @@ namespace PeriDeal
   bool BondOperator<dim>::depends_on_solution() const
   {
     return scene.material.depends_on_temperature();
+  }
+
+
+  template <int dim>
+  bool BondOperator<dim>::capacity_depends_on_solution() const
+  {
+    return scene.material.storage_depends_on_temperature();
+  }
+
+
+  template <int dim>
+  void BondOperator<dim>::heat_between(Vector &y, const Vector &u, const Vector &v) const
+  {
+    const Nodes<dim> &nodes = bonds.nodes();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      y.local_element(i) =
+        capacity_depends_on_solution() ?
+          nodes.volume(i) * heat_between_temperatures(scene.material,
+                                                      nodes.position(i),
+                                                      u.local_element(i),
+                                                      v.local_element(i)) :
+          capacity.local_element(i) * (v.local_element(i) - u.local_element(i));
   }
 
 
@@ -202,6 +230,7 @@ namespace PeriDeal
         bonds.take_conductivities_at(u);
         u.set_ghost_state(false);
         form->update_conductivities(bond_diagonal.begin());
+        outside_sums.known = false;
         update_crack_sides();
         if (constraints->any_slave())
           constraints = std::make_unique<NodeConstraints<dim>>(bonds, scene);
@@ -220,6 +249,10 @@ namespace PeriDeal
   template std::vector<unsigned int> BondOperator<dim>::rows_to_correct() const;         \
   template void   BondOperator<dim>::correct_surface(const std::vector<unsigned int> &); \
   template bool   BondOperator<dim>::depends_on_solution() const;                        \
+  template bool   BondOperator<dim>::capacity_depends_on_solution() const;               \
+  template void   BondOperator<dim>::heat_between(Vector &,                              \
+                                                const Vector &,                        \
+                                                const Vector &) const;                 \
   template void   BondOperator<dim>::update_crack_sides();                               \
   template void   BondOperator<dim>::take_material_at(const Vector &);                   \
   template double BondOperator<dim>::next_event(const double) const;                     \

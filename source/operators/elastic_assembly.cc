@@ -40,7 +40,7 @@ namespace PeriDeal
             change += at_nodes(data.indices[a]) * data.values.shape_value(a, q);
         const double strain   = thermal_strain(p, change);
         const double pressure = (dim * lambda + 2. * mu) * strain;
-        const double density  = scene.material.density.value(p);
+        const double density  = scene.elasticity.is_static() ? 1. : scene.material.density.value(p);
         data.thermal_energy += 0.5 * dim * pressure * strain * JxW;
         for (unsigned int a = 0; a < n; ++a)
           {

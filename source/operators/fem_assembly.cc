@@ -55,7 +55,7 @@ namespace PeriDeal
                 const double T = scene.initial_and_source.initial_value.value(p);
                 if (!(scene.material.conductivity.value(p, T) > 0.))
                   message = "'Conductivity' in section 'Material' is not positive" + where.str();
-                else if (!(scene.material.storage(p, T) > 0.))
+                else if (!scene.time.steady && !(scene.material.storage(p, T) > 0.))
                   message =
                     "'Density' times 'Heat capacity' in section 'Material' is not positive" +
                     where.str();
@@ -141,7 +141,8 @@ namespace PeriDeal
         const Point<dim> &p       = data.values.quadrature_point(q);
         const double      T       = data.temperatures[q];
         const double      kappa   = scene.material.conductivity.value(p, T) * data.values.JxW(q);
-        const double      storage = scene.material.storage(p, T) * data.values.JxW(q);
+        const double      storage = // steady: it only sets a scale
+          (scene.time.steady ? 1. : scene.material.storage(p, T)) * data.values.JxW(q);
         for (unsigned int i = 0; i < n; ++i)
           for (unsigned int j = 0; j < n; ++j)
             {

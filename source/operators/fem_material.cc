@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Conductivity and capacity that depend on the temperature.
+// Conductivity and capacity that depend on the temperature, the heat in the body, and what enters it.
 
 #include <deal.II/base/mpi.h>
 
@@ -81,6 +81,132 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool FEMOperator<dim>::capacity_depends_on_solution() const
+  {
+    return scene.material.storage_depends_on_temperature();
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::heat_between(Vector &y, const Vector &u, const Vector &v) const
+  {
+    if (!capacity_depends_on_solution())
+      {
+        Operator::heat_between(y, u, v);
+        set_hanging(y, 0.); // the nodes they follow from have all of it
+        return;
+      }
+    CellData           &data = *cell_data;
+    std::vector<double> from(data.values.n_quadrature_points), to(from);
+    const bool          lumped = capacity_is_diagonal();
+    y                          = 0.;
+    u.update_ghost_values();
+    v.update_ghost_values();
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          data.values.reinit(cell);
+          cell->get_dof_indices(data.indices);
+          data.values.get_function_values(u, from);
+          data.values.get_function_values(v, to);
+          for (const unsigned int q : data.values.quadrature_point_indices())
+            {
+              const Point<dim> &p    = data.values.quadrature_point(q);
+              const double      gap  = to[q] - from[q];
+              const double      heat = data.values.JxW(q) *
+                                  heat_between_temperatures(scene.material, p, from[q], to[q]);
+              // The mean capacity on the way, times the change of each unknown or of the field.
+              const double mean = gap != 0. ? heat / gap :
+                                              data.values.JxW(q) *
+                                                scene.material.storage(p, from[q]);
+              for (unsigned int i = 0; i < data.indices.size(); ++i)
+                {
+                  const auto dof = data.indices[i];
+                  y(dof) += data.values.shape_value(i, q) *
+                            (lumped ? mean * (v(dof) - u(dof)) : heat);
+                }
+            }
+        }
+    u.set_ghost_state(false);
+    v.set_ghost_state(false);
+    y.compress(VectorOperation::add);
+    condense(y);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::find_convection_sums()
+  {
+    if (scene.boundary_conditions.convection.empty())
+      return;
+    CellData &data = *cell_data;
+    Vector    sums;
+    initialize_vector(sums);
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && cell->at_boundary())
+        for (const unsigned int f : cell->face_indices())
+          if (const auto *condition =
+                cell->face(f)->at_boundary() ?
+                  BoundaryConditions<dim>::find(scene.boundary_conditions.convection,
+                                                cell->face(f)->boundary_id()) :
+                  nullptr)
+            {
+              data.face_values.reinit(cell, f);
+              cell->get_dof_indices(data.indices);
+              for (const unsigned int q : data.face_values.quadrature_point_indices())
+                for (unsigned int i = 0; i < data.indices.size(); ++i)
+                  sums(data.indices[i]) +=
+                    condition->coefficient.value(data.face_values.quadrature_point(q)) *
+                    data.face_values.JxW(q) * data.face_values.shape_value(i, q);
+            }
+    sums.compress(VectorOperation::add);
+    condense(sums);
+    for (unsigned int i = 0; i < sums.locally_owned_size(); ++i)
+      if (sums.local_element(i) != 0.)
+        convection_sums.emplace_back(i, sums.local_element(i));
+  }
+
+
+  template <int dim>
+  double FEMOperator<dim>::through_prescribed(const Vector      &y,
+                                              const unsigned int begin,
+                                              const unsigned int end) const
+  {
+    double sum = 0.;
+    for (auto entry = std::lower_bound(prescribed.begin(),
+                                       prescribed.end(),
+                                       begin,
+                                       [](const Prescribed &a, const unsigned int b) {
+                                         return a.dof < b;
+                                       });
+         entry != prescribed.end() && entry->dof < end;
+         ++entry)
+      sum += y.local_element(entry->dof);
+    return sum;
+  }
+
+
+  template <int dim>
+  double FEMOperator<dim>::through_convection(const Vector &x) const
+  {
+    double sum = 0.;
+    for (const auto &[dof, coefficient] : convection_sums)
+      sum -= coefficient * x.local_element(dof);
+    return sum;
+  }
+
+
+  template <int dim>
+  double FEMOperator<dim>::sum_of_free_loads(const Vector &loads) const
+  {
+    double sum = 0.;
+    for (unsigned int i = 0; i < loads.locally_owned_size(); ++i)
+      sum += loads.local_element(i);
+    return sum - through_prescribed(loads, 0, loads.locally_owned_size());
+  }
+
+
+  template <int dim>
   double FEMOperator<dim>::heat(const Vector &u) const
   {
     return Utilities::MPI::sum(heat_of(u), dofs.get_communicator());
@@ -91,7 +217,7 @@ namespace PeriDeal
   double FEMOperator<dim>::heat_of(const Vector &u) const
   {
     double heat = 0.;
-    if (!scene.material.storage_depends_on_temperature())
+    if (!scene.material.storage_depends_on_temperature() && !scene.time.steady)
       {
         for (unsigned int i = 0; i < capacity.locally_owned_size(); ++i)
           heat += capacity.local_element(i) * u.local_element(i);
@@ -117,6 +243,18 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                            \
+  template bool   FEMOperator<dim>::capacity_depends_on_solution() const;    \
+  template void   FEMOperator<dim>::heat_between(Vector &,                   \
+                                               const Vector &,             \
+                                               const Vector &) const;      \
+  template void   FEMOperator<dim>::find_convection_sums();                  \
+  template double FEMOperator<dim>::through_prescribed(const Vector &,       \
+                                                       const unsigned int,   \
+                                                       const unsigned int)   \
+    const;                                                                   \
+  template double FEMOperator<dim>::through_convection(const Vector &)       \
+    const;                                                                   \
+  template double FEMOperator<dim>::sum_of_free_loads(const Vector &) const; \
   template bool   FEMOperator<dim>::depends_on_solution() const;             \
   template void   FEMOperator<dim>::find_temperatures(CellData &) const;     \
   template double FEMOperator<dim>::center_conductivity(const Cell &) const; \

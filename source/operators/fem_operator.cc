@@ -46,7 +46,11 @@ namespace PeriDeal
     initialize_vector(scratch);
     initialize_vector(constant_loads);
     if (!loads_vary)
-      assemble_loads(constant_loads, 0.);
+      {
+        assemble_loads(constant_loads, 0.);
+        free_loads = sum_of_free_loads(constant_loads);
+      }
+    find_convection_sums();
   }
 
 
@@ -159,9 +163,7 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::apply(Vector &y, const Vector &x) const
   {
-    ++applications;
-    multiply(y, x);
-    mask(y);
+    apply_then(y, x, [](const unsigned int, const unsigned int) {});
   }
 
 
@@ -169,7 +171,9 @@ namespace PeriDeal
   void FEMOperator<dim>::apply_then(Vector &y, const Vector &x, const RowsAction &finish) const
   {
     ++applications;
+    entering_now = through_convection(x);
     multiply_then(y, x, [&](const unsigned int begin, const unsigned int end) {
+      entering_now += through_prescribed(y, begin, end);
       mask(y, 0., begin, end);
       finish(begin, end);
     });
@@ -184,6 +188,8 @@ namespace PeriDeal
     if (loads_vary)
       assemble_loads(scratch, t);
     const Vector &loads = loads_vary ? scratch : constant_loads;
+    entering_now        = through_convection(u) + through_prescribed(r, 0, r.locally_owned_size()) +
+                   (loads_vary ? sum_of_free_loads(loads) : free_loads);
     r.sadd(-1., 1., loads);
     mask(r);
   }

@@ -111,6 +111,8 @@ namespace PeriDeal
           stored_nodes.push_back(i);
       }
     throw_on_all_if_any(nodes.communicator(), message);
+    if (scene.elasticity.micromodulus == Micromodulus::constant)
+      weighted = complete_weighted();
     weighted.update_ghost_values();
     find_springs();
     if (leave_out)

@@ -111,7 +111,9 @@ namespace PeriDeal
         hottest  = std::max(hottest, std::abs(laws[i].thermal));
         if (i < nodes.n_owned())
           for (unsigned int d = 0; d < dim; ++d)
-            mass.local_element(dim * i + d) = nodes.volume(i) * scene.material.density.value(p);
+            mass.local_element(dim * i + d) =
+              nodes.volume(i) *
+              (scene.elasticity.is_static() ? 1. : scene.material.density.value(p));
       }
     const MPI_Comm all = nodes.communicator();
     any_thermal        = Utilities::MPI::max(hottest, all) > 0.;

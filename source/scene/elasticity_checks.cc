@@ -388,6 +388,25 @@ namespace PeriDeal
     }
 
 
+    /** A constant micromodulus is that of a complete family of a lattice, uncorrected. */
+    template <int dim>
+    void check_micromodulus(const Scene<dim> &scene)
+    {
+      if (scene.elasticity.micromodulus != Micromodulus::constant)
+        return;
+      const auto refuse = [&](const bool fault, const std::string &what) {
+        if (fault)
+          entry_error(scene.elasticity.where("Micromodulus"), "'constant' " + what);
+      };
+      refuse(!runs(scene, Model::peridynamics),
+             "is for peridynamics in the whole body: add 'peridynamics' to 'Models', or leave the entry out.");
+      refuse(scene.domain.shape == Shape::mesh_file,
+             "is that of the complete family of a lattice, which 'Shape = mesh file' has not. Leave the entry out.");
+      refuse(scene.peridynamics.corrects_elastic_bonds() || scene.peridynamics.completes_families(),
+             "leaves surfaces soft, which 'Surface correction' and fictitious nodes (section 'Peridynamics') mend. Leave one of them out.");
+    }
+
+
     /** Every rigid motion has to be held by some side. */
     template <int dim>
     void check_rigid_motions(const Scene<dim> &scene)
@@ -436,6 +455,7 @@ namespace PeriDeal
     check_extra_layers(*this);
     check_time(*this);
     check_fracture(*this);
+    check_micromodulus(*this);
     check_peridynamics(*this);
     check_other_sections(*this);
     check_coupling_of_elasticity(*this);

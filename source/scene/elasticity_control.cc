@@ -14,8 +14,17 @@ namespace PeriDeal
       "state-based",
       "",
       "Peridynamic solid: state-based (linear peridynamic solid, any Poisson ratio), or bond-based (prototype microelastic, whose "
-      "Poisson ratio is 1/4, in plane stress 1/3; its stiffness against equal strains in all directions is that of the moduli).",
+      "Poisson ratio is 1/4, in plane stress 1/3; its stiffness against equal strains in all directions is that of the moduli; see `Micromodulus`).",
       {"state-based", "bond-based"});
+    declare(
+      "Micromodulus",
+      EntryType::choice,
+      "family",
+      "",
+      "Of `Model = bond-based`: the stiffness of a bond is divided by the sum over the family of each of its ends as it is (`family`), so that a surface costs little "
+      "stiffness, or by that of a complete one, the same for all bonds (`constant`), as in the prototype microelastic brittle material of the literature, "
+      "whose surfaces are soft. Inside the body both are the same.",
+      {"family", "constant"});
     declare("Plane",
             EntryType::choice,
             "stress",
@@ -81,6 +90,7 @@ namespace PeriDeal
   void ElasticityControl::parse(const Physics physics, const unsigned int dim)
   {
     model                 = choice<ElasticModel>("Model");
+    micromodulus          = choice<Micromodulus>("Micromodulus");
     plane                 = choice<PlaneState>("Plane");
     kinematics            = choice<Kinematics>("Kinematics");
     solver                = choice<ElasticSolver>("Solver");
@@ -95,6 +105,10 @@ namespace PeriDeal
         if (is_given(entry.name))
           error(entry.name,
                 "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");
+    if (is_given("Micromodulus") && model != ElasticModel::bond_based)
+      error("Micromodulus",
+            "is for 'Model = bond-based'; 'Model' is '" + choice_name("Model") +
+              "'. Leave the entry out.");
     if (temperature_change.depends_on_time())
       error(
         "Temperature change",

@@ -20,13 +20,13 @@ namespace PeriDeal
             EntryType::formula,
             "1",
             "mass/length^3",
-            "Ignored when steady, and by elasticity unless its solver is `dynamics`.");
+            "Ignored when steady, and by elasticity unless its solver is `dynamics`; may be 0 then.");
     declare(
       "Heat capacity",
       EntryType::formula,
       "1",
       "energy/(mass temperature)",
-      "Per mass; the body stores Density x Heat capacity, either a number or a formula of x, y, z, T. Ignored when steady. With electricity their product is the "
+      "Per mass; the body stores Density x Heat capacity, either a number or a formula of x, y, z, T. Ignored when steady, and may be 0 then. With electricity their product is the "
       "capacitance per volume, and 0 means a steady state.");
     declare(
       "Saturated concentration",
@@ -104,14 +104,21 @@ namespace PeriDeal
   }
 
 
+  bool Material::may_vanish(const std::string &entry, const Physics physics) const
+  {
+    const bool capacity = entry == "Heat capacity";
+    return (capacity && (physics == Physics::electricity || physics == Physics::elasticity)) ||
+           (!needs_storage && (capacity || entry == "Density"));
+  }
+
+
   Expression Material::read(const std::string &entry, const Physics physics) const
   {
     const MaterialEntry &kind = material_entry(entry);
     const Expression     value =
       material_formula(text(entry), kind, physics == Physics::elasticity, where(entry));
-    const bool may_vanish = physics == Physics::electricity && entry == "Heat capacity";
     if (kind.positive && value.is_constant() &&
-        !(value.value(dealii::Point<1>()) > 0. || (may_vanish && is_zero(value))))
+        !(value.value(dealii::Point<1>()) > 0. || (may_vanish(entry, physics) && is_zero(value))))
       error(entry, "found " + text(entry) + ", needs a value greater than 0.");
     return value;
   }
@@ -133,9 +140,14 @@ namespace PeriDeal
   void Material::parse(const Physics                          physics,
                        const unsigned int                     dim,
                        const PlaneState                       plane,
-                       const std::shared_ptr<const PhaseMap> &image)
+                       const std::shared_ptr<const PhaseMap> &image,
+                       const bool                             storage_needed)
   {
-    phases.parse(physics, image);
+    needs_storage = storage_needed;
+    phases.parse(physics, image, [=](const std::string &entry) {
+      return (!needs_storage && (entry == "Density" || entry == "Heat capacity")) ||
+             (physics == Physics::elasticity && entry == "Heat capacity");
+    });
     const auto property = [&](const std::string &entry) {
       return phases.property(entry, read(entry, physics));
     };
@@ -143,8 +155,7 @@ namespace PeriDeal
     stores                    = !(physics == Physics::electricity && is_zero(capacity));
     conductivity              = property("Conductivity");
     density                   = property("Density");
-    heat_capacity =
-      phases.property("Heat capacity", stores ? capacity : Expression(1.)); // 1: not used
+    heat_capacity           = phases.property("Heat capacity", capacity);
     saturated_concentration = property("Saturated concentration");
     interface_rule          = choice<InterfaceRule>("Interface rule");
     if (conductivity.depends_on_temperature() && interface_rule == InterfaceRule::harmonic)

@@ -3,6 +3,7 @@
 
 #include <perideal/scene/lists.h>
 #include <perideal/scene/phases.h>
+#include <perideal/scene/vector_conditions.h>
 
 #include <algorithm>
 #include <cmath>
@@ -343,15 +344,19 @@ namespace PeriDeal
         if (value)
           error(entry, "the phase '" + name_value.first + "' is named twice.");
         value = material_formula(name_value.second, kind, elastic, at);
-        if (kind.positive && value->is_constant() && !(value->value(dealii::Point<1>()) > 0.))
+        if (kind.positive && value->is_constant() &&
+            !(value->value(dealii::Point<1>()) > 0. || (may_vanish(entry) && is_zero(*value))))
           entry_error(at, "found " + name_value.second + ", needs a value greater than 0.");
       }
     return list;
   }
 
 
-  void Phases::parse(const Physics physics, const std::shared_ptr<const PhaseMap> &image)
+  void Phases::parse(const Physics                                  physics,
+                     const std::shared_ptr<const PhaseMap>         &image,
+                     const std::function<bool(const std::string &)> may_be_zero)
   {
+    may_vanish  = may_be_zero;
     elastic     = physics == Physics::elasticity;
     auto list   = std::make_shared<Regions>();
     list->where = where("Regions");

@@ -291,7 +291,12 @@ namespace PeriDeal
     general.dimension = dim;
     domain.parse();
     elasticity.parse(general.physics, dim);
-    material.parse(general.physics, dim, elasticity.plane, domain.image);
+    time.parse();
+    material.parse(general.physics,
+                   dim,
+                   elasticity.plane,
+                   domain.image,
+                   general.physics == Physics::elasticity ? !elasticity.is_static() : !time.steady);
     initial_and_source.parse(general.physics, dim, elasticity.computes_temperature);
     boundary_conditions.parse(domain.shape != Shape::mesh_file,
                               domain.shape == Shape::plate_with_hole ||
@@ -302,7 +307,6 @@ namespace PeriDeal
     peridynamics.parse(general.physics);
     coupling.parse();
     finite_elements.parse();
-    time.parse();
     check_elasticity();
     make_heat_problem();
     // a conductor without capacitance is always in its steady state, and an equilibrium has a time only where its loads have

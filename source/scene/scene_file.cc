@@ -172,6 +172,20 @@ namespace PeriDeal
     }
 
 
+    /** The text with `\n` at the end of each line, wherever it was written: `\r\n` and `\r` alone are line ends, too. */
+    std::string with_plain_line_ends(const std::string &text)
+    {
+      std::string plain;
+      plain.reserve(text.size());
+      for (std::size_t k = 0; k < text.size(); ++k)
+        if (text[k] != '\r')
+          plain += text[k];
+        else if (k + 1 == text.size() || text[k + 1] != '\n')
+          plain += '\n';
+      return plain;
+    }
+
+
     /** The text of a file, read on rank 0. Collective. */
     std::string read_on_root(const std::string &file_name, const MPI_Comm communicator)
     {
@@ -180,7 +194,7 @@ namespace PeriDeal
       std::string text, message;
       if (rank == 0)
         {
-          text = read_file(file_name, most_bytes_of_text, message);
+          text = with_plain_line_ends(read_file(file_name, most_bytes_of_text, message));
           if (!message.empty())
             message = "The scene file '" + file_name + "' " + message +
                       ". Check its path, which is relative to the working directory.";
@@ -207,7 +221,8 @@ namespace PeriDeal
     SceneText scene_text;
     scene_text.file_name    = file_name;
     scene_text.communicator = communicator;
-    scene_text.text = apply_overrides(read_on_root(file_name, communicator), file_name, overrides);
+    const std::string text  = read_on_root(file_name, communicator);
+    scene_text.text = apply_overrides(text, file_name, overrides);
     switch (dimension_of(scene_text))
       {
         case 1:
@@ -219,6 +234,10 @@ namespace PeriDeal
         default:
           check_text<3>(scene_text);
       }
+    AssertThrow(!scan_lines(text, file_name).entries.empty(),
+                UserError("The scene file '" + file_name +
+                          "' has no entry, only comments or sections: nothing in it says what to compute. Entries are lines "
+                          "'set entry = value'; `perideal parameters` lists them all."));
     return scene_text;
   }
 

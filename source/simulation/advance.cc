@@ -66,6 +66,8 @@ namespace PeriDeal
     for (auto &model : models)
       {
         make_stepper_of(*model);
+        with_formulas(
+          [&] { model->ledger.begin(model->op().balance(model->solution, 0., false).content); });
         std::ostringstream line;
         line << model->name() << ": stepper " << model->stepper->name();
         if (model->stepper->current_step() > 0.)
@@ -195,9 +197,10 @@ namespace PeriDeal
           model->after_remesh(t, scene.time.steady);
           if (!model->stepper)
             continue;
-          const StepperCost before = model->stepper->cost();
+          const StepperCost before  = model->stepper->cost();
+          const double      entered = model->stepper->entered();
           make_stepper_of(*model);
-          model->stepper->carry_over(before);
+          model->stepper->carry_over(before, entered);
         }
     });
     readers_fit = false;

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include "check_sides.h"
+
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/mesh_builder.h>
-#include <perideal/simulation/simulation.h>
 
 #include <set>
 #include <sstream>
-
-#include "result_record.h"
 
 namespace PeriDeal
 {
@@ -22,64 +21,87 @@ namespace PeriDeal
     template <int dim>
     std::string negative_coefficient(const SideCondition &convection, const Point<dim> &p)
     {
-      if (convection.coefficient.value(p) >= 0.)
-        return "";
+      try
+        {
+          if (convection.coefficient.value(p) >= 0.)
+            return "";
+        }
+      catch (const UserError &error) // of a formula that is no number here, on this process alone
+        {
+          return error.message();
+        }
       std::ostringstream message;
       message << "'Convection' in section 'Boundary conditions', side '" << convection.name
               << "': the coefficient '" << convection.coefficient.text() << "' is negative at ("
               << p << "). It has to be 0 or more on the whole side.";
       return message.str();
     }
+
+
+    /** The boundary ids of the body on all processes, without those of cracks. Collective. */
+    template <int dim>
+    std::set<types::boundary_id> sides_of(const Scene<dim>         &scene,
+                                          const Triangulation<dim> &mesh)
+    {
+      std::set<types::boundary_id> present;
+      std::string                  message;
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const unsigned int f : cell->face_indices())
+            if (cell->face(f)->at_boundary())
+              {
+                const auto id = cell->face(f)->boundary_id();
+                present.insert(id);
+                const SideCondition *convection =
+                  BoundaryConditions<dim>::find(scene.boundary_conditions.convection, id);
+                if (convection != nullptr && message.empty())
+                  message = negative_coefficient<dim>(*convection, cell->face(f)->center());
+              }
+      throw_on_all_if_any(mesh.get_communicator(), message);
+      present = Utilities::MPI::compute_set_union(present, mesh.get_communicator());
+      present.erase(crack_boundary_id);
+      return present;
+    }
   } // namespace
 
 
   template <int dim>
-  void Simulation<dim>::check_sides() const
+  void check_sides(const Scene<dim> &scene, const Triangulation<dim> &mesh)
   {
-    const auto                  &conditions = scene.boundary_conditions;
-    std::set<types::boundary_id> present;
-    std::string                  message;
-    for (const auto &cell : mesh->active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            {
-              const auto id = cell->face(f)->boundary_id();
-              present.insert(id);
-              const SideCondition *convection =
-                BoundaryConditions<dim>::find(conditions.convection, id);
-              if (convection != nullptr && message.empty())
-                message = negative_coefficient<dim>(*convection, cell->face(f)->center());
-            }
-    throw_on_all_if_any(communicator, message);
+    const std::set<types::boundary_id> present = sides_of(scene, mesh);
     if (scene.domain.shape == Shape::box)
       return;
-    present = Utilities::MPI::compute_set_union(present, communicator);
-    present.erase(crack_boundary_id);
+    const bool               from_file = scene.domain.shape == Shape::mesh_file;
     std::vector<std::string> known;
     for (const auto id : present)
-      known.push_back(std::to_string(id));
+      known.push_back(name_of_side(id, !from_file));
     const auto check =
       [&](const std::string &entry, const types::boundary_id id, const std::string &name) {
         AssertThrow(
           present.count(id) > 0,
           UserError("'" + entry + "' in section 'Boundary conditions' names the side '" + name +
-                    (scene.domain.shape == Shape::mesh_file ?
+                    (from_file ?
                        "', which the mesh '" + scene.domain.mesh_file +
-                         "' does not have. Its boundary ids are: " + join_names(known) + "." :
-                       "', but the hole in section 'Domain' leaves nothing of it.")));
+                         "' does not have. Its boundary ids are: " :
+                       "', but the hole in section 'Domain' leaves nothing of it. Sides that there are: ") +
+                    join_names(known) + "."));
       };
-    for (const SideCondition &condition : conditions.dirichlet)
-      check("Dirichlet", condition.id, condition.name);
-    for (const SideCondition &condition : conditions.flux)
-      check("Flux", condition.id, condition.name);
-    for (const SideCondition &condition : conditions.convection)
-      check("Convection", condition.id, condition.name);
+    const auto check_all = [&](const std::string &entry, const auto &list) {
+      for (const auto &condition : list)
+        check(entry, condition.id, condition.name);
+    };
+    const auto &conditions = scene.boundary_conditions;
+    check_all("Dirichlet", conditions.dirichlet);
+    check_all("Flux", conditions.flux);
+    check_all("Convection", conditions.convection);
+    check_all("Displacement", conditions.displacement);
+    check_all("Traction", conditions.traction);
     for (const auto id : conditions.symmetry)
-      check("Symmetry", id, name_of_side(id, scene.domain.shape != Shape::mesh_file));
+      check("Symmetry", id, name_of_side(id, !from_file));
   }
 
-  template void Simulation<1>::check_sides() const;
-  template void Simulation<2>::check_sides() const;
-  template void Simulation<3>::check_sides() const;
+
+  template void check_sides(const Scene<1> &, const Triangulation<1> &);
+  template void check_sides(const Scene<2> &, const Triangulation<2> &);
+  template void check_sides(const Scene<3> &, const Triangulation<3> &);
 } // namespace PeriDeal

@@ -16,8 +16,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "check_sides.h"
 #include "elastic_phases.h"
 #include "elastic_summary.h"
+#include "finite_results.h"
 #include "point_readers.h"
 #include "result_record.h"
 #include "summary_parts.h"
@@ -114,6 +116,7 @@ namespace PeriDeal
       mesh = build_mesh(scene, communicator, record->notes);
       set_material_ids(*mesh, scene.material.phases.all());
     }
+    check_sides(scene, *mesh);
     note_own_poisson_ratio(scene, *mesh, record->notes);
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
     for (const Model kind : scene.general.models)
@@ -185,7 +188,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticSimulation<dim>::add_totals(const ElasticRun<dim> &model, const double t)
+  void ElasticSimulation<dim>::add_totals(ElasticRun<dim> &model, const double t)
   {
     const auto row = [&](const std::string &quantity, const double value) {
       record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
@@ -193,6 +196,15 @@ namespace PeriDeal
     };
     const ForceBalance balance = model.op().forces(model.displacement, t);
     const double       energy  = model.op().energy(model.displacement);
+    const SymmetricTensor<2, 3> mean = model.mean_stress();
+    require_finite({{"largest displacement", model.displacement.linfty_norm()},
+                    {"strain energy", energy},
+                    {"sum of the forces", balance.throughput()},
+                    {"mean stress", von_mises(mean)}},
+                   model.name(),
+                   t,
+                   "Numbers beyond 1e308 came up. Check the sizes and units of loads and displacements (sections 'Boundary conditions' and 'Initial and source') and of the "
+                   "moduli (section 'Material').");
     row("strain energy", energy);
     for (const auto &[side, force] : balance.sides)
       for (unsigned int d = 0; d < dim; ++d)
@@ -202,8 +214,7 @@ namespace PeriDeal
     row("throughput", balance.throughput());
     if (!model.stepper) // of a motion it is the rate of its momentum
       row("imbalance", balance.imbalance());
-    const SymmetricTensor<2, 3> mean   = model.mean_stress();
-    nlohmann::ordered_json      stress = nlohmann::ordered_json::object();
+    nlohmann::ordered_json stress = nlohmann::ordered_json::object();
     for (unsigned int a = 0; a < 3; ++a)
       for (unsigned int b = a; b < 3; ++b)
         if (b < dim || (dim == 2 && a == 2))
@@ -228,8 +239,13 @@ namespace PeriDeal
         (scene.is_loaded_slowly() && !scene.warms_slowly()))
       record->balances[model.name()]["energy balance"] = add_energies(model, t);
     if (!model.stepper)
-      record->balances[model.name()]["force balance"] = {{"throughput", balance.throughput()},
-                                                         {"imbalance", balance.imbalance()}};
+      {
+        model.force_scale = std::max(model.force_scale,
+                                     find_force_scale(model, scene, balance.throughput()));
+        record->balances[model.name()]["force balance"] = {{"throughput", balance.throughput()},
+                                                           {"imbalance", balance.imbalance()},
+                                                           {"scale", model.force_scale}};
+      }
     if (!ends.empty())
       record->balances[model.name()]["stress intensity"] = ends;
   }

@@ -10,6 +10,7 @@
 #include <perideal/base/user_error.h>
 
 #include <cmath>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -149,6 +150,52 @@ namespace PeriDeal
 
 
   template <int dim>
+  double find_force_scale(const ElasticRun<dim> &model,
+                          const Scene<dim>      &scene,
+                          const double           throughput)
+  {
+    const MPI_Comm communicator = model.dofs().get_communicator();
+    const Vector  &u            = model.displacement;
+    double         volume = 0., stiffness = 0., spread = 0.;
+    Point<dim>     lowest, highest; // of places: minus the lowest and the highest
+    for (unsigned int d = 0; d < dim; ++d)
+      lowest[d] = highest[d] = std::numeric_limits<double>::lowest();
+    Point<dim> least = lowest, most = highest; // likewise of displacements
+    for (unsigned int i = 0; i < u.locally_owned_size() / dim; ++i)
+      {
+        const Point<dim> p = model.position(i);
+        try
+          {
+            stiffness += model.volume(i) * scene.material.moduli(p).young();
+            volume += model.volume(i);
+          }
+        catch (const UserError &) // no number at this point, which finite elements need not use
+          {}
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double v = u.local_element(dim * i + d);
+            lowest[d]      = std::max(lowest[d], -p[d]);
+            highest[d]     = std::max(highest[d], p[d]);
+            least[d]       = std::max(least[d], -v);
+            most[d]        = std::max(most[d], v);
+          }
+      }
+    double edge = std::numeric_limits<double>::max();
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const auto width = [&](const double low, const double high) {
+          return Utilities::MPI::max(low, communicator) + Utilities::MPI::max(high, communicator);
+        };
+        edge   = std::min(edge, width(lowest[d], highest[d]));
+        spread = std::max(spread, width(least[d], most[d]));
+      }
+    volume    = Utilities::MPI::sum(volume, communicator);
+    stiffness = Utilities::MPI::sum(stiffness, communicator) / (volume > 0. ? volume : 1.);
+    return std::max(throughput, stiffness * std::pow(edge, dim - 2.) * spread);
+  }
+
+
+  template <int dim>
   void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &models,
                              const Domain<dim>                                   &domain,
                              const double                                         t,
@@ -199,6 +246,9 @@ namespace PeriDeal
                                 const Point<dim> &,                                          \
                                 const Point<dim> &,                                          \
                                 const double);                                               \
+  template double find_force_scale(const ElasticRun<dim> &,                                  \
+                                   const Scene<dim> &,                                       \
+                                   const double);                                            \
   template void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &, \
                                       const Domain<dim> &,                                   \
                                       const double,                                          \

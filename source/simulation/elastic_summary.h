@@ -27,6 +27,16 @@ namespace PeriDeal
                                          const double              t = 0.);
 
   /**
+   * The size of forces in the body now, against which a sum of forces that should be zero is small or not: what passes through it (@p throughput), and its mean Young modulus
+   * times the area of a cube on its shortest edge times the strain by which displacements differ over that edge: a body that is free to expand bears
+   * nothing but round-off, which is small against the latter. Collective.
+   */
+  template <int dim>
+  double find_force_scale(const ElasticRun<dim> &model,
+                          const Scene<dim>      &scene,
+                          const double           throughput);
+
+  /**
    * Append to `relative l2` and `maximum` of @p comparison the pair [t, value]: peridynamics minus the interpolant of finite elements at its nodes. The norm of the
    * displacement vectors, weighted by nodal volumes, over that of the finite elements; and the largest length of a difference. Nothing where one
    * of the models is absent. Collective.

@@ -124,8 +124,9 @@ namespace PeriDeal
         transfer->interpolate(u);
         transfer.reset();
         fem->interpolate_hanging(u);
-        const double lost = heat_before - fem->heat(u);
+        const double kept = fem->heat(u), lost = heat_before - kept;
         fem->distribute(u, t); // what new nodes on Dirichlet sides get comes from outside
+        this->ledger.add(fem->heat(u) - kept);
         if (!steady)
           give_heat(lost, t);
       }

@@ -18,7 +18,9 @@
 #include <sstream>
 #include <utility>
 
+#include "check_sides.h"
 #include "effective_conductivity.h"
+#include "finite_results.h"
 #include "point_readers.h"
 #include "result_record.h"
 #include "summary_parts.h"
@@ -121,7 +123,7 @@ namespace PeriDeal
                           std::to_string(Utilities::MPI::n_mpi_processes(communicator)) +
                           " processes without any. Use fewer processes or more 'Cells' (section "
                           "'Domain')."));
-    with_formulas([&] { check_sides(); });
+    with_formulas([&] { check_sides(scene, *mesh); });
     if (scene.peridynamics.flux_treatment != FluxTreatment::natural &&
         scene.boundary_conditions.flux.empty())
       record->notes.push_back(
@@ -372,6 +374,14 @@ namespace PeriDeal
   {
     const Balance       balance = model.op().balance(model.solution, t, scene.time.steady);
     const PhysicsNames &names   = names_of(scene.general.physics);
+    require_finite({{"largest " + names.field, model.solution.linfty_norm()},
+                    {names.flow, balance.throughput()},
+                    {"imbalance", balance.imbalance()},
+                    {names.content, balance.content}},
+                   model.name(),
+                   t,
+                   "Numbers beyond 1e308 came up. Check the sizes and units of values, fluxes and sources (sections 'Boundary conditions' and 'Initial and source') and of the "
+                   "properties in section 'Material'.");
     const auto          row     = [&](const std::string &quantity, const double value) {
       record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
                         full_precision(value) + "\n";
@@ -382,14 +392,28 @@ namespace PeriDeal
     for (const auto &[side, value] : balance.sides)
       row(names.flow + " through " + side, value);
     row(names.flow + " from sources", balance.sources);
+    nlohmann::ordered_json cumulative; // not if steady
     row("rate of storage", balance.stored);
     row("throughput", balance.throughput());
     row("imbalance", balance.imbalance());
+    if (model.stepper)
+      {
+        const CumulativeBalance since_start =
+          model.ledger.balance(model.stepper->entered(), balance.content, communicator);
+        row(names.quantity + " entered since start", since_start.entered);
+        row(names.quantity + " stored since start", since_start.stored);
+        row("cumulative imbalance", since_start.imbalance());
+        cumulative = {{"entered", since_start.entered},
+                      {"stored", since_start.stored},
+                      {"imbalance", since_start.imbalance()}};
+      }
     for (std::size_t crack = 0; crack < balance.cracks.size(); ++crack)
       row(names.flow + " through crack " + std::to_string(crack + 1), balance.cracks[crack]);
     record->balances[model.name()] = {
       {"boundary flux", balance.sides},
       {"heat balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}}};
+    if (!cumulative.empty())
+      record->balances[model.name()]["heat balance"]["cumulative"] = cumulative;
     if (const auto kappa = effective_conductivity(scene, balance))
       {
         row("effective conductivity", *kappa);

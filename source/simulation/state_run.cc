@@ -181,6 +181,11 @@ namespace PeriDeal
         const std::string entry     = "'Surface correction = moments' in section 'Peridynamics' ";
         const unsigned long long n  = states->n_uncorrected_nodes();
         std::vector<std::string> list;
+        if (dim > 1 && scene.elasticity.model == ElasticModel::bond_based &&
+            scene.elasticity.micromodulus == Micromodulus::family)
+          list.push_back(
+            "'Model = bond-based' in section 'Elasticity' divides the stiffness of a bond by sums over the families of its ends, which are smaller at surfaces: these are "
+            "stiffer than those of the prototype microelastic material, which has the same constant everywhere. 'Micromodulus = constant' is that one.");
         if (n > 0)
           list.push_back(
             entry + "leaves " + std::to_string(n) + " of " + std::to_string(node_set->n_global()) +

@@ -5,11 +5,13 @@
 
 #include <perideal/base/node_loops.h>
 #include <perideal/base/user_error.h>
+#include <perideal/solvers/heat_steps.h>
 #include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace PeriDeal
 {
@@ -53,6 +55,22 @@ namespace PeriDeal
           rest += std::abs(coefficients.back());
           coefficients.pop_back();
         }
+      return coefficients;
+    }
+
+
+    /**
+     * Chebyshev coefficients of phi_2 = (phi_1 - 1)/z at z (x - 1) / 2 from those of phi_1, one less: the coefficients of both sides of (z/2)(x - 1) phi_2 = phi_1 - 1,
+     * from the highest one downwards.
+     */
+    std::vector<double> next_expansion(const std::vector<double> &of_phi1, const double z)
+    {
+      const std::size_t   n = of_phi1.size();
+      std::vector<double> coefficients(n + 1, 0.);
+      for (std::size_t k = n - 1; k > 1; --k)
+        coefficients[k - 1] = 2. * coefficients[k] - coefficients[k + 1] + 4. / z * of_phi1[k];
+      coefficients[0] = coefficients[1] - 0.5 * coefficients[2] + 2. / z * of_phi1[1];
+      coefficients.resize(n - 1);
       return coefficients;
     }
 
@@ -113,8 +131,7 @@ namespace PeriDeal
       {
         const auto n =
           static_cast<double>(dt > 0. ? n_equal_steps(time_span, dt) : n_expansions(time_span));
-        return n * static_cast<double>(
-                     expansion(spectral_bound() * time_span / n, 1e-2 * tolerance).size());
+        return n * expected_size(spectral_bound() * time_span / n);
       }
 
       std::size_t memory_consumption() const override
@@ -131,6 +148,22 @@ namespace PeriDeal
       }
 
 
+      /**
+       * About the number of coefficients of one expansion. There may be a million spans of time between events, most of them alike, so that few are found, and those only where that
+       * is fast: beyond, the number grows like the root of z.
+       */
+      double expected_size(const double z) const
+      {
+        constexpr double longest = 1e4, resolution = 1e-3;
+        const double     shorter = std::min(z, longest);
+        const auto       found   = sizes.try_emplace(std::llround(std::log(shorter) / resolution), 0.);
+        if (found.second)
+          found.first->second =
+            static_cast<double>(expansion(shorter, 1e-2 * tolerance).size());
+        return found.first->second * std::sqrt(z / shorter);
+      }
+
+
       /** Finding the coefficients takes the square of the degree: some 1e4 of them at once. */
       unsigned long long n_expansions(const double span) const
       {
@@ -143,12 +176,14 @@ namespace PeriDeal
       {
         ++spent.steps;
         compute_rate(op, u, t, last);
+        heat_entered += tau * op.entering();
         const double change = tau * capacity_norm(op, last), level = capacity_norm(op, u);
         if (change == 0.)
           return;
         const double              bound = spectral_bound();
         const std::vector<double> coefficients =
           expansion(bound * tau, std::clamp(tolerance * level / change, 1e-17, 0.1));
+        const std::vector<double> of_heat = next_expansion(coefficients, bound * tau);
         // The argument B = 1 + 2 A / bound of the polynomials has its spectrum in [-1, 1]: T_0 v = last, T_1 v = now.
         const double scale = 2. / bound;
         op.apply_then(image, last, [&](const unsigned int begin, const unsigned int end) {
@@ -160,6 +195,7 @@ namespace PeriDeal
                 coefficients[0] * last.local_element(i) + coefficients[1] * now.local_element(i);
             }
         });
+        heat_entered += tau * tau * of_heat[0] * op.entering();
         for (std::size_t k = 2; k < coefficients.size(); ++k)
           {
             op.apply_then(image, now, [&](const unsigned int begin, const unsigned int end) {
@@ -172,6 +208,7 @@ namespace PeriDeal
                                         coefficients[k],
                                         end - begin);
             });
+            heat_entered += tau * tau * of_heat[k - 1] * op.entering();
             last.swap(now);
           }
         u.add(tau, sum);
@@ -181,6 +218,8 @@ namespace PeriDeal
       const double        dt, tolerance;
       Vector              last, now, image, sum;
       std::vector<double> inverse; // of the capacity
+
+      mutable std::map<long long, double> sizes; // of expected_size(), by the logarithm of z
     };
   } // namespace
 

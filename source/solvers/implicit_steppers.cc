@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/user_error.h>
+#include <perideal/solvers/heat_steps.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
@@ -26,8 +27,9 @@ namespace PeriDeal
         , tolerance(options.tolerance)
         , third_order_tolerance(local_tolerance(options.tolerance))
         , solver(op, options.solver_tolerance, options.max_iterations, options.direct_up_to)
+        , held(op)
       {
-        for (Vector *v : {&next, &error, &residual, &change, &offset})
+        for (Vector *v : {&next, &error, &residual, &change, &offset, &known, &taken})
           op.initialize_vector(*v);
       }
 
@@ -53,6 +55,7 @@ namespace PeriDeal
 
       void advance(Vector &u, const double t_start, const double t_end) override
       {
+        held.begin(u);
         double                   t = t_start;
         const unsigned long long n = fixed ? n_equal_steps(t_end - t, dt) : 0;
         if (!fixed && dt == 0.)
@@ -83,6 +86,12 @@ namespace PeriDeal
                     continue;
                   }
               }
+            heat_entered += step_heat;
+            if (op.capacity_depends_on_solution())
+              {
+                op.heat_between(taken, u, next);
+                heat_entered += sum_of_held(op, taken, offset);
+              }
             accept(u, h);
             u = next;
             t = t_new;
@@ -92,27 +101,37 @@ namespace PeriDeal
           }
         op.distribute(u, t_end);
         check_finite(u, method, t_end);
+        heat_entered += held.taken(u);
       }
 
     protected:
-      /** One step of size h from u at t into `next`; the local error estimate into `error`. Returns the order of the estimate in h, 0 if there is none yet. */
+      /**
+       * One step of size h from u at t into `next`, what enters meanwhile into `step_heat`; the local error estimate into `error`. Returns the order of the
+       * estimate in h, 0 if there is none yet.
+       */
       virtual int step(const Vector &u, const double t, const double h) = 0;
 
       /** The step is good: keep what the next one needs. u is still the old value. */
       virtual void accept(const Vector &, const double) {}
 
-      /** Solve C (U - w) = s (f(t) - K U): the start of the iteration is in U, w and s > 0 belong to the method. */
-      void solve_stage(const Vector &w, const double s, const double t, Vector &U)
+      /**
+       * Solve C (U - w) = s (f(t) - K U): the start of the iteration is in U, w and s > 0 belong to the method. Where C depends on the solution, solve instead for the heat that
+       * U has more than u, H(U) - H(u) = known + s (f(t) - K U), so that the steps keep it. Returns what enters per time with U.
+       */
+      double solve_stage(const Vector &u, const Vector &w, const double s, const double t, Vector &U)
       {
         // Picard iterations if the material depends on the solution: it is taken at the last iterate.
         constexpr unsigned int most = 30;
         const double           goal = std::max(1e-4 * tolerance, 1e-14); // above round-off
         for (unsigned int k = 0; k < most; ++k)
           {
-            solve_once(w, s, t, U);
+            solve_once(u, w, s, t, U);
             if (!op.depends_on_solution() ||
                 capacity_norm(op, change) <= goal * capacity_norm(op, U))
-              return;
+              {
+                op.residual(residual, U, t);
+                return op.entering();
+              }
           }
         std::ostringstream message;
         message
@@ -122,9 +141,10 @@ namespace PeriDeal
           << most << " rounds near t = " << t
           << ". Choose a smaller 'Time step' or 'Tolerance', or 'Stepper = rkc2'.";
         AssertThrow(false, UserError(message.str()));
+        return 0.;
       }
 
-      void solve_once(const Vector &w, const double s, const double t, Vector &U)
+      void solve_once(const Vector &u, const Vector &w, const double s, const double t, Vector &U)
       {
         op.distribute(U, t);
         if (op.depends_on_solution())
@@ -134,9 +154,17 @@ namespace PeriDeal
             solver.operator_changed();
           }
         op.residual(residual, U, t);
-        for (unsigned int i = 0; i < w.locally_owned_size(); ++i)
-          offset.local_element(i) = w.local_element(i) - U.local_element(i);
-        op.apply_capacity(change, offset);
+        if (op.capacity_depends_on_solution())
+          {
+            op.heat_between(change, u, U);
+            change.sadd(-1., 1., known);
+          }
+        else
+          {
+            for (unsigned int i = 0; i < w.locally_owned_size(); ++i)
+              offset.local_element(i) = w.local_element(i) - U.local_element(i);
+            op.apply_capacity(change, offset);
+          }
         op.clear_constrained(change);
         residual.sadd(s, 1., change);
         change = 0.;
@@ -150,13 +178,20 @@ namespace PeriDeal
       {
         const double gamma = 1. - std::sqrt(0.5);
         next               = u;
-        solve_stage(u, gamma * h, t + gamma * h, next);
+        known              = 0.;
+        const double first = solve_stage(u, u, gamma * h, t + gamma * h, next);
+        if (op.capacity_depends_on_solution())
+          {
+            op.heat_between(known, u, next);
+            known *= (1. - gamma) / gamma;
+          }
         for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
           {
             k1.local_element(i) = (next.local_element(i) - u.local_element(i)) / (gamma * h);
             offset_w(i, u, k1, (1. - gamma) * h);
           }
-        solve_stage(base, gamma * h, t + h, next);
+        const double second = solve_stage(u, base, gamma * h, t + h, next);
+        step_heat           = h * ((1. - gamma) * first + gamma * second);
         for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
           k2.local_element(i) = (next.local_element(i) - base.local_element(i)) / (gamma * h);
       }
@@ -173,6 +208,8 @@ namespace PeriDeal
 
       Operator &op;
       Vector    next, error, base;
+      Vector    known, taken; // see solve_stage(); what the unknowns took up in the last step
+      double    step_heat = 0.;
 
     private:
       std::string unstable_message(const double t) const
@@ -190,6 +227,7 @@ namespace PeriDeal
       const double      tolerance, third_order_tolerance; // of the estimated errors of a step
       LinearSolver      solver;
       Vector            residual, change, offset;
+      HeldHeat          held;
     };
 
 
@@ -261,6 +299,7 @@ namespace PeriDeal
 
       void accept(const Vector &u, const double h) override
       {
+        heat_before = step_heat;
         oldest.swap(previous);
         previous   = u;
         h_oldest   = h_previous;
@@ -282,7 +321,7 @@ namespace PeriDeal
       }
 
       Vector previous, oldest, k1, k2;
-      double h_previous = 0., h_oldest = 0.;
+      double h_previous = 0., h_oldest = 0., heat_before = 0.;
       int    n_known = 0;
     };
 
@@ -302,7 +341,9 @@ namespace PeriDeal
         for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
           base.local_element(i) = (a1 * u.local_element(i) - a2 * previous.local_element(i)) / a0;
         next = u;
-        solve_stage(base, h / a0, t + h, next);
+        if (op.capacity_depends_on_solution())
+          known.equ(a2 / a0, taken);
+        step_heat = a2 / a0 * heat_before + h / a0 * solve_stage(u, base, h / a0, t + h, next);
       }
 
       double error_factor(const double) const override
@@ -334,6 +375,8 @@ namespace PeriDeal
         op.take_material_at(start);
         op.distribute(start, t);
         op.residual(load, start, t);
+        const double entering = op.entering();
+        known.equ(0.5 * h, load);
         if (op.capacity_is_diagonal())
           for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
             base.local_element(i) = u.local_element(i) + 0.5 * h * load.local_element(i) /
@@ -344,8 +387,8 @@ namespace PeriDeal
             spent.iterations += capacity_solver().solve(1., 0., base, load);
             base.sadd(0.5 * h, 1., u);
           }
-        next = u;
-        solve_stage(base, 0.5 * h, t + h, next);
+        next      = u;
+        step_heat = 0.5 * h * (entering + solve_stage(u, base, 0.5 * h, t + h, next));
       }
 
       double error_factor(const double) const override

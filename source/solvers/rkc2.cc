@@ -3,6 +3,7 @@
 
 #include <perideal/base/node_loops.h>
 #include <perideal/base/user_error.h>
+#include <perideal/solvers/heat_steps.h>
 #include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
 
@@ -61,6 +62,8 @@ namespace PeriDeal
         , fixed(options.time_step > 0.)
         , dt(fixed ? options.time_step : 0.)
         , tolerance(local_tolerance(options.tolerance))
+        , conservative(op)
+        , held(op)
       {
         for (Vector *v : {&rate, &stage_rate, &before, &last, &now})
           op.initialize_vector(*v);
@@ -74,6 +77,7 @@ namespace PeriDeal
 
       void advance(Vector &u, const double t, const double t_end) override
       {
+        held.begin(u);
         if (fixed)
           {
             const unsigned long long n = n_equal_steps(t_end - t, dt);
@@ -82,7 +86,8 @@ namespace PeriDeal
               {
                 take_material_at(u, t + k * h);
                 compute_rate(op, u, t + k * h, rate);
-                stages(u, t + k * h, h);
+                heat_entered += stages(u, t + k * h, h, op.entering());
+                heat_entered += conservative.correct(u, now);
                 u.swap(now);
                 ++spent.steps;
               }
@@ -91,6 +96,7 @@ namespace PeriDeal
         else
           advance_adaptively(u, t, t_end);
         check_finite(u, name(), t_end);
+        heat_entered += held.taken(u);
         if (fixed)
           take_material_at(u, t_end); // for what is written there
       }
@@ -113,7 +119,7 @@ namespace PeriDeal
       std::size_t memory_consumption() const override
       {
         return memory_of({&rate, &stage_rate, &before, &last, &now}) +
-               inverse.capacity() * sizeof(double);
+               conservative.memory_consumption() + inverse.capacity() * sizeof(double);
       }
 
     private:
@@ -135,8 +141,10 @@ namespace PeriDeal
       }
 
 
-      /** From u at t with its rate to `now` at t + h. */
-      void stages(const Vector &u, const double t, const double h)
+      /**
+       * From u at t with its rate to `now` at t + h. Returns what enters meanwhile, which has the rate @p entering at t: the same formulas with one more unknown, 0 at t.
+       */
+      double stages(const Vector &u, const double t, const double h, const double entering)
       {
         const unsigned int    s = n_stages(h), n = u.locally_owned_size();
         const RKCCoefficients k(s);
@@ -145,6 +153,7 @@ namespace PeriDeal
             before.local_element(i) = u.local_element(i);
             last.local_element(i) = u.local_element(i) + k.b[1] * k.w1 * h * rate.local_element(i);
           }
+        double heat_before = 0., heat_last = k.b[1] * k.w1 * h * entering;
         for (unsigned int j = 2; j <= s; ++j)
           {
             const double mu = 2. * k.b[j] * k.w0 / k.b[j - 1], nu = -k.b[j] / k.b[j - 2],
@@ -166,6 +175,10 @@ namespace PeriDeal
                                                     factors,
                                                     end - begin);
                              });
+            const double heat_now = mu * heat_last + nu * heat_before + mu_rate * op.entering() +
+                                    gamma * entering;
+            heat_before           = heat_last;
+            heat_last             = heat_now;
             if (j < s)
               {
                 before.swap(last);
@@ -173,6 +186,7 @@ namespace PeriDeal
               }
           }
         op.distribute(now, t + h);
+        return heat_last;
       }
 
 
@@ -183,11 +197,13 @@ namespace PeriDeal
           dt = std::min(t_end - t, 0.5 / op.spectrum().sharp);
         take_material_at(u, t);
         compute_rate(op, u, t, rate);
+        double entering = op.entering();
         while (t < t_end)
           {
             const bool   lands = t + dt * (1. + 1e-10) >= t_end;
             const double h     = lands ? t_end - t : std::min(dt, 0.5 * (t_end - t) + 0.5 * dt);
-            stages(u, t, h);
+            double       heat = stages(u, t, h, entering);
+            heat += conservative.correct(u, now);
             take_material_at(now,
                              t + h); // so that the error estimate sees what has changed in the step
             compute_rate(op, now, t + h, stage_rate);
@@ -207,6 +223,8 @@ namespace PeriDeal
                 t = lands ? t_end : t + h;
                 u.swap(now);
                 rate.swap(stage_rate);
+                heat_entered += heat;
+                entering = op.entering();
                 ++spent.steps;
                 dt = lands ? std::max(dt, h * growth) : h * growth;
               }
@@ -238,6 +256,8 @@ namespace PeriDeal
       const double        tolerance;
       Vector              rate, stage_rate, before, last, now;
       std::vector<double> inverse; // of the capacity
+      ConservativeStep    conservative;
+      HeldHeat            held;
     };
   } // namespace
 

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/node_loops.h>
+#include <perideal/solvers/heat_steps.h>
 #include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
 
@@ -27,8 +28,13 @@ namespace PeriDeal
         , fixed(options.time_step > 0.)
         , share_of_bound(share_of_bound)
         , dt(fixed ? options.time_step : share_of_bound * stable_step(method, op.spectrum().sharp))
+        , conservative(op)
+        , held(op)
         , inverse(inverse_capacity(op))
-      {}
+      {
+        if (conservative.needed())
+          op.initialize_vector(old);
+      }
 
       std::string name() const override
       {
@@ -42,6 +48,7 @@ namespace PeriDeal
             advance_lagged(u, t, t_end);
             return;
           }
+        held.begin(u);
         const unsigned long long n = n_equal_steps(t_end - t, dt);
         for (unsigned long long k = 0; k < n; ++k)
           {
@@ -54,6 +61,7 @@ namespace PeriDeal
           }
         op.distribute(u, t_end);
         check_finite(u, method, t_end);
+        heat_entered += held.taken(u);
       }
 
       void restart() override
@@ -81,8 +89,14 @@ namespace PeriDeal
             restart(); // the bound of this step
             const bool   lands = t + dt * (1. + 1e-10) >= t_end;
             const double size  = lands ? t_end - t : dt;
+            if (conservative.needed())
+              old = u;
+            else
+              held.begin(u);
             step(u, t, size);
             t = lands ? t_end : t + dt;
+            op.distribute(u, t);
+            heat_entered += conservative.needed() ? conservative.correct(old, u) : held.taken(u);
             ++spent.steps;
             check_finite(u, method, t);
           }
@@ -99,6 +113,9 @@ namespace PeriDeal
       const bool        fixed;
       const double      share_of_bound;
       double            dt;
+      ConservativeStep  conservative;
+      HeldHeat          held;
+      Vector            old;
 
     protected:
       std::vector<double> inverse; // of the capacity
@@ -130,10 +147,11 @@ namespace PeriDeal
       {
         op.distribute(u, t);
         op.residual_then(next, u, t, [&](const unsigned int begin, const unsigned int end) {
-          double *values = next.begin(), *old = u.begin();
+          double *values = next.begin(), *now = u.begin();
           for (unsigned int i = begin; i < end; ++i)
-            values[i] = old[i] + size * (inverse[i] * values[i]);
+            values[i] = now[i] + size * (inverse[i] * values[i]);
         });
+        heat_entered += size * op.entering();
         u.swap(next);
       }
 
@@ -196,6 +214,7 @@ namespace PeriDeal
                                    place[s + 1] * size,
                                    n);
             });
+            heat_entered += weight[s] * size * op.entering();
             stage.swap(next_stage);
           }
         u.swap(sum);

@@ -203,6 +203,7 @@ def check_summary(run, dim, steady=False):
         if not steady:
             sharp, safe = model["stable step"]["sharp"], model["stable step"]["safe"]
             check(0 < safe <= sharp, f"{dim}D, {name}: stable step {model['stable step']}")
+        check(("cumulative" in model["heat balance"]) != steady, f"{dim}D, {name}: {model['heat balance']}")
         check(model["peak memory"] > 1e6 and all(time >= 0 for time in model["wall time"].values()), f"{name}: {model}")
     with open(os.path.join(run.folder, "scene.prm")) as file:
         check("set Horizon ratio" in file.read(), "scene.prm has no defaults")
@@ -244,6 +245,14 @@ def check_same_fields(first, second, dim):
         check(len(tables[0]) == len(tables[1]) and places and gap < 1e-11, f"{dim}D, {model}, {field}: differs by {gap} between 1 and 4 processes")
 
 
+def check_since_start(run, model, heat):
+    """Since the start: the summary has the last numbers of totals.csv, and what is missing is within the tolerance in time."""
+    last = {row["quantity"]: row["value"] for row in run.totals if row["model"] == model}
+    for key, quantity in (("entered", "heat entered since start"), ("stored", "heat stored since start"), ("imbalance", "cumulative imbalance")):
+        check(last.get(quantity) == heat[key], f"{model}: {quantity}: {last.get(quantity)}, in the summary {heat[key]}")
+    check(abs(heat["imbalance"]) <= 1e-5 * abs(heat["entered"]), f"{model}: since the start {heat}")
+
+
 def balance():
     """Heat that enters and is not stored, over what passes through."""
     rows = []
@@ -262,6 +271,8 @@ def balance():
                         share = abs(heat["imbalance"]) / heat["throughput"]
                         rows.append((f"{dim}D", "steady" if steady else "t = 0.3", place, treatment, name, heat["throughput"], share))
                         check(share <= 1e-10, f"{rows[-1]}: imbalance")
+                        if not steady:
+                            check_since_start(run, name, heat["cumulative"])
     print_table("Heat balance: imbalance over throughput (at most 1e-10)",
                 ("body", "time", "nodes", "boundary", "model", "throughput", "imbalance/throughput"), rows)
 

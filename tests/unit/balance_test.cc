@@ -23,6 +23,42 @@ namespace PeriDeal
                              {"Boundary conditions/Symmetry", "right, top"}};
 
 
+    /** What the last residual() or apply() has found to enter, of all processes. */
+    double entering(const Operator &op)
+    {
+      return dealii::Utilities::MPI::sum(op.entering(), MPI_COMM_WORLD);
+    }
+
+
+    /** entering() is what the balance says of sides and sources, with and without finish(), and linear in the field but for loads. */
+    template <int dim>
+    void expect_entering(const std::string &what, const Problem<dim> &problem, const Vector &u)
+    {
+      const DiffusionOperator &op      = problem.op();
+      const Balance            balance = op.balance(u, 0.7, false);
+      double                   heat = balance.sources, size = std::abs(balance.sources);
+      for (const auto &[name, value] : balance.sides)
+        {
+          heat += value;
+          size += std::abs(value);
+        }
+      Vector x = problem.values([](const Point<dim> &p) { return std::cos(3. * p[0]) - p[0]; }),
+             y = problem.vector(), sum = u;
+      op.residual(y, u, 0.7);
+      const double alone = entering(op);
+      EXPECT_NEAR(alone, heat, 1e-11 * size) << what;
+      op.residual_then(y, u, 0.7, [](const unsigned int, const unsigned int) {});
+      EXPECT_NEAR(entering(op), heat, 1e-11 * size) << what;
+      op.distribute_homogeneous(x);
+      sum += x;
+      op.distribute(sum, 0.7);
+      op.residual(y, sum, 0.7);
+      const double both = entering(op);
+      op.apply(y, x);
+      EXPECT_NEAR(entering(op), both - alone, 1e-11 * (size + std::abs(both))) << what;
+    }
+
+
     /** Nothing is lost: in a field that is no solution at all, and in a steady one, to 1e-12 of what flows. */
     template <int dim>
     void expect_balance(const std::string &what,
@@ -39,6 +75,7 @@ namespace PeriDeal
         size += std::abs(heat);
       EXPECT_GT(size, 0.1) << what;
       EXPECT_LT(std::abs(moving.imbalance()), 1e-12 * size) << what;
+      expect_entering(what, problem, u);
 
       solve_steady(problem.op(), u, 0., 1e-14, 1000);
       const Balance steady = problem.op().balance(u, 0., true);
@@ -152,6 +189,26 @@ namespace PeriDeal
                        {"Boundary conditions/Convection", "right: 3, 5"},
                        {"Initial and source/Source", "x"}},
                       Model::finite_elements);
+  }
+
+
+  TEST(Balance, entering_with_values_that_follow_from_others)
+  {
+    // What extrapolated fluxes and the papers' self term do not conserve enters all the same.
+    for (const Settings &more :
+         {Settings{{"Peridynamics/Flux treatment", "extrapolation"}},
+          Settings{{"Peridynamics/Self term", "paper"},
+                   {"Peridynamics/Boundary treatment", "fictitious mirror"}}})
+      {
+        const Problem<2> problem(plate +
+                                   Settings{{"Boundary conditions/Dirichlet", "left: 1 + y*t"},
+                                            {"Boundary conditions/Flux", "top: 3*x; right: t"}} +
+                                   more,
+                                 Model::peridynamics);
+        Vector           u = problem.values(bumpy<2>);
+        problem.op().distribute(u, 0.7);
+        expect_entering(more[0].second, problem, u);
+      }
   }
 
 

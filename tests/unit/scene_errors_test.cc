@@ -292,6 +292,30 @@ namespace PeriDeal
   }
 
 
+  TEST(Scenes, storage_is_needed_only_where_something_changes)
+  {
+    const std::string m = "Material", steady = "subsection Time\nset Steady = true\nend\n"
+                                               "subsection Boundary conditions\nset Dirichlet = left: 0\nend\n";
+    const auto with = [&](const std::string &head, const std::string &entry) {
+      return fault(head + "subsection Material\nset " + entry + "\nend\n");
+    };
+    for (const std::string physics : {"heat", "moisture", "electricity"})
+      for (const std::string entry : {"Density", "Heat capacity"})
+        {
+          const std::string name = "set Physics = " + physics + "\n";
+          EXPECT_EQ(with(name + steady, entry + " = 0"), "") << physics;
+          EXPECT_EQ(with(name + steady, entry + " = 0*x"), "") << physics;
+          expect_fault(with(name + steady, entry + " = -1"), m, entry, {"greater than 0"});
+          if (physics != "electricity" || entry == "Density")
+            expect_fault(with(name, entry + " = 0"), m, entry, {"greater than 0"});
+        }
+    const std::string phases = "subsection Material\nsubsection Phases\nset Regions = a: x > 0.5\n"
+                               "set Density = a: 0\nend\nend\n";
+    EXPECT_EQ(fault(steady + phases), "");
+    expect_fault(fault(phases), "Material/Phases", "Density", {"greater than 0"});
+  }
+
+
   TEST(Scenes, time_and_solver_errors)
   {
     const std::string s = "Time";

@@ -51,6 +51,9 @@ namespace PeriDeal
     expect_parts(read_fault("subsection Time\nset End time = 12e # s\nend\n"),
                  {name + "2: ", "'End time' in section 'Time'", "'12e' is not a number"});
     expect_parts(read_fault(" \n"), {"is empty"});
+    for (const std::string nothing :
+         {"# only a comment\n", "# old\r# Mac\r", "subsection Time\nend\n"})
+      expect_parts(read_fault(nothing), {"has no entry", "'set entry = value'"});
     expect_parts(message_of([] { read_scene("no such file.prm", {}, MPI_COMM_WORLD); }),
                  {"'no such file.prm' cannot be read"});
     expect_parts(message_of([] { read_scene(".", {}, MPI_COMM_WORLD); }), {"'.' cannot be read"});
@@ -67,6 +70,29 @@ namespace PeriDeal
     Scene<2> scene;
     parse_scene<2>({"a.prm", "subsection Domain\n  set Cells = 3, \\  \n   4\nend\n"}, scene);
     EXPECT_EQ(scene.domain.cells[1], 4u);
+  }
+
+
+  TEST(SceneFile, line_ends_of_every_system)
+  {
+    for (const std::string end : {"\n", "\r\n", "\r"})
+      {
+        const auto lines = [&](const std::vector<std::string> &list) {
+          std::string text;
+          for (const std::string &line : list)
+            text += line + end;
+          return text;
+        };
+        const TemporaryFile file(
+          lines({"# A comment", "set Title = a", "subsection Domain", "  set Cells = 3, \\", "  7", "end"}));
+        const auto text = read_scene(file.name, {}, MPI_COMM_WORLD);
+        Scene<2>   scene;
+        parse_scene<2>(text, scene);
+        EXPECT_EQ(scene.general.title, "a");
+        EXPECT_EQ(scene.domain.cells[0], 3u);
+        EXPECT_EQ(scene.domain.cells[1], 7u);
+        expect_parts(read_fault(lines({"set Title = a", "", "set Titel = b"})), {".prm:3: "});
+      }
   }
 
 

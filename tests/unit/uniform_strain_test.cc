@@ -4,7 +4,10 @@
 // Peridynamic solids under uniform strains, against classical ones and sums over the lattice.
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "elastic_test_tools.h"
@@ -144,6 +147,87 @@ TEST(StateOperator, energy_of_uniform_strain)
       const double wanted =
         0.5 * area * 0.2 * 0.2 + shear * ((2. - g) * 0.5 * 0.4 * 0.4 + g * 2. * 0.2 * 0.2);
       EXPECT_NEAR(0.5 * added, wanted, 3e-5 * wanted);
+    }
+}
+
+
+namespace
+{
+  /** The energy of a bond-based cube of n^3 cells over the classical one, and the same by plain sums over pairs of its vertices. */
+  std::pair<double, double> energy_of_cube(const unsigned int                   n,
+                                           const bool                           constant,
+                                           const dealii::SymmetricTensor<2, 3> &strain)
+  {
+    const std::string size = std::to_string(n);
+    const Body<3> body(box<3>() + Settings{{"Domain/Upper corner", size + "," + size + "," + size},
+                                           {"Domain/Cells", size + "," + size + "," + size},
+                                           {"Material/Poisson ratio", "0.25"},
+                                           {"Elasticity/Model", "bond-based"},
+                                           {"Elasticity/Micromodulus",
+                                            constant ? "constant" : "family"}},
+                       Model::peridynamics);
+    const double  lambda = 1.2, volume = n * n * n; // of Young modulus 3; equal to the shear modulus
+    const double  classical = volume * (0.5 * lambda * trace(strain) * trace(strain) +
+                                       lambda * strain.norm() * strain.norm());
+    const double  found     = body.op().energy(body.values(
+      [&](const dealii::Point<3> &p) { return dealii::Tensor<1, 3>(strain * p); }));
+
+    const auto size_of = [&](const std::array<int, 3> &site) {
+      double v = 1.;
+      for (const int s : site)
+        v *= s < 0 || s > static_cast<int>(n) ? 0. : s == 0 || s == static_cast<int>(n) ? 0.5 : 1.;
+      return v;
+    };
+    double complete = 0., sum = 0.;
+    for (const auto &member : body.states->families().lattice_members())
+      complete += member.weight * member.r * member.r;
+    for (int x = 0; x <= static_cast<int>(n); ++x)
+      for (int y = 0; y <= static_cast<int>(n); ++y)
+        for (int z = 0; z <= static_cast<int>(n); ++z)
+          {
+            double q = 0., energy = 0.;
+            for (const auto &member : body.states->families().lattice_members())
+              {
+                dealii::Tensor<1, 3> xi;
+                for (unsigned int d = 0; d < 3; ++d)
+                  xi[d] = member.offset[d];
+                const double weight = member.weight * size_of({{x + member.offset[0],
+                                                                y + member.offset[1],
+                                                                z + member.offset[2]}}),
+                             e = xi * (strain * xi) / member.r;
+                q += weight * member.r * member.r;
+                energy += weight * e * e;
+              }
+            // (9/2) k = 7.5 lambda for equal strains, e = r
+            sum += 7.5 * lambda * size_of({{x, y, z}}) * energy / (constant ? complete : q);
+          }
+    return {found / classical, sum / classical};
+  }
+} // namespace
+
+
+TEST(StateOperator, surfaces_of_bond_based_bodies)
+{
+  // Divided by the sums over their own families nodes have all of the energy of equal strains, surfaces or not; the constant micromodulus has it inside, less by what
+  // families lack at surfaces.
+  dealii::SymmetricTensor<2, 3> equal = dealii::unit_symmetric_tensor<3>(), shear;
+  shear[0][1] = 0.5;
+  for (const bool constant : {false, true})
+    for (const auto &strain : {equal, shear})
+      {
+        const auto [found, sums] = energy_of_cube(6, constant, strain);
+        EXPECT_NEAR(found, sums, 1e-12);
+        EXPECT_LT(found, constant ? 0.7 : 1. + 1e-12); // soft surfaces
+      }
+  EXPECT_NEAR(energy_of_cube(6, false, equal).first, 1., 1e-12);
+  // Inside both are classical: third differences of the size leave out faces, edges and corners.
+  for (const bool constant : {false, true})
+    {
+      double           sum       = 0.;
+      constexpr double factors[] = {-1., 3., -3., 1.};
+      for (unsigned int k = 0; k < 4; ++k)
+        sum += factors[k] * std::pow(6. + k, 3) * energy_of_cube(6 + k, constant, equal).first;
+      EXPECT_NEAR(sum / 6., 1., 1e-10);
     }
 }
 

@@ -48,6 +48,8 @@ namespace PeriDeal
     double        next_event(const double t) const override;
     bool          update(const double t) override;
     bool          depends_on_solution() const override;
+    bool          capacity_depends_on_solution() const override;
+    void          heat_between(Vector &y, const Vector &u, const Vector &v) const override;
     void          take_material_at(const Vector &u) override;
     Balance       balance(const Vector &u, const double t, const bool steady) const override;
     std::string   place_of(const unsigned int local_index) const override;
@@ -89,7 +91,29 @@ namespace PeriDeal
                         const unsigned int end) const;
     void clear_held(Vector &y, const unsigned int begin, const unsigned int end) const;
     void add_loads(Vector &r, const double t) const;
-    void add_loads_now(Vector &r, const double t) const;
+
+    /** Returns the sum of what it adds to free unknowns. */
+    double add_loads_now(Vector &r, const double t) const;
+
+    // The parts of entering(), each of this process: what the rows [begin, end) of prescribed nodes say (y = K x without loads there), what is not a load of
+    // nodes, and what comes from fictitious nodes with these values.
+    double through_prescribed(const Vector      &y,
+                              const unsigned int begin,
+                              const unsigned int end) const;
+    double through_sides(const Vector &x, const double *outside) const;
+    double through_slaves(const double t) const;
+
+    /** Sums of the conductances of bonds to fictitious nodes, so that what they bring is a sum over nodes. */
+    struct OutsideSums
+    {
+      bool                                         known = false;
+      std::vector<double>                          of_outside; // by fictitious node
+      std::vector<std::pair<unsigned int, double>> of_nodes;
+    };
+    void find_outside_sums() const;
+
+    /** A node so near to a side that it may have bonds with fictitious nodes. */
+    bool reaches_outside(const unsigned int node) const;
 
     const Scene<dim>                     &scene;
     Families<dim>                         bonds;
@@ -105,7 +129,8 @@ namespace PeriDeal
     std::vector<Vector>         node_factors; // of the surface correction, one for each direction
     mutable bool                recount_bonds = false;
     mutable unsigned long long  n_bonds = 0, n_nonzeros = 0;
-    double                      gershgorin = 0.;
+    double                      gershgorin = 0., free_loads = 0.; // sum of constant_loads
+    mutable OutsideSums         outside_sums;
     mutable Spectrum            bounds;
     mutable std::vector<double> outside_values, outside_signs_only;
     mutable Vector              scratch;

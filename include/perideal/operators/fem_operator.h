@@ -66,6 +66,8 @@ namespace PeriDeal
     double        next_event(const double t) const override;
     bool          update(const double t) override;
     bool          depends_on_solution() const override;
+    bool          capacity_depends_on_solution() const override;
+    void          heat_between(Vector &y, const Vector &u, const Vector &v) const override;
     void          take_material_at(const Vector &u) override;
     Balance       balance(const Vector &u, const double t, const bool steady) const override;
     std::string   place_of(const unsigned int local_index) const override;
@@ -194,6 +196,15 @@ namespace PeriDeal
     void                      prepare_event();
     void                      keep_unseparated_pairs(const Cell &cell, CellData &data) const;
     void                      assemble_loads(Vector &loads, const double t) const;
+    void                      find_convection_sums();
+
+    // The parts of entering(), each of this process: what the rows [begin, end) of prescribed unknowns say, loads left out; the part of convection that is
+    // linear in x; and the sum of loads of all unknowns but the prescribed ones.
+    double through_prescribed(const Vector      &y,
+                              const unsigned int begin,
+                              const unsigned int end) const;
+    double through_convection(const Vector &x) const;
+    double sum_of_free_loads(const Vector &loads) const;
     void add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
     void find_crack_factors();
     void find_crack_factors(const std::vector<Cell>         &cells,
@@ -226,6 +237,9 @@ namespace PeriDeal
     std::shared_ptr<CellData>         cell_data;           // memory of the cell loops
     std::shared_ptr<EventData>        event;               // of update(), made for the first event
     std::vector<Prescribed>           prescribed;          // in the order of unknowns
+    std::vector<std::pair<unsigned int, double>>
+      convection_sums; // coefficient times area of each unknown that has some
+    double free_loads = 0.; // the sum of constant_loads that are not prescribed unknowns'
     std::vector<HangingNode>          hanging;             // likewise
     std::vector<unsigned int>         held;                // both: unknowns that are not free
     bool                              any_hanging = false; // on any process

@@ -120,6 +120,32 @@ namespace PeriDeal
     /** y = C x. */
     virtual void apply_capacity(Vector &y, const Vector &x) const = 0;
 
+    /** C depends on the solution. Not collective. */
+    virtual bool capacity_depends_on_solution() const
+    {
+      return false;
+    }
+
+    /**
+     * y = what each unknown takes up from the temperatures u to v: the integral of C along the straight line between both, whatever take_material_at() was given.
+     * The sum of y is the change of the content of the body.
+     */
+    virtual void heat_between(Vector &y, const Vector &u, const Vector &v) const
+    {
+      Vector change(v);
+      change -= u;
+      apply_capacity(y, change);
+    }
+
+    /**
+     * What entered, per time, through the sides and from sources at the last residual(): this process's share of Balance::throughput(), read off the rows of prescribed
+     * unknowns. After apply() the part of it that is linear in x. 0 where nobody keeps it (elastic bodies). Not collective.
+     */
+    double entering() const
+    {
+      return entering_now;
+    }
+
     /** Diagonal of K, one on unknowns that are not free. Not collective. */
     virtual const Vector &diagonal() const = 0;
 
@@ -202,6 +228,7 @@ namespace PeriDeal
 
   protected:
     mutable unsigned long long applications = 0;
+    mutable double             entering_now = 0.; // of entering()
   };
 
 

@@ -19,6 +19,7 @@ namespace PeriDeal
     ElasticityControl();
 
     ElasticModel model      = ElasticModel::state_based;
+    Micromodulus micromodulus = Micromodulus::family; // bond-based only
     PlaneState   plane      = PlaneState::stress; // two dimensions only
     Kinematics   kinematics = Kinematics::linear;
     Expression
@@ -35,7 +36,7 @@ namespace PeriDeal
     const std::string &solver_name() const;
 
     /**
-     * Throws UserError: a `Plane` where there is none, full kinematics by the linear solver, a temperature change that depends on t or is computed for a body in
+     * Throws UserError: a `Micromodulus` of another model than `bond-based`, a `Plane` where there is none, full kinematics by the linear solver, a temperature change that depends on t or is computed for a body in
      * motion, and with another physics any entry that is given.
      */
     void parse(const Physics physics = Physics::elasticity, const unsigned int dim = 2);

@@ -60,16 +60,21 @@ namespace PeriDeal
      *
      * @param plane of elasticity in two dimensions: in plane stress the Poisson ratio may be 1/2
      * @param image whose phases are phases of the material, or null
+     * @param needs_storage something changes in time: density and heat capacity (elasticity: density) have to be greater than 0, else they may be 0
      */
-    void parse(const Physics                          physics = Physics::heat,
-               const unsigned int                     dim     = 2,
-               const PlaneState                       plane   = PlaneState::stress,
-               const std::shared_ptr<const PhaseMap> &image   = nullptr);
+    void parse(const Physics                          physics       = Physics::heat,
+               const unsigned int                     dim           = 2,
+               const PlaneState                       plane         = PlaneState::stress,
+               const std::shared_ptr<const PhaseMap> &image         = nullptr,
+               const bool                             needs_storage = true);
 
   private:
     void declare_elasticity();
 
     Expression read(const std::string &entry, const Physics physics) const;
+
+    /** The storage may be 0 as far as this entry goes. */
+    bool may_vanish(const std::string &entry, const Physics physics) const;
 
     std::optional<MaterialProperty> optional_property(const std::string &entry,
                                                       const Physics      physics) const;
@@ -81,7 +86,7 @@ namespace PeriDeal
 
     std::array<Modulus, 2>          given_moduli{{Modulus::bulk, Modulus::shear}};
     std::array<MaterialProperty, 2> modulus_properties;
-    bool                            may_be_incompressible = false;
+    bool                            may_be_incompressible = false, needs_storage = true;
   };
 
 

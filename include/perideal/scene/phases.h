@@ -151,10 +151,15 @@ namespace PeriDeal
     /**
      * Throws UserError: names twice, regions without a material that the physics takes, materials of regions that do not exist, wrong
      * formulas.
-     * @param image whose phases are phases of the material, or null
+     * @param image      whose phases are phases of the material, or null
+     * @param may_vanish which of the entries that have to be positive may be 0
      */
-    void parse(const Physics                          physics = Physics::heat,
-               const std::shared_ptr<const PhaseMap> &image   = nullptr);
+    void parse(
+      const Physics                                  physics = Physics::heat,
+      const std::shared_ptr<const PhaseMap>         &image   = nullptr,
+      const std::function<bool(const std::string &)> may_vanish = [](const std::string &) {
+        return false;
+      });
 
     /** The property of that name, with the value elsewhere from section `Material`. */
     MaterialProperty property(const std::string &entry, const Expression &elsewhere) const;
@@ -166,6 +171,8 @@ namespace PeriDeal
 
   private:
     std::vector<std::optional<Expression>> read(const std::string &entry) const;
+
+    std::function<bool(const std::string &)> may_vanish;
 
     std::shared_ptr<const Regions> regions;
     bool                           elastic = false;

@@ -89,6 +89,7 @@ namespace PeriDeal
     std::unique_ptr<MotionStepper> stepper;           // null in equilibrium
     std::unique_ptr<SlowLoading>   loading;           // null in motion
     double                         stable_step  = 0.; // of a motion by verlet, at its start
+    double                         force_scale  = 0.; // the largest find_force_scale() so far
     unsigned int                   n_iterations = 0;
     Timings                        timings;
   };

@@ -63,7 +63,7 @@ namespace PeriDeal
     void                   write_state(const double t);
     void                   write_points(const double t);
     void                   write_fields(const double t);
-    void                   add_totals(const ElasticRun<dim> &model, const double t);
+    void                   add_totals(ElasticRun<dim> &model, const double t);
     nlohmann::ordered_json add_energies(const ElasticRun<dim> &model, const double t);
     void                   end_output(const double t);
     nlohmann::ordered_json summary_now(const bool at_the_end);

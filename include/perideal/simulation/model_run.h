@@ -12,6 +12,7 @@
 #include <perideal/operators/operator.h>
 #include <perideal/output/field_writer.h>
 #include <perideal/scene/scene.h>
+#include <perideal/simulation/heat_ledger.h>
 #include <perideal/solvers/stepper.h>
 
 #include <functional>
@@ -102,6 +103,7 @@ namespace PeriDeal
 
     Vector                   solution;
     std::unique_ptr<Stepper> stepper; // null if steady
+    HeatLedger               ledger;  // of the run from the start, unless steady
     unsigned int             steady_iterations = 0;
     Timings                  timings;
   };

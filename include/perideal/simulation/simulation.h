@@ -77,7 +77,6 @@ namespace PeriDeal
     void write_fields(const double t);
     nlohmann::ordered_json summary_now() const;
     void                   describe(const ModelRun<dim> &model) const;
-    void                   check_sides() const;
     std::vector<double>    output_times() const;
     double                 expected_applications(const ModelRun<dim> &model) const;
     double                 time_of_application(const ModelRun<dim> &model) const;

@@ -65,16 +65,28 @@ namespace PeriDeal
       return spent;
     }
 
+    /**
+     * What entered through sides and from sources in all time advanced so far, this process's share: Operator::entering() integrated by the method's own steps, as if it
+     * were one more unknown, so that a linear operator which conserves heat keeps the balance to round-off. Prescribed unknowns take up what their values need
+     * besides (Operator::heat_between()): that is added. Not collective.
+     */
+    double entered() const
+    {
+      return heat_entered;
+    }
+
     /** Go on counting from what another stepper of the same run has had. */
-    void carry_over(const StepperCost &before)
+    void carry_over(const StepperCost &before, const double entered_before)
     {
       spent.steps += before.steps;
       spent.rejected += before.rejected;
       spent.iterations += before.iterations;
+      heat_entered += entered_before;
     }
 
   protected:
     StepperCost spent;
+    double      heat_entered = 0.;
   };
 
 

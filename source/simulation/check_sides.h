@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/grid/tria.h>
+
+#include <perideal/scene/scene.h>
+
+namespace PeriDeal
+{
+  /**
+   * Throws UserError for a condition of section `Boundary conditions`, of whatever physics, on a side that the mesh does not have (the message names those
+   * that it has), and for a coefficient of convection that is negative somewhere. Collective.
+   */
+  template <int dim>
+  void check_sides(const Scene<dim> &scene, const dealii::Triangulation<dim> &mesh);
+} // namespace PeriDeal
