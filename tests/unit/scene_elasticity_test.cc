@@ -384,19 +384,6 @@ end
     EXPECT_EQ(elastic_fault({e + "Kinematics=full", e + "Solver=conjugate gradients"}), "");
     expect(elastic_fault({t + "Steady=true", e + "Solver=dynamics"}), t + "Steady", {"'dynamics'"});
     EXPECT_EQ(elastic_fault({t + "Steady=true"}), "");
-    EXPECT_EQ(elastic_fault({"Material/Density=0"}), ""); // at rest it is not used
-    expect(elastic_fault({"Material/Density=0", e + "Solver=dynamics"}),
-           "Material/Density",
-           {"greater than 0"});
-    expect(elastic_fault({e + "Micromodulus=constant"}), e + "Micromodulus", {"'bond-based'"});
-    const std::string bonds = e + "Model=bond-based", constant = e + "Micromodulus=constant";
-    EXPECT_EQ(elastic_fault({"Models=peridynamics", bonds, constant}), "");
-    expect(elastic_fault({"Models=finite elements", bonds, constant}),
-           e + "Micromodulus",
-           {"'peridynamics'"});
-    expect(elastic_fault({"Models=peridynamics", bonds, constant, "Peridynamics/Surface correction=moments"}),
-           e + "Micromodulus",
-           {"'Surface correction'"});
     expect(elastic_fault({t + "Stepper=rk4"}), t + "Stepper", {"'Solver' in section 'Elasticity'"});
     expect(elastic_fault({"Output/Write at=0.1"}), "Output/Write at", {"equilibrium"});
     EXPECT_EQ(elastic_fault({"Output/Write at=0.1", e + "Solver=dynamics"}), "");
