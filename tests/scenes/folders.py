@@ -6,6 +6,7 @@ Arguments: parts. `mixing`: runs one after the other, refused runs, a user's own
 leftovers in shared memory. `ends`: signals, kills, a folder that goes away or turns read-only, full folders for temporary files.
 """
 
+import csv
 import ctypes
 import ctypes.util
 import json
@@ -261,6 +262,17 @@ def ends():
         check_message(process.returncode, stderr, 1, "cannot write", "too large")
         if os.path.exists(limited):
             check_whole(limited, f"files of at most {size} bytes")
+
+    # a study goes on after a row for which memory does not suffice
+    study = os.path.join(FOLDER, "study")
+    words = [EXECUTABLE, "study", scene_file(), "--vary", "Domain/Cells=12, 10 | 900, 900 | 13, 11", "-s", "Time/Steady=true", "-s",
+             "Output/Write every=", "-s", "Output/Fields=none", "--output", study]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=100,
+                          preexec_fn=lambda: __import__("resource").setrlimit(__import__("resource").RLIMIT_AS, (800 << 20, 800 << 20)))
+    check_message(done.returncode, done.stderr, 1, "1 of 3 rows", "memory")
+    with open(os.path.join(study, "study.csv"), newline="") as file:
+        states = {row["Domain/Cells"]: row["status"] for row in csv.DictReader(file)}
+    check(states == {"12, 10": "finished", "900, 900": "failed", "13, 11": "finished"}, f"the rows of the study: {states}\n{done.stdout}")
 
     # a full folder for temporary files
     temporary = os.path.join(FOLDER, "tmp")
