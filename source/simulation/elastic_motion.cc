@@ -125,7 +125,7 @@ namespace PeriDeal
   void ElasticSimulation<dim>::note_energy(const ElasticRun<dim> &model)
   {
     constexpr double tolerable = 0.01,
-                     few       = 0.1; // where few bonds have broken it is not they that tell
+                     few       = 0.01; // where few bonds have broken it is not they that tell
     const auto note            = [&](const auto &energy, const double lost) {
       const double imbalance = energy.imbalance();
       const bool   of_bonds  = model.op().brittle() && lost > few * energy.exchanged;

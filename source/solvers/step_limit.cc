@@ -32,9 +32,9 @@ namespace PeriDeal
   double StepLimit::follow(const Vector &u, const double t, const unsigned long long n_steps)
   {
     // Stretches that differ by a tenth change the limit by a few percent; 0.8 of it leaves room for 25.
-    constexpr double much = 0.1, alarming = 0.5, near = 0.9, cost = 0.03, at_first = 15.;
+    constexpr double much = 0.1, alarming = 0.25, near = 0.9, cost = 0.03, at_first = 15.;
     const double     now     = op.largest_stretch(u);
-    const bool       grown   = now > stretch + std::max(much, 0.25 * stretch);
+    const bool       grown   = now > stretch + std::max(much, much * stretch);
     const bool       relaxed = step < first && now < 0.5 * stretch;
     const bool       broken  = op.n_broken_bonds() > n_broken;
     if (!grown && !relaxed && !broken)

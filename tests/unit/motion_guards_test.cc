@@ -157,8 +157,8 @@ namespace PeriDeal
     stepper->advance(u, v, 0., 20.);
     const double omega = std::sqrt(largest_eigenvalue(body, u));
     // The step at the start would be within a few percent of the limit, or above it.
-    EXPECT_GT(0.8 * limit * omega, 1.82);
-    EXPECT_LT(stepper->current_step() * omega, 1.8);
+    EXPECT_GT(0.8 * limit * omega, 1.84);
+    EXPECT_LT(stepper->current_step() * omega, 1.82);
     EXPECT_GT(stepper->current_step() * omega, 1.4);
     EXPECT_EQ(stepper->shortest_step(), stepper->current_step());
     const MotionEnergy energy = stepper->energy(u, v);
