@@ -14,15 +14,17 @@ namespace PeriDeal
   {
     using Vector3 = std::array<double, 3>;
 
-    // Corners of the cells as Gmsh numbers them: the ends of the edges at each of them, which in this order are right-handed, and the corners of the faces in the order
-    // in which they are seen from outside counter-clockwise (in 2D: the body lies to the left).
+    // Corners of the cells as Gmsh numbers them: the ends of the edges at each of them, which in
+    // this order are right-handed, and the corners of the faces in the order in which they are seen
+    // from outside counter-clockwise (in 2D: the body lies to the left).
     constexpr unsigned int neighbors_2[4][2] = {{1, 3}, {2, 0}, {3, 1}, {0, 2}};
     constexpr unsigned int neighbors_3[8][3] =
       {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
     constexpr unsigned int faces_3[6][4] =
       {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 
-    /** Edges that enclose less than this, in terms of the sine of their angle, are taken for parallel. */
+    /** Edges that enclose less than this, in terms of the sine of their angle, are taken for
+     * parallel. */
     constexpr double smallest_angle = 1e-8;
 
     /** Nodes closer than this, in terms of the extent of the mesh, are taken for one. */
@@ -132,7 +134,8 @@ namespace PeriDeal
         return e;
       }
 
-      /** Volume (3D), area (2D) or length of what the edges at a corner span, over the product of their lengths. 0 if one has no length. */
+      /** Volume (3D), area (2D) or length of what the edges at a corner span, over the product of
+       * their lengths. 0 if one has no length. */
       double sine(const MshElement &cell, const unsigned int corner) const
       {
         const auto unit = [&](const unsigned int to) {

@@ -19,7 +19,8 @@ namespace PeriDeal
 
   namespace
   {
-    // Measured on scenes of all kinds: bytes that a node takes at least in the mesh and in the vectors of a model, and when fields are written.
+    // Measured on scenes of all kinds: bytes that a node takes at least in the mesh and in the
+    // vectors of a model, and when fields are written.
     constexpr double bytes_of_node = 400., bytes_of_written_corner = 200.;
 
     /** Nodes above which a scene is not built in order to be described. */

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include "scene_sample.h"
-
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/memory.h>
@@ -15,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+
+#include "scene_sample.h"
 
 namespace PeriDeal
 {

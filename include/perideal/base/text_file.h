@@ -10,14 +10,16 @@
 
 namespace PeriDeal
 {
-  /** The largest files that are read, in bytes: of text that people write (scenes, studies), and of meshes and pictures. */
+  /** The largest files that are read, in bytes: of text that people write (scenes, studies), and of
+   * meshes and pictures. */
   constexpr std::size_t most_bytes_of_text = 16000000, most_bytes_of_data = 1000000000;
 
   /**
-   * The bytes of a file. Only what is a file on a disk is opened, since a pipe may wait, and a device give, for ever.
+   * The bytes of a file. Only what is a file on a disk is opened, since a pipe may wait, and a
+   * device give, for ever.
    *
-   * @param fault set to what goes behind the file's name in a message, "cannot be read", where the file is missing, no file or larger than @p most_bytes; else empty
-   * Not collective.
+   * @param fault set to what goes behind the file's name in a message, "cannot be read", where the
+   * file is missing, no file or larger than @p most_bytes; else empty Not collective.
    */
   std::string read_file(const std::string &file_name,
                         const std::size_t  most_bytes,

@@ -23,7 +23,8 @@ namespace PeriDeal
   };
 
 
-  /** What a run will need. Memory is what all processes together take at its peak beyond what they have now, in bytes; times are of this number of processes, in seconds. */
+  /** What a run will need. Memory is what all processes together take at its peak beyond what they
+   * have now, in bytes; times are of this number of processes, in seconds. */
   struct RunEstimate
   {
     double                     cells = 0., memory = 0., time_to_build = 0.;
@@ -34,26 +35,31 @@ namespace PeriDeal
 
 
   /**
-   * What a run of a scene needs, without building it: the body is built on two coarse lattices with the same horizon in terms of the spacing, and what that takes is
-   * carried on as a n + b n^((d-1)/d) for n nodes, since zones near cracks, and rims, grow as lines in 2D and as surfaces in 3D. Where there are no such lattices (images, mesh files, cracks
-   * that have to lie on faces of cells, horizons of so many nodes that no coarse lattice holds them) numbers of nodes and full families alone say what is needed at least.
+   * What a run of a scene needs, without building it: the body is built on two coarse lattices with
+   * the same horizon in terms of the spacing, and what that takes is carried on as a n + b
+   * n^((d-1)/d) for n nodes, since zones near cracks, and rims, grow as lines in 2D and as surfaces
+   * in 3D. Where there are no such lattices (images, mesh files, cracks that have to lie on faces
+   * of cells, horizons of so many nodes that no coarse lattice holds them) numbers of nodes and
+   * full families alone say what is needed at least.
    *
    * The samples take a few seconds. Collective.
    */
   template <int dim>
   RunEstimate estimate_run(const Scene<dim> &scene, const MPI_Comm communicator);
 
-  /** The lines of `perideal check` about it, and whether it fits into what is available. Collective. */
+  /** The lines of `perideal check` about it, and whether it fits into what is available.
+   * Collective. */
   std::vector<std::string> describe_estimate(const RunEstimate &estimate,
                                              const MPI_Comm     communicator);
 
-  /** Whether building the scene to see what it needs takes long (above some 10 s), or may take more than half of the memory available. Collective. */
+  /** Whether building the scene to see what it needs takes long (above some 10 s), or may take more
+   * than half of the memory available. Collective. */
   template <int dim>
   bool is_large(const Scene<dim> &scene, const MPI_Comm communicator);
 
   /**
-   * Throw UserError if the scene needs more memory than is available; for those that are small against it nothing is estimated. To be called before anything is built.
-   * Collective.
+   * Throw UserError if the scene needs more memory than is available; for those that are small
+   * against it nothing is estimated. To be called before anything is built. Collective.
    */
   template <int dim>
   void require_memory(const Scene<dim> &scene, const MPI_Comm communicator);
