@@ -181,6 +181,8 @@ class Process:
             except subprocess.TimeoutExpired:
                 pass
         busy = self._runnable()
+        if not self.running:
+            return None
         signal_processes([self.pid], signal.SIGTERM)
         try:
             self.popen.wait(30)
