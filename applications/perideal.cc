@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <iostream>
 
 namespace
@@ -387,6 +388,31 @@ extern "C" int MPI_Abort(MPI_Comm communicator, int)
 }
 
 
+/** While it lives, exit() is not ours: parts of Trilinos call it without a word where memory runs out. */
+struct ExitGuard
+{
+  ExitGuard()
+  {
+    alive() = true;
+    std::atexit([] {
+      if (alive())
+        _exit(PeriDeal::leave_after_abort());
+    });
+  }
+
+  ~ExitGuard()
+  {
+    alive() = false;
+  }
+
+  static bool &alive()
+  {
+    static bool value = false;
+    return value;
+  }
+};
+
+
 int main(int argc, char **argv)
 {
   using namespace PeriDeal;
@@ -395,6 +421,7 @@ int main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   handle_signals(first_rank);
+  const ExitGuard guard;
   try
     {
       with_memory_errors([&] { execute(argc, argv, first_rank); });

@@ -33,7 +33,7 @@ namespace PeriDeal
     bool                             speaker            = false;
     thread_local bool                memory_was_refused = false;
 
-    const std::string out_of_memory =
+    const char *const out_of_memory =
       "out of memory. `perideal check` tells what a scene needs; a coarser lattice, fewer 'Models' or a smaller 'Horizon ratio' need less.";
 
 
@@ -107,7 +107,7 @@ namespace PeriDeal
       if (!memory_is_short())
         return false;
       say("\nperideal: error: ");
-      say(out_of_memory.c_str());
+      say(out_of_memory);
       say("\n");
       return true;
     }
