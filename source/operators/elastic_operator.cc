@@ -50,16 +50,6 @@ namespace PeriDeal
   }
 
 
-  double ElasticOperator::fastest_bound(const double enough) const
-  {
-    return sharp_bound(
-      *this,
-      std::numeric_limits<double>::max(),
-      [&](Vector &vector) { fill_noise(vector); },
-      enough);
-  }
-
-
   double ElasticOperator::scaled_bound() const
   {
     return sharp_bound(

@@ -19,11 +19,11 @@ namespace PeriDeal
   {}
 
 
-  double StepLimit::estimate(const Vector &u, const double enough)
+  double StepLimit::estimate(const Vector &u)
   {
     const unsigned long long before = op.n_applications();
     op.linearize(u);
-    const double limit = 2. / std::sqrt(op.fastest_bound(enough));
+    const double limit = 2. / std::sqrt(op.spectrum().sharp);
     spent += op.n_applications() - before + 1;
     return limit;
   }
@@ -41,10 +41,9 @@ namespace PeriDeal
       return step;
     if (spent > at_first + cost * n_steps && now < (1. + alarming) * (stretch + alarming))
       return step;
-    const double allowed = (may_change ? near : 1.) * 2. / step; // omega_max of the step
-    const double limit   = estimate(u, relaxed ? 0. : allowed * allowed);
-    stretch              = now;
-    n_broken             = op.n_broken_bonds();
+    const double limit = estimate(u);
+    stretch            = now;
+    n_broken           = op.n_broken_bonds();
     std::ostringstream message;
     if (!may_change && !(step <= limit))
       message

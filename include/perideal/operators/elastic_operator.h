@@ -86,9 +86,6 @@ namespace PeriDeal
       return spectrum().sharp;
     }
 
-    /** At least (as sharp_bound() is) the largest eigenvalue of M^{-1} K, K that of the last linearize(), to no more digits than show that it is below @p enough. Collective. */
-    double fastest_bound(const double enough) const;
-
     /** At least (as sharp_bound() is) the largest eigenvalue of diag(K)^{-1} K. Collective. */
     double scaled_bound() const;
 

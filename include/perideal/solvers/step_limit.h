@@ -10,8 +10,8 @@ namespace PeriDeal
   /**
    * Watches that the steps of an explicit motion stay stable while the body deforms and breaks: the limit 2/omega_max is that of the tangent, which changes with the
    * directions and forces of the bonds. Looking costs half an application where bonds are those of the deformed body, else nothing; a new estimate, by Lanczos
-   * iterations that end once they have shown enough, some ten. There is one only when the largest stretch has changed much or bonds have broken since the last, and
-   * only as long as all of them together take at most some percent of the applications.
+   * iterations, some thirty. There is one only when the largest stretch has changed much or bonds have broken since the last, and
+   * only as long as all of them together take at most some percent of the applications, or the body has stretched far since.
    */
   class StepLimit
   {
@@ -34,7 +34,7 @@ namespace PeriDeal
     static constexpr double share = 0.8;
 
   private:
-    double estimate(const Vector &u, const double enough);
+    double estimate(const Vector &u);
 
     ElasticOperator   &op;
     const double       first;
