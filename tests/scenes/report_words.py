@@ -12,6 +12,7 @@ import tempfile
 from scene_test import SOURCE_DIR, check, finish, run_perideal
 
 HOSTILE = "<svg onload=alert(1)>&amp;\"'<b>$\\frac</b>"
+PHASE = "<svg onload=alert(1)>&'<b>$\\frac"
 # Comments and values end at #; a backslash at the end continues a line.
 TEXT = f"""# {HOSTILE}
 #
@@ -29,7 +30,8 @@ subsection Material
   set Young modulus = YOUNG
   set Poisson ratio = POISSON
   subsection Phases
-    set Regions = {HOSTILE.replace(',', '').replace('"', '')}: x > 0.5
+    set Regions = {PHASE}: x > 0.5
+    set ENTRY = {PHASE}: 100
   end
 end
 subsection Boundary conditions
@@ -50,8 +52,8 @@ subsection Units
 end
 """
 
-KINDS = {"heat": ("", "", "Dirichlet = left: 0*(x<1); right: 1"),
-         "elasticity": ("200", "0.3", "Displacement = left: 0, 0; right: 0.01*t*(y<2), 0")}
+KINDS = {"heat": ("", "", "Conductivity", "Dirichlet = left: 0*(x<1); right: 1"),
+         "elasticity": ("200", "0.3", "Young modulus", "Displacement = left: 0, 0; right: 0.01*t*(y<2), 0")}
 
 ALLOWED = {"html", "head", "meta", "title", "style", "body", "main", "header", "nav", "section", "div", "h1", "h2", "h3", "p", "span", "a", "ul", "li", "table",
            "thead", "tbody", "tr", "th", "td", "figure", "figcaption", "img", "strong", "em", "footer", "pre"}
@@ -75,8 +77,9 @@ class Tags(html.parser.HTMLParser):
 
 def main():
     folder = tempfile.mkdtemp(prefix="perideal_")
-    for physics, (young, poisson, conditions) in KINDS.items():
+    for physics, (young, poisson, entry, conditions) in KINDS.items():
         text = TEXT.replace("PHYSICS", physics).replace("YOUNG", young).replace("POISSON", poisson).replace("CONDITIONS", conditions)
+        text = text.replace("ENTRY", entry)
         path = os.path.join(folder, f"<i onclick=x>& '{physics}'.prm")
         with open(path, "w") as file:
             file.write(text)
