@@ -169,7 +169,8 @@ class Process:
             self.popen.wait(timeout)
         except subprocess.TimeoutExpired:
             late = self._late(timeout)
-        self.end_all()
+        finally:  # also where the campaign itself is interrupted
+            self.end_all()
         return self._end(late, timeout)
 
     def _late(self, timeout):
