@@ -27,7 +27,7 @@ namespace PeriDeal
   TEST(ElasticScenes, constant_micromodulus_is_for_bonds_alone)
   {
     const std::string bonds = e + "Model=bond-based", constant = e + "Micromodulus=constant";
-    expect(elastic_fault({constant}), e + "Micromodulus", {"'bond-based'"});
+    expect(elastic_fault({constant}), e + "Micromodulus", {"bond-based"});
     EXPECT_EQ(elastic_fault({"Models=peridynamics", bonds, constant}), "");
     expect(elastic_fault({"Models=finite elements", bonds, constant}),
            e + "Micromodulus",
