@@ -125,8 +125,8 @@ class Run:
         try:
             text = path.read_text(encoding="utf-8")
         except FileNotFoundError:
-            raise ReportError(f"'{path}' is missing: is this the output directory of a run that "
-                              "finished?") from None
+            raise ReportError(f"'{path}' is missing: is this the output directory of a "
+                              "run?") from None
         except (OSError, UnicodeDecodeError) as error:
             raise ReportError(f"'{path}' cannot be read: {error}") from None
         try:

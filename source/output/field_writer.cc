@@ -42,7 +42,21 @@ namespace PeriDeal
         , name(name)
         , path(folder.claim(name))
       {
-        set_unfinished_file(part());
+        if (is_listed())
+          set_unfinished_file(part());
+      }
+
+      /** Else nothing must be written. */
+      bool is_listed() const
+      {
+        return !path.empty();
+      }
+
+      /** An exception has come between. */
+      ~UnfinishedFile()
+      {
+        if (is_listed() && !finished)
+          finish(-1);
       }
 
       std::string part() const
@@ -53,6 +67,7 @@ namespace PeriDeal
       /** @param problem an error number, 0 if all was written, -1 if the system gave no reason */
       void finish(int problem)
       {
+        finished = true;
         if (problem == 0 && std::rename(part().c_str(), path.c_str()) != 0)
           problem = errno;
         if (problem != 0)
@@ -66,6 +81,7 @@ namespace PeriDeal
     private:
       ResultFolder     &folder;
       const std::string name, path;
+      bool              finished = false;
     };
   } // namespace
 
@@ -192,12 +208,13 @@ namespace PeriDeal
       {
         target = std::make_unique<UnfinishedFile>(folder, name);
         errno  = 0;
-        out.open(target->part(), std::ios::binary);
-        problem = out ? 0 : errno != 0 ? errno : -1;
+        if (target->is_listed())
+          out.open(target->part(), std::ios::binary);
+        problem = out.is_open() ? 0 : errno != 0 ? errno : -1;
         add(head.str());
       }
     gather_in_turn(piece.str(), dofs.get_communicator(), add);
-    if (!target)
+    if (!target || !target->is_listed())
       return;
     add(foot.str());
     errno = 0;
@@ -279,7 +296,8 @@ namespace PeriDeal
     if (folder.writes())
       {
         target = std::make_unique<UnfinishedFile>(folder, name);
-        file   = std::make_unique<Hdf5File>(target->part());
+        if (target->is_listed())
+          file = std::make_unique<Hdf5File>(target->part());
       }
     const auto add = [&](const std::string &table, const auto &own, const unsigned int n_columns) {
       using number        = typename std::decay_t<decltype(own)>::value_type;
@@ -287,7 +305,8 @@ namespace PeriDeal
       if (file)
         file->begin_table<number>(table, of_cells ? n_cells : n_cells * n_corners, n_columns);
       gather_in_turn(own, communicator, [&](const std::vector<number> &rows) {
-        file->append(rows.data(), rows.size() / n_columns);
+        if (file)
+          file->append(rows.data(), rows.size() / n_columns);
       });
     };
     std::vector<double>        nodes;

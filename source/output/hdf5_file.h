@@ -12,7 +12,7 @@ namespace PeriDeal
 {
   /**
    * A new HDF5 file with tables at its root, written by one process, a table after the other, rows in order. After the first failure nothing more is tried,
-   * and problem() tells why. (The wrappers of deal.II throw then, and say nothing of a failure to close, which is when a full disk may show.)
+   * and close() tells why. (The wrappers of deal.II throw then, and say nothing of a failure to close, which is when a full disk may show.)
    */
   class Hdf5File
   {

@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -52,14 +53,36 @@ namespace PeriDeal
     }
 
 
-    /** Move what there is of these files from one folder into another. */
+    bool there_is(const fs::path &file)
+    {
+      return fs::exists(fs::symlink_status(file));
+    }
+
+
+    /** Also from one file system to another, since `fields` may be a link. */
+    void move_file(const fs::path &from, const fs::path &to)
+    {
+      std::error_code problem;
+      fs::create_directories(to.parent_path());
+      fs::rename(from, to, problem);
+      if (!problem)
+        return;
+      if (problem != std::errc::cross_device_link)
+        throw fs::filesystem_error("move", from, problem);
+      fs::copy_file(from, to, fs::copy_options::overwrite_existing);
+      fs::remove(from);
+    }
+
+
+    /** Move what there is of these files from one folder into another; of unfinished ones nothing is kept. */
     void move_files(const std::set<std::string> &names, const fs::path &from, const fs::path &to)
     {
       for (const std::string &name : names)
-        if (lies_within(name) && fs::exists(fs::symlink_status(from / name)))
+        if (lies_within(name))
           {
-            fs::create_directories((to / name).parent_path());
-            fs::rename(from / name, to / name);
+            fs::remove(from / (name + ".part"));
+            if (there_is(from / name))
+              move_file(from / name, to / name);
           }
     }
 
@@ -140,7 +163,7 @@ namespace PeriDeal
           return "cannot use '" + path + "': " + lock.explanation() +
                  ". Choose a directory that you may write to";
         default:
-          holds = true;
+          break;
       }
     std::error_code no_such_file;
     if (fs::equivalent(path + "/scene.prm", scene_file, no_such_file))
@@ -163,8 +186,12 @@ namespace PeriDeal
   std::string ResultFolder::file_of_another_origin(const std::vector<std::string> &names,
                                                    const std::set<std::string>    &earlier) const
   {
-    const auto is_foreign = [&](const std::string &name) {
-      return earlier.count(name) == 0 && fs::exists(fs::symlink_status(path + "/" + name));
+    const std::string unfinished = ".part";
+    const auto        is_foreign = [&](const std::string &name) {
+      const std::size_t end = name.size() - std::min(name.size(), unfinished.size());
+      const std::string whole =
+        name.compare(end, unfinished.size(), unfinished) == 0 ? name.substr(0, end) : name;
+      return earlier.count(whole) == 0 && there_is(path + "/" + name);
     };
     for (const std::string &name : names)
       if (name.back() != '*')
@@ -187,18 +214,46 @@ namespace PeriDeal
 
   void ResultFolder::set_aside(const std::set<std::string> &earlier)
   {
-    const std::string previous = own + "/previous";
-    // A run that ended before it had results has left those of the run before it in place.
-    if (fs::exists(previous + "/" + list_name))
-      remove_files(earlier, path);
-    else if (!earlier.empty())
+    const std::string previous = own + "/previous", mark = previous + "/" + list_name;
+    aside = true;
+    if (!fs::exists(mark))
       {
-        fs::create_directories(previous);
-        fs::copy_file(own + "/" + list_name,
-                      previous + "/" + list_name,
-                      fs::copy_options::overwrite_existing);
-        move_files(earlier, path, previous);
+        // The list, moved last, marks that all is there: a run that is killed before is gone on with by the next one.
+        if (!earlier.empty())
+          {
+            move_files(earlier, path, previous);
+            fs::rename(own + "/" + list_name, mark);
+          }
+        return;
       }
+    // The run before had no results. Those of the one before it are kept, also where it was killed while it put them back.
+    const std::set<std::string> kept = read_list(mark);
+    std::set<std::string>       back, useless;
+    for (const std::string &name : earlier)
+      (kept.count(name) > 0 && !there_is(previous + "/" + name) ? back : useless).insert(name);
+    remove_files(useless, path);
+    move_files(back, path, previous);
+  }
+
+
+  void ResultFolder::put_back()
+  {
+    const std::string     previous = own + "/previous", mark = previous + "/" + list_name;
+    const bool            complete = fs::exists(mark);
+    std::set<std::string> names    = read_list(complete ? mark : own + "/" + list_name);
+    remove_files(listed, path);
+    if (!fs::exists(previous))
+      {
+        if (std::find(made.begin(), made.end(), own) != made.end())
+          fs::remove(own + "/" + list_name);
+        return;
+      }
+    std::string all = list_head;
+    for (const std::string &name : names)
+      all += name + "\n";
+    replace_file(own + "/" + list_name, all);
+    move_files(names, previous, path);
+    fs::remove_all(previous);
   }
 
 
@@ -206,38 +261,45 @@ namespace PeriDeal
   {
     if (committed)
       return lock.release();
-    std::error_code ignored;
-    if (holds)
-      try
-        {
-          const std::string previous = own + "/previous";
-          remove_files(listed, path);
-          if (fs::exists(previous + "/" + list_name))
+    try // a folder that has gone or is closed to writing, or memory that is out, is told elsewhere
+      {
+        if (aside)
+          put_back();
+        lock.release();
+        for (const std::string &folder : made) // those that are empty again
+          if (fs::is_directory(fs::symlink_status(folder)))
             {
-              move_files(read_list(previous + "/" + list_name), previous, path);
-              fs::rename(previous + "/" + list_name, own + "/" + list_name);
-              fs::remove_all(previous);
+              std::error_code ignored;
+              fs::remove(folder, ignored);
             }
-          else if (!made.empty())
-            fs::remove(own + "/" + list_name);
-        }
-      catch (const fs::filesystem_error &)
-        {} // the folder has gone, or may not be written to any more: the run says so itself
+      }
+    catch (...)
+      {}
     lock.release();
-    for (const std::string &folder : made) // those that are empty again
-      fs::remove(folder, ignored);
+  }
+
+
+  bool ResultFolder::has_earlier_results() const
+  {
+    std::error_code ignored;
+    return !committed && fs::exists(own + "/previous/" + list_name, ignored);
   }
 
 
   std::string ResultFolder::claim(const std::string &name)
   {
     Assert(first_rank, dealii::ExcMessage("the other processes write nothing"));
-    if (listed.insert(name).second)
+    if (listed.count(name) == 0)
       {
+        errno = 0;
         std::ofstream list(own + "/" + list_name, std::ios::app);
         list << name << "\n" << std::flush;
         if (!list)
-          keep_failure(name, errno);
+          {
+            keep_failure(name, errno);
+            return "";
+          }
+        listed.insert(name);
       }
     return path + "/" + name;
   }
@@ -248,6 +310,8 @@ namespace PeriDeal
     if (!first_rank)
       return;
     const std::string file = claim(name);
+    if (file.empty())
+      return;
     if (const int problem = replace_file(file, text); problem != 0)
       keep_failure(name, problem);
   }
@@ -275,9 +339,21 @@ namespace PeriDeal
     if (committed)
       return;
     committed = true;
+    if (!first_rank)
+      return;
+    std::error_code ignored; // the mark first: without it the rest means nothing
+    fs::remove(own + "/previous/" + list_name, ignored);
+    fs::remove_all(own + "/previous", ignored);
+  }
+
+
+  void remove_results(const std::string &directory)
+  {
+    const fs::path  list = fs::path(directory) / ".perideal" / list_name;
     std::error_code ignored;
-    if (first_rank)
-      fs::remove_all(own + "/previous", ignored);
+    remove_files(read_list(list), directory);
+    fs::remove(list, ignored);
+    fs::remove_all(fs::path(directory) / ".perideal" / "previous", ignored);
   }
 
 

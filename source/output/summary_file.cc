@@ -29,7 +29,10 @@ namespace PeriDeal
   SummaryFile::SummaryFile(ResultFolder &folder, const Json &start)
     : folder(folder)
   {
-    update(start, "there are none yet");
+    update(start,
+           folder.has_earlier_results() ? "there are none yet; those of the run before lie in '" +
+                                            folder.directory() + "/.perideal/previous'" :
+                                          "there are none yet");
   }
 
 
@@ -46,15 +49,15 @@ namespace PeriDeal
     known = summary;
     folder.write(file_name, text_of(known, "running"));
     set_farewell(folder.directory() + "/" + file_name,
-                 text_of(known, "stopped", "stopped by a signal"),
+                 text_of(known, "stopped", "the process was told to end, or failed"),
                  "Results in '" + folder.directory() + "': " + reached + ".");
   }
 
 
   void SummaryFile::complete(const Json &summary)
   {
-    clear_farewell();
     folder.write(file_name, text_of(summary, "complete"));
+    clear_farewell();
   }
 
 
@@ -62,7 +65,7 @@ namespace PeriDeal
   {
     if (!folder.writes())
       return;
-    clear_farewell();
     folder.write(file_name, text_of(known, status, message));
+    clear_farewell();
   }
 } // namespace PeriDeal

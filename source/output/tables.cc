@@ -3,10 +3,11 @@
 
 #include <perideal/output/tables.h>
 
-#include <stdio_ext.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 
 namespace PeriDeal
 {
@@ -37,38 +38,44 @@ namespace PeriDeal
   {
     if (!folder.writes())
       return;
-    file = std::fopen(folder.claim(name).c_str(), "w");
-    if (file == nullptr)
-      {
-        folder.keep_failure(name, errno);
-        return;
-      }
-    std::setvbuf(file, nullptr, _IOLBF, BUFSIZ);
+    const std::string path = folder.claim(name);
+    if (path.empty())
+      return;
+    file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file < 0)
+      folder.keep_failure(name, errno);
     add(header + "\n");
   }
 
 
   Table::~Table()
   {
-    if (file != nullptr)
-      std::fclose(file);
+    if (file >= 0)
+      close(file);
   }
 
 
   void Table::add(const std::string &rows)
   {
-    if (file == nullptr || folder.failed())
+    if (file < 0 || folder.failed())
       return;
-    const long end = std::ftell(file);
-    if (std::fputs(rows.c_str(), file) >= 0 && std::fflush(file) == 0)
-      return;
-    folder.keep_failure(name, errno);
-    // What did not fit may be half a line, and must not follow when the file is closed.
-    __fpurge(file);
-    if (ftruncate(fileno(file), end) != 0)
-      folder.keep_failure(name, errno);
-    std::fclose(file);
-    file = nullptr;
+    const off_t end = lseek(file, 0, SEEK_END);
+    for (std::size_t done = 0; done < rows.size();)
+      {
+        const ssize_t n = write(file, rows.data() + done, rows.size() - done);
+        if (n > 0)
+          {
+            done += static_cast<std::size_t>(n);
+            continue;
+          }
+        if (n < 0 && errno == EINTR)
+          continue;
+        folder.keep_failure(name, n == 0 ? ENOSPC : errno);
+        // What did fit may end within a line.
+        if (ftruncate(file, end) != 0)
+          folder.keep_failure(name, errno);
+        return;
+      }
   }
 
 
@@ -87,6 +94,8 @@ namespace PeriDeal
                        const std::string         &model,
                        const std::vector<double> &values)
   {
+    if (!table.writes())
+      return;
     std::string rows;
     for (std::size_t k = 0; k < points.size(); ++k)
       {

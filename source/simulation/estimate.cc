@@ -47,7 +47,18 @@ namespace PeriDeal
     }
 
 
-    /** Cells of the body. */
+    /** What a round or square hole, turned or not, leaves of a plate at least. */
+    template <int dim>
+    double share_of_body(const Domain<dim> &domain)
+    {
+      double whole = 1.;
+      for (unsigned int d = 0; d < std::min(dim, 2); ++d)
+        whole *= domain.upper[d] - domain.lower[d];
+      return std::max(0., 1. - 4. * domain.hole_radius * domain.hole_radius / whole);
+    }
+
+
+    /** Cells of the body; where cells are merged, the fewest that there may be. */
     template <int dim>
     double number_of_cells(const Scene<dim> &scene)
     {
@@ -55,7 +66,10 @@ namespace PeriDeal
       if (domain.image)
         return static_cast<double>(domain.image->phases.size()) -
                static_cast<double>(domain.image->counts().back());
-      return number_of<dim>(domain.cells, 0);
+      double n = number_of<dim>(domain.cells, 0) / std::pow(2., 1. * dim * domain.coarsening);
+      if (domain.shape == Shape::plate_with_hole)
+        n *= share_of_body(domain);
+      return n;
     }
 
 
@@ -239,10 +253,13 @@ namespace PeriDeal
                       readable_duration(time) + " with all that is told above, without output");
     const double available = available_memory(communicator),
                  taken     = Utilities::MPI::sum(resident_memory(), communicator);
-    lines.push_back(std::string("memory: ") + (estimate.sampled ? "about " : "at least ") +
-                    readable_bytes(taken + estimate.memory) + " at its peak, " +
-                    readable_bytes(taken) + " of it taken already; " + readable_bytes(available) +
-                    " are available" + (estimate.memory > available ? ": a run is refused." : "."));
+    lines.push_back(
+      std::string("memory: ") + (estimate.sampled ? "about " : "at least ") +
+      readable_bytes(taken + estimate.memory) + " at its peak, " + readable_bytes(taken) +
+      " of it taken already; " + readable_bytes(available) + " are available" +
+      (estimate.memory <= available                          ? "." :
+       estimate.memory <= 2. * available && estimate.sampled ? ": it may not suffice." :
+                                                               ": a run is refused."));
     return lines;
   }
 
@@ -291,7 +308,8 @@ namespace PeriDeal
     const double      least_of_all = least(scene).memory;
     const RunEstimate estimate     = least_of_all > available ? least(scene) :
                                                                 estimate_run(scene, communicator);
-    if (estimate.memory <= available)
+    // Estimates are right to a factor of two.
+    if (estimate.memory <= (estimate.sampled ? 2. : 1.) * available)
       return;
     const std::string entry = scene.domain.shape == Shape::image ? "Cells per pixel" : "Cells";
     AssertThrow(

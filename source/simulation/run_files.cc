@@ -57,9 +57,10 @@ namespace PeriDeal
 
   void RunFiles::add_totals(const std::string &rows)
   {
+    totals.add(rows);
+    folder.check();
     folder.commit();
     has_results = true;
-    totals.add(rows);
   }
 
 

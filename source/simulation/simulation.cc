@@ -285,6 +285,7 @@ namespace PeriDeal
         progress.update(scene.time.steady ? 1. : t / scene.time.end_time);
         Timings::Scope scope(timings, "output");
         with_formulas([&] { write_output(t); });
+        end_output(t);
       }
     progress.end();
     if (n_adaptations > 0)
@@ -314,6 +315,12 @@ namespace PeriDeal
         model->solution.set_ghost_state(false);
         add_totals(t, *model);
       }
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::end_output(const double t)
+  {
     files->add_totals(std::exchange(record->totals, ""));
     files->after_output([&] { return summary_now(); },
                         scene.time.steady ? "the steady state" : "until t = " + full_precision(t));

@@ -57,15 +57,18 @@ namespace PeriDeal
   }
 
 
-  void SlowLoading::check_inversion(const Vector &u, const double t) const
+  void SlowLoading::check_inversion(Vector &u, const double t) const
   {
     if (!op.nonlinear())
       return;
-    const Inversion    found = op.inverted(u);
+    const Inversion found = op.inverted(u);
+    if (found.n_nodes == 0)
+      return;
+    u = last;
     std::ostringstream message;
     message << "In the equilibrium that '" << solver->name() << "' has found at t = " << t << ' '
             << inverted_text(found);
-    AssertThrow(found.n_nodes == 0, UserError(message.str()));
+    throw UserError(message.str());
   }
 
 

@@ -276,6 +276,7 @@ namespace PeriDeal
     result.record = new_record(checked, repeats, communicator);
     on_first(communicator, [&] {
       fs::remove(fs::path(checked.folder) / "row.json"); // until the row is finished again
+      remove_results(checked.folder);
     });
     try
       {

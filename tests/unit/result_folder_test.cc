@@ -142,6 +142,54 @@ namespace
   }
 
 
+  TEST_F(ResultFolderTest, unfinished_files_of_a_killed_run_stop_nobody)
+  {
+    run({"fields/peridynamics_0000.h5"});
+    if (is_first())
+      std::ofstream(place + "/fields/peridynamics_0000.h5.part") << "half";
+    MPI_Barrier(MPI_COMM_WORLD);
+    EXPECT_EQ(refusal({"fields/peridynamics_*"}), "");
+    run({"fields/peridynamics_0000.h5"});
+    if (is_first())
+      {
+        EXPECT_FALSE(there_is("fields/peridynamics_0000.h5.part"));
+      }
+  }
+
+
+  TEST_F(ResultFolderTest, results_outlast_runs_that_are_killed_anywhere)
+  {
+    run({"a.csv", "b.csv"});
+    const std::string own = place + "/.perideal/", previous = own + "previous/";
+    if (is_first()) // while it set the results aside: one of two is there, and no mark
+      {
+        fs::create_directories(previous);
+        fs::rename(place + "/a.csv", previous + "a.csv");
+      }
+    MPI_Barrier(MPI_COMM_WORLD);
+    EXPECT_EQ(refusal({"b.csv"}), "");
+    if (is_first())
+      {
+        EXPECT_EQ(content("a.csv") + content("b.csv"), "of a.csvof b.csv");
+        // while it put them back: the list names all, the mark is still there, one of two is back
+        fs::create_directories(previous);
+        fs::rename(place + "/b.csv", previous + "b.csv");
+        fs::copy_file(own + "files", previous + "files");
+      }
+    MPI_Barrier(MPI_COMM_WORLD);
+    EXPECT_EQ(refusal({"b.csv"}), "");
+    if (is_first())
+      {
+        EXPECT_EQ(content("a.csv") + content("b.csv"), "of a.csvof b.csv");
+        fs::remove(place + "/fields"); // an empty folder that somebody has taken away
+        std::ofstream(place + "/totals.csv") << "mine";
+      }
+    MPI_Barrier(MPI_COMM_WORLD);
+    EXPECT_NE(refusal({"totals.csv"}), "");
+    EXPECT_EQ(refusal({"a.csv", "b.csv"}), "") << "the list is kept";
+  }
+
+
   TEST_F(ResultFolderTest, files_of_another_origin_are_refused_by_name)
   {
     if (is_first())

@@ -19,7 +19,8 @@ namespace PeriDeal
    *
    * - One run at a time: a second one is refused. The lock goes with the process, so that a run that was killed leaves none.
    * - Only files of the list are ever moved, replaced or deleted; where a file of another origin has the name of a result, the run is refused.
-   * - A run that ends before commit() leaves the directory as it was.
+   * - A run that ends by an error before commit() leaves the directory as it was. One that is killed or told to end before leaves the results before it in
+   *   `.perideal/previous`, until another run has results.
    *
    * Files are written by rank 0. What goes wrong there is kept, and check() throws it on all processes.
    */
@@ -56,7 +57,10 @@ namespace PeriDeal
       return first_rank;
     }
 
-    /** Name a file as the run's own, before it is written; returns where it lies. Only where writes(). */
+    /** Whether results of a run before lie in `.perideal/previous`. Not collective. */
+    bool has_earlier_results() const;
+
+    /** Name a file as the run's own, before it is written; returns where it lies, or nothing if it must not be written since the list cannot be. Only where writes(). */
     std::string claim(const std::string &name);
 
     /** Write a file whole or not at all. Does nothing where not writes(). */
@@ -82,6 +86,7 @@ namespace PeriDeal
     std::string file_of_another_origin(const std::vector<std::string> &names,
                                        const std::set<std::string>    &earlier) const;
     void        set_aside(const std::set<std::string> &earlier);
+    void        put_back();
     void        restore();
 
     const std::string     path, own; // the directory, and its folder `.perideal`
@@ -90,11 +95,14 @@ namespace PeriDeal
     std::set<std::string> listed;
     std::string           failure;
     FolderLock            lock;
-    bool                  holds = false, committed = false;
+    bool                  aside = false, committed = false;
 
     std::vector<std::string> made; // folders that did not exist before, the innermost first
   };
 
+
+  /** Take away what the list of a directory names, so that nothing of an earlier run can be taken for that of another scene. Call it on one process. */
+  void remove_results(const std::string &directory);
 
   /** Write a file whole or not at all (new file, then rename); returns 0 or the error number. Call it on one process. */
   int replace_file(const std::string &name, const std::string &text);

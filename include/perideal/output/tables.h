@@ -5,13 +5,15 @@
 
 #include <perideal/output/result_folder.h>
 
-#include <cstdio>
 #include <string>
 #include <vector>
 
 namespace PeriDeal
 {
-  /** A table (.csv) that is written as the run goes on, a line at a time, so that a run that ends early leaves whole lines. */
+  /**
+   * A table (.csv) that is written as the run goes on: the rows of one time at once, so that a run that ends early leaves whole lines. (The machine may cut the
+   * last one if it kills a run within this very call.)
+   */
   class Table
   {
   public:
@@ -25,10 +27,16 @@ namespace PeriDeal
     /** @param rows whole lines */
     void add(const std::string &rows);
 
+    /** This process writes it. */
+    bool writes() const
+    {
+      return file >= 0;
+    }
+
   private:
     ResultFolder     &folder;
     const std::string name;
-    std::FILE        *file = nullptr; // nullptr where nothing is written
+    int               file = -1; // -1 where nothing is written
   };
 
 

@@ -28,7 +28,7 @@ namespace PeriDeal
     template <int dim>
     RunFiles(const Scene<dim> &scene, const SceneText &text, const MPI_Comm communicator);
 
-    /** Rows for totals.csv; with them the run has results. */
+    /** Rows for totals.csv, after all other output of that time; with them, unless anything could not be written, the run has results. Collective. */
     void add_totals(const std::string &rows);
 
     /**

@@ -69,6 +69,7 @@ namespace PeriDeal
     void make_reference();
     void advance_through_events(ModelRun<dim> &model, const double t_begin, const double t_end);
     void write_output(const double t);
+    void end_output(const double t);
     void add_points(const double t);
     void add_totals(const double t, ModelRun<dim> &model);
     void add_errors(const double t);

@@ -70,7 +70,7 @@ namespace PeriDeal
   private:
     void solve(Vector &u, const double t);
     void break_bonds(Vector &u, const double t);
-    void check_inversion(const Vector &u, const double t) const;
+    void check_inversion(Vector &u, const double t) const;
 
     ElasticOperator              &op;
     std::unique_ptr<StaticSolver> solver;
