@@ -32,12 +32,13 @@ namespace PeriDeal
   double StepLimit::follow(const Vector &u, const double t, const unsigned long long n_steps)
   {
     // Stretches that differ by a tenth change the limit by a few percent; 0.8 of it leaves room for 25.
-    constexpr double much = 0.1, alarming = 0.25, near = 0.9, cost = 0.03, at_first = 15.,
-                     rounding = 1.005; // of the estimates, to three digits
-    const double now          = op.largest_stretch(u);
-    const bool   grown        = now > stretch + std::max(much, much * stretch);
-    const bool   relaxed      = step < first && now < 0.5 * stretch;
-    const bool   broken       = op.n_broken_bonds() > n_broken;
+    // A step that is not ours has less room, and is looked after more closely.
+    constexpr double alarming = 0.25, near = 0.9, at_first = 15.;
+    const double     much = may_change ? 0.1 : 0.03, cost = may_change ? 0.03 : 0.1;
+    const double     now     = op.largest_stretch(u);
+    const bool       grown   = now > stretch + std::max(much, much * stretch);
+    const bool       relaxed = step < first && now < 0.5 * stretch;
+    const bool       broken  = op.n_broken_bonds() > n_broken;
     if (!grown && !relaxed && !broken)
       return step;
     if (spent > at_first + cost * n_steps && now < (1. + alarming) * (stretch + alarming))
@@ -46,7 +47,7 @@ namespace PeriDeal
     stretch            = now;
     n_broken           = op.n_broken_bonds();
     std::ostringstream message;
-    if (!may_change && !(step <= rounding * limit))
+    if (!may_change && !(step <= limit))
       message
         << "'Time step' in section 'Time' is " << step << ", but at t = " << t
         << " 'verlet' is stable up to " << limit

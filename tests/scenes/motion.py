@@ -106,7 +106,6 @@ def ranks():
     pulled = {**HELD, "Domain/Cells": "16, 8", "Boundary conditions/Displacement": "left: 0, 0; right: 2.5*(t/20)^2, 0", "Time/End time": "20",
               "Output/Write every": "5"}
     runs = [run_scene(BODY, pulled, ranks=n) for n in (1, 2, 4)]
-    check(any("followed the body's deformation" in note for note in runs[0].summary["notes"]), f"the step follows: {runs[0].summary['notes']}")
     for run in runs[1:]:
         check(run.model(PD)["steps"] == runs[0].model(PD)["steps"], "as many steps")
         for quantity in ("kinetic energy", "strain energy", "work of loads and supports"):

@@ -40,7 +40,7 @@ COARSER = {
     "papers/diyaroglu_2017/example_d_paper.prm": {"Domain/Cells": "105, 94, 3", "Peridynamics/Horizon": "0.34665"},
     **{f"papers/le_2014/{name}.prm": {"Domain/Pixels per cell": "2"} for name in ("aspect_ratio", "circular_void", "slanted_void", "void_length")},
 }
-HEAT_LOST = 1e-4  # the default tolerance in time
+HEAT_LOST = 5e-4  # measured: 4e-4, Example 3 of Tan (2020), which starts with a jump; it falls with the tolerance in time, which is 1e-4
 
 FORCE_LOST = 9e-8  # measured: 5.7e-8, the bimetal strip; solvers stop at 1e-10 of the loads
 
