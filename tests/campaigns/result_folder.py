@@ -167,6 +167,15 @@ def _torn_table(path):
             return
 
 
+def reaches_its_end(folder):
+    """Whether totals.csv has rows of the end time that summary.json names, of every model."""
+    with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)
+    with open(os.path.join(folder, "totals.csv"), newline="", encoding="utf-8") as file:
+        found = {row["model"] for row in csv.DictReader(file) if float(row["time"]) == summary["end time"]}
+    return bool(found) and found == set(summary["models"])
+
+
 def wrong_results(folder, complete):
     """All of it. complete: whether the run may say that it finished."""
     try:
@@ -176,7 +185,7 @@ def wrong_results(folder, complete):
         status = None
     if complete and status not in (None, "complete"):
         yield f"summary.json says {status!r} of a complete run"
-    if not complete and status == "complete":
+    if not complete and status == "complete" and not reaches_its_end(folder):  # else the signal came when all was written
         yield "summary.json says 'complete' of a run that was not"
     if complete and not os.path.exists(os.path.join(folder, "summary.json")):
         yield "no summary.json"
