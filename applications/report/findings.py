@@ -184,12 +184,14 @@ def is_conserved(run, words):
 
 
 def is_kept(run, words):
-    """The balance since the start, against the largest of what came in and what the body held or holds."""
+    """The balance since the start, against the largest of what came in, passed through and was or is held."""
     worst = None
     for model in run.models:
-        found = balance(run.summary["models"][model], words).get("cumulative") or {}
+        whole = balance(run.summary["models"][model], words)
+        found = whole.get("cumulative") or {}
+        passed = abs(whole.get("throughput") or 0) * (run.end_time or 0)  # where as much enters as leaves
         content = [abs(v) for _, v in run.totals.get(words.content, {}).get(model, [])]
-        moved = max([abs(found.get(k) or 0) for k in ("entered", "stored")] + content)
+        moved = max([abs(found.get(k) or 0) for k in ("entered", "stored")] + [passed] + content)
         if found.get("imbalance") is None or not moved:
             continue
         share = abs(found["imbalance"]) / moved
@@ -198,8 +200,8 @@ def is_kept(run, words):
     if worst is None:
         return None
     amount = f"at most {plain(worst[1], 2)}" if worst[1] < 1e-6 else percent(worst[1])
-    return (f"Since the start, what the body stores differs from the {words.quantity} that entered by {amount} of the larger of what "
-            f"entered and what it holds (worst: {worst[0]}).")
+    return (f"Since the start, what the body stores differs from the {words.quantity} that entered by {amount} of the largest of what "
+            f"entered, passed through and is held (worst: {worst[0]}).")
 
 
 def what_broke(run, words):
