@@ -113,7 +113,7 @@ namespace PeriDeal
     }
 
 
-    void fail(int signal)
+    [[maybe_unused]] void fail(int signal) // not with sanitizers
     {
       prepare_to_speak();
       if (say_if_memory_is_short())

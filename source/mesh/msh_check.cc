@@ -158,6 +158,18 @@ namespace PeriDeal
                a[2] * (b[0] * c[1] - b[1] * c[0]);
       }
 
+      /** A corner of a quadrilateral whose edges go on straight, as recombined triangles have it. */
+      bool is_straight(const MshElement &cell, const unsigned int corner) const
+      {
+        if (dim != 2)
+          return false;
+        const Vector3 a      = edge(cell, corner, neighbors_2[corner][0]),
+                      b      = edge(cell, corner, neighbors_2[corner][1]);
+        const double lengths = std::hypot(a[0], a[1]) * std::hypot(b[0], b[1]);
+        return lengths > std::pow(smallest_length * extent, 2) &&
+               a[0] * b[0] + a[1] * b[1] < -0.5 * lengths;
+      }
+
       /** 1, or -1 for a cell that is numbered the other way round. */
       int orientation(const MshElement &cell) const
       {
@@ -174,6 +186,8 @@ namespace PeriDeal
           {
             const double s   = sine(cell, corner);
             const int    own = s > smallest_angle ? 1 : s < -smallest_angle ? -1 : 0;
+            if (own == 0 && is_straight(cell, corner))
+              continue;
             if (own == 0 || own == -sign)
               msh_error(name,
                         cell.line,
@@ -185,6 +199,11 @@ namespace PeriDeal
                           ", expected corners that all point outwards.");
             sign = own;
           }
+        if (sign == 0)
+          msh_error(name,
+                    cell.line,
+                    "the " + cell_name() + " " + std::to_string(cell.number) + " of the nodes " +
+                      nodes_of(cell) + " is flat, expected one with an area.");
         return sign;
       }
 

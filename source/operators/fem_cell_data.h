@@ -31,13 +31,15 @@ namespace PeriDeal
       , convection(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
       , indices(fe.n_dofs_per_cell())
       , temperatures(values.n_quadrature_points, 0.)
+      , temperatures_after(temperatures)
     {}
 
     dealii::FEValues<dim>                        values;
     dealii::FEFaceValues<dim>                    face_values;
     dealii::FullMatrix<double>                   stiffness, mass, convection;
     std::vector<dealii::types::global_dof_index> indices;
-    std::vector<double>                          temperatures; // at the quadrature points
+    std::vector<double>                          temperatures;       // at the quadrature points
+    std::vector<double>                          temperatures_after; // heat_between(): there
   };
 
 

@@ -96,10 +96,10 @@ namespace PeriDeal
         set_hanging(y, 0.); // the nodes they follow from have all of it
         return;
       }
-    CellData           &data = *cell_data;
-    std::vector<double> from(data.values.n_quadrature_points), to(from);
-    const bool          lumped = capacity_is_diagonal();
-    y                          = 0.;
+    CellData            &data = *cell_data;
+    std::vector<double> &from = data.temperatures, &to = data.temperatures_after;
+    const bool           lumped = capacity_is_diagonal();
+    y                           = 0.;
     u.update_ghost_values();
     v.update_ghost_values();
     for (const auto &cell : dofs.active_cell_iterators())
@@ -111,19 +111,18 @@ namespace PeriDeal
           data.values.get_function_values(v, to);
           for (const unsigned int q : data.values.quadrature_point_indices())
             {
-              const Point<dim> &p    = data.values.quadrature_point(q);
-              const double      gap  = to[q] - from[q];
-              const double      heat = data.values.JxW(q) *
-                                  heat_between_temperatures(scene.material, p, from[q], to[q]);
+              const Point<dim> &p   = data.values.quadrature_point(q);
+              const double      gap = to[q] - from[q];
+              const double      heat =
+                data.values.JxW(q) * heat_between_temperatures(scene.material, p, from[q], to[q]);
               // The mean capacity on the way, times the change of each unknown or of the field.
-              const double mean = gap != 0. ? heat / gap :
-                                              data.values.JxW(q) *
-                                                scene.material.storage(p, from[q]);
+              const double mean =
+                gap != 0. ? heat / gap : data.values.JxW(q) * scene.material.storage(p, from[q]);
               for (unsigned int i = 0; i < data.indices.size(); ++i)
                 {
                   const auto dof = data.indices[i];
-                  y(dof) += data.values.shape_value(i, q) *
-                            (lumped ? mean * (v(dof) - u(dof)) : heat);
+                  y(dof) +=
+                    data.values.shape_value(i, q) * (lumped ? mean * (v(dof) - u(dof)) : heat);
                 }
             }
         }
@@ -173,12 +172,11 @@ namespace PeriDeal
                                               const unsigned int end) const
   {
     double sum = 0.;
-    for (auto entry = std::lower_bound(prescribed.begin(),
-                                       prescribed.end(),
-                                       begin,
-                                       [](const Prescribed &a, const unsigned int b) {
-                                         return a.dof < b;
-                                       });
+    for (auto entry =
+           std::lower_bound(prescribed.begin(),
+                            prescribed.end(),
+                            begin,
+                            [](const Prescribed &a, const unsigned int b) { return a.dof < b; });
          entry != prescribed.end() && entry->dof < end;
          ++entry)
       sum += y.local_element(entry->dof);
@@ -242,24 +240,20 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                            \
-  template bool   FEMOperator<dim>::capacity_depends_on_solution() const;    \
-  template void   FEMOperator<dim>::heat_between(Vector &,                   \
-                                               const Vector &,             \
-                                               const Vector &) const;      \
-  template void   FEMOperator<dim>::find_convection_sums();                  \
-  template double FEMOperator<dim>::through_prescribed(const Vector &,       \
-                                                       const unsigned int,   \
-                                                       const unsigned int)   \
-    const;                                                                   \
-  template double FEMOperator<dim>::through_convection(const Vector &)       \
-    const;                                                                   \
-  template double FEMOperator<dim>::sum_of_free_loads(const Vector &) const; \
-  template bool   FEMOperator<dim>::depends_on_solution() const;             \
-  template void   FEMOperator<dim>::find_temperatures(CellData &) const;     \
-  template double FEMOperator<dim>::center_conductivity(const Cell &) const; \
-  template void   FEMOperator<dim>::take_material_at(const Vector &);        \
-  template double FEMOperator<dim>::heat(const Vector &) const;              \
+#define PERIDEAL_INSTANTIATE(dim)                                                                 \
+  template bool   FEMOperator<dim>::capacity_depends_on_solution() const;                         \
+  template void   FEMOperator<dim>::heat_between(Vector &, const Vector &, const Vector &) const; \
+  template void   FEMOperator<dim>::find_convection_sums();                                       \
+  template double FEMOperator<dim>::through_prescribed(const Vector &,                            \
+                                                       const unsigned int,                        \
+                                                       const unsigned int) const;                 \
+  template double FEMOperator<dim>::through_convection(const Vector &) const;                     \
+  template double FEMOperator<dim>::sum_of_free_loads(const Vector &) const;                      \
+  template bool   FEMOperator<dim>::depends_on_solution() const;                                  \
+  template void   FEMOperator<dim>::find_temperatures(CellData &) const;                          \
+  template double FEMOperator<dim>::center_conductivity(const Cell &) const;                      \
+  template void   FEMOperator<dim>::take_material_at(const Vector &);                             \
+  template double FEMOperator<dim>::heat(const Vector &) const;                                   \
   template double FEMOperator<dim>::heat_of(const Vector &) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

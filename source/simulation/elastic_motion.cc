@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "result_record.h"
@@ -126,7 +127,12 @@ namespace PeriDeal
   {
     constexpr double tolerable = 0.01,
                      few       = 0.01; // where few bonds have broken it is not they that tell
-    const auto note            = [&](const auto &energy, const double lost) {
+    const auto rounded         = [](const double x) {
+      std::ostringstream text;
+      text << std::setprecision(3) << x;
+      return text.str();
+    };
+    const auto note = [&](const auto &energy, const double lost) {
       const double imbalance = energy.imbalance();
       const bool   of_bonds  = model.op().brittle() && lost > few * energy.exchanged;
       const double whole     = of_bonds ? lost : energy.exchanged;
@@ -135,10 +141,12 @@ namespace PeriDeal
       record->notes.push_back(
         model.name() + ": the energy balance does not close. What " +
         (imbalance < 0. ? "is missing" : "has come from nowhere") + " at the end, " +
-        number_text(std::abs(imbalance)) + ", is " +
-        number_text(100. * std::abs(imbalance) / whole) + " % of " +
+        rounded(std::abs(imbalance)) + ", is " + rounded(100. * std::abs(imbalance) / whole) +
+        " % of " +
         (of_bonds ? "what broken bonds have dissipated" : "what start and loads have brought in") +
-        ". A smaller 'Time step' in section 'Time' makes it less: half the step a quarter.");
+        (model.stepper ?
+           ". A smaller 'Time step' in section 'Time' makes it less: half the step a quarter, where it is not the breaking of bonds that makes it." :
+           ". Smaller steps of the loading ('Time step' in section 'Time') make it less."));
     };
     if (model.stepper)
       {

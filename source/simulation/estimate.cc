@@ -52,7 +52,7 @@ namespace PeriDeal
     double share_of_body(const Domain<dim> &domain)
     {
       double whole = 1.;
-      for (unsigned int d = 0; d < std::min(dim, 2); ++d)
+      for (int d = 0; d < std::min(dim, 2); ++d)
         whole *= domain.upper[d] - domain.lower[d];
       return std::max(0., 1. - 4. * domain.hole_radius * domain.hole_radius / whole);
     }

@@ -304,6 +304,8 @@ namespace PeriDeal
   {
     if (!readers_fit)
       make_readers();
+    for (auto &model : models) // refuses what is not finite before it is written
+      add_totals(t, *model);
     for (auto &model : models)
       model->solution.update_ghost_values();
     add_points(t);
@@ -311,10 +313,7 @@ namespace PeriDeal
     compare_models(t);
     write_fields(t);
     for (auto &model : models)
-      {
-        model->solution.set_ghost_state(false);
-        add_totals(t, *model);
-      }
+      model->solution.set_ghost_state(false);
   }
 
 
@@ -381,15 +380,16 @@ namespace PeriDeal
   {
     const Balance       balance = model.op().balance(model.solution, t, scene.time.steady);
     const PhysicsNames &names   = names_of(scene.general.physics);
-    require_finite({{"largest " + names.field, model.solution.linfty_norm()},
-                    {names.flow, balance.throughput()},
-                    {"imbalance", balance.imbalance()},
-                    {names.content, balance.content}},
-                   model.name(),
-                   t,
-                   "Numbers beyond 1e308 came up. Check the sizes and units of values, fluxes and sources (sections 'Boundary conditions' and 'Initial and source') and of the "
-                   "properties in section 'Material'.");
-    const auto          row     = [&](const std::string &quantity, const double value) {
+    require_finite(
+      {{"largest " + names.field, model.solution.linfty_norm()},
+       {names.flow, balance.throughput()},
+       {"imbalance", balance.imbalance()},
+       {names.content, balance.content}},
+      model.name(),
+      t,
+      "Numbers beyond 1e308 came up. Check the sizes and units of values, fluxes and sources (sections 'Boundary conditions' and 'Initial and source') and of the "
+      "properties in section 'Material'.");
+    const auto row = [&](const std::string &quantity, const double value) {
       record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
                         full_precision(value) + "\n";
     };

@@ -21,7 +21,7 @@ namespace PeriDeal
   HeldHeat::HeldHeat(const Operator &op)
     : op(op)
     , needed(!op.capacity_depends_on_solution() &&
-             (!op.capacity_is_diagonal() || op.depends_on_time()))
+             (!op.capacity_is_diagonal() || op.depends_on_time() || !op.symmetric()))
   {
     if (needed)
       for (Vector *v : {&before, &heat, &work})
@@ -69,8 +69,8 @@ namespace PeriDeal
     const double held = sum_of_held(op, heat, work); // work is left with what is free
     for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
       {
-        const double change = v.local_element(i) - u.local_element(i), taken = work.local_element(i),
-                     frozen = capacity.local_element(i);
+        const double change = v.local_element(i) - u.local_element(i),
+                     taken = work.local_element(i), frozen = capacity.local_element(i);
         if (taken == 0. || change == 0.)
           continue;
         const double mean = taken / change, end = 2. * mean - frozen;

@@ -145,7 +145,8 @@ namespace PeriDeal
               << " of it, more than " << 100. * allowed_drift
               << " % of what start and loads have brought in, " << found.exchanged
               << ". The body deforms too much within a step of " << step_now
-              << ": choose a smaller 'Time step' in section 'Time', or a smaller load.";
+              << ": choose a 'Time step' of " << 0.5 * step_now
+              << " or less in section 'Time', or a smaller load.";
     AssertThrow(message.str().empty(), UserError(message.str()));
   }
 
@@ -202,7 +203,7 @@ namespace PeriDeal
   void MotionStepper::advance(Vector &u, Vector &v, const double t, const double t_end)
   {
     constexpr unsigned int between_checks = 20, between_examinations = 50;
-    constexpr double       same = 1e-9;
+    constexpr double       same = 1e-6; // not another step, but round-off of the times
     double                 from = t;
     unsigned long long     n = n_equal_steps(t_end - t, longest), k = 0;
     if (fresh)

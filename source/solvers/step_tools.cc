@@ -107,8 +107,8 @@ namespace PeriDeal
            (found.n_nodes == 1 ? " node" : " nodes, worst at ") + (found.n_nodes == 1 ? ", " : "") +
            found.place +
            ": neighbours that bonds hold together have passed through each other, which bonds do not prevent. "
-           "Such a state means nothing: make the load smaller, or let it grow more slowly with t; spread it by 'Traction layer' in section "
-           "'Boundary conditions', or use larger cells where it acts on a single row of nodes.";
+           "Such a state means nothing: make the load smaller, or let it grow more slowly with t. Where a traction acts on a single row of nodes "
+           "spread it by 'Traction layer' in section 'Boundary conditions', or use larger cells.";
   }
 
 

@@ -107,6 +107,14 @@ TEST(MshCheck, sound_files)
 }
 
 
+TEST(MshCheck, straight_corners)
+{
+  // A corner in the middle of an edge is in order: quadrilaterals from recombined triangles have some.
+  expect_sound(with(latest, "2 0 0\n0 1 0", "2 0 0\n0.5 0.5 0"));
+  expect_fault(with(latest, "2 0 0\n0 1 0", "2 0 0\n0.5 0 0"), 2, 37, {"no angle"});
+}
+
+
 TEST(MshCheck, header)
 {
   expect_fault("", 2, 1, {"the file ends", "'$MeshFormat'"});

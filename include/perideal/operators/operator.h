@@ -132,9 +132,9 @@ namespace PeriDeal
      */
     virtual void heat_between(Vector &y, const Vector &u, const Vector &v) const
     {
-      Vector change(v);
-      change -= u;
-      apply_capacity(y, change);
+      change_of_heat = v;
+      change_of_heat -= u;
+      apply_capacity(y, change_of_heat);
     }
 
     /**
@@ -229,6 +229,9 @@ namespace PeriDeal
   protected:
     mutable unsigned long long applications = 0;
     mutable double             entering_now = 0.; // of entering()
+
+  private:
+    mutable Vector change_of_heat; // heat_between(): allocated at its first call
   };
 
 

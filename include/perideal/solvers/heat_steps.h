@@ -12,8 +12,8 @@ namespace PeriDeal
 
 
   /**
-   * What prescribed unknowns take up while a stepper advances with a capacity that is constant: nothing unless their values change, or share a capacity
-   * matrix with others.
+   * What prescribed unknowns take up while a stepper advances with a capacity that is constant: nothing unless their values change with time or, as slaves, with those of others
+   * (rows that are not symmetric), or share a capacity matrix with others.
    */
   class HeldHeat
   {
