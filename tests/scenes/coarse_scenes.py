@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Every scene of prm/ on a coarse lattice, with its fields written, some on two processes: it ends as it should and nothing complains.
 
-Numbers are not looked at: this is for builds that watch themselves (preset sanitize), where a run takes ten times as long.
+Numbers are not looked at: this is for builds that watch themselves (./check --sanitize), where a run takes ten times as long.
 Any report of a sanitizer and any failed Assert is a failure, printed with its scene.
 
     coarse_scenes.py [FOLDER of prm ...]      # all by default
