@@ -225,6 +225,26 @@ namespace PeriDeal
     /** The most coarse cells that a mesh distributed by p4est may have. */
     constexpr std::size_t most_coarse_cells = 100000;
 
+    /** Says where a crack runs along nodes of a mesh file that it could part. */
+    template <int dim>
+    void note_cracks_on_faces(const CoarseMesh<dim>    &coarse,
+                              const Cracks<dim>        &cracks,
+                              std::vector<std::string> &notes)
+    {
+      if (cracks.mesh == CrackMesh::faces || cracks.change() || cracks.conduct())
+        return;
+      for (const CrackGeometry<dim> &crack : make_crack_geometries(cracks.pieces(0.)))
+        if (measure_on_faces(coarse, crack) > 0. && lies_on_faces(coarse, crack))
+          {
+            notes.push_back(
+              "Crack " + std::to_string(crack.crack + 1) +
+              " (section 'Cracks') lies on faces of the mesh's cells, and the nodes there belong to its left side. "
+              "'Mesh = faces' cuts the mesh there, which is more accurate.");
+            return;
+          }
+    }
+
+
     /** An empty triangulation, distributed by p4est or with all cells on every process. */
     template <int dim>
     std::unique_ptr<Triangulation<dim>> empty_triangulation(const bool           every_cell,
@@ -280,7 +300,10 @@ namespace PeriDeal
     BoundaryIds     ids;
     unsigned int    n_refinements = 0;
     if (domain.shape == Shape::mesh_file)
-      coarse = read_mesh_file<dim>(domain.mesh_file, communicator, ids);
+      {
+        coarse = read_mesh_file<dim>(domain.mesh_file, communicator, ids);
+        note_cracks_on_faces(coarse, cracks, notes);
+      }
     else if (domain.shape == Shape::plate_with_hole)
       {
         coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {

@@ -40,10 +40,10 @@ namespace PeriDeal
     cut.assign(dofs.get_triangulation().n_active_cells(), false);
     if (scene.cracks.mesh == CrackMesh::faces)
       return;
-    const auto cracks = make_crack_geometries(scene.cracks.pieces(0.));
+    const auto cracks = make_open_geometries(scene.cracks.pieces(0.));
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial())
-        cut[cell->active_cell_index()] = is_cut(cell, cracks);
+        cut[cell->active_cell_index()] = is_removed(cell, cracks);
   }
 
 

@@ -29,9 +29,11 @@ namespace PeriDeal
     cut.assign(dofs.get_triangulation().n_active_cells(), false);
     if (scene.cracks.mesh == CrackMesh::faces)
       return;
+    const bool removes = scene.cracks.mesh == CrackMesh::removed;
+    const auto open    = make_open_geometries(history.pieces(cracks_of));
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial())
-        cut[cell->active_cell_index()] = is_cut(cell, cracks);
+        cut[cell->active_cell_index()] = removes ? is_removed(cell, open) : is_cut(cell, cracks);
   }
 
 

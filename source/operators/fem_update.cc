@@ -130,10 +130,12 @@ namespace PeriDeal
         coupling->set_cracks_of(time);
         recount_bonds = true;
       }
-    cracks       = make_crack_geometries(history.pieces(time));
-    transmission = history.transmission(time);
+    cracks             = make_crack_geometries(history.pieces(time));
+    transmission       = history.transmission(time);
+    const bool removes = scene.cracks.mesh == CrackMesh::removed;
+    const auto open    = make_open_geometries(history.pieces(time));
     for (const Cell &cell : near)
-      cut[cell->active_cell_index()] = is_cut(cell, cracks);
+      cut[cell->active_cell_index()] = removes ? is_removed(cell, open) : is_cut(cell, cracks);
     if (scaled)
       find_crack_factors(near, owned_unknowns_of(cells_near(cuts, joins, 0.)), event->factors);
     const auto &layout = *capacity.get_partitioner();

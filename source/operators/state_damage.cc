@@ -51,6 +51,47 @@ namespace PeriDeal
         }
       return sums;
     }
+
+
+    /**
+     * The same for a node's own family, where there is no lattice. Half of what lies on both sides of the node counts for each side, so that
+     * families that end at the surface have no smaller sums than others.
+     */
+    template <int dim>
+    CrossingSums own_crossing_sums(const Families<dim>                       &bonds,
+                                   const unsigned int                         node,
+                                   std::vector<typename Families<dim>::Bond> &family)
+    {
+      bonds.bonds_of(node, family, false);
+      std::vector<std::pair<double, double>> crossing(family.size()); // distance, share
+      CrossingSums                           sums;
+      double                                 q = 0.;
+      for (const auto &bond : family)
+        q += bond.intact / bonds.bond_conductivity(node, bond.neighbor) *
+             bonds.bond_vector(node, bond.neighbor).norm_square();
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          for (std::size_t k = 0; k < family.size(); ++k)
+            {
+              const Tensor<1, dim> xi = bonds.bond_vector(node, family[k].neighbor);
+              crossing[k]             = {std::abs(xi[d]),
+                                         0.5 * family[k].intact /
+                                           bonds.bond_conductivity(node, family[k].neighbor) *
+                                           xi.norm_square() / q};
+            }
+          std::sort(crossing.begin(), crossing.end());
+          // What reaches farther than a plane, as the plane moves away from the node.
+          double beyond = 0.5, last = 0.;
+          for (const auto &[distance, share] : crossing)
+            {
+              sums.bonds += distance * share / dim;
+              sums.dilatations += (distance - last) * beyond * beyond / dim;
+              beyond -= share;
+              last = distance;
+            }
+        }
+      return sums;
+    }
   } // namespace
 
 
@@ -60,31 +101,40 @@ namespace PeriDeal
     const Material &material = scene.material;
     if (!material.fracture_energy && !material.critical_stretch)
       return;
-    const Nodes<dim> &nodes = bonds.nodes();
-    Assert(material.critical_stretch || nodes.lattice(),
-           ExcInternalError()); // the scene was checked
-    const CrossingSums sums = material.critical_stretch ? CrossingSums() : crossing_sums(bonds);
-    std::string        message;
+    const Nodes<dim>  &nodes      = bonds.nodes();
+    const bool         converts   = !material.critical_stretch;
+    const CrossingSums of_lattice = converts && nodes.lattice() ? crossing_sums(bonds) :
+                                                                  CrossingSums();
+    std::vector<typename Families<dim>::Bond> family;
+    std::string                               message;
+    Vector                                    stretches(nodes.partitioner());
     breaks = true;
-    critical.resize(nodes.n_local());
-    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        const Point<dim> &p    = nodes.position(i);
-        const StateLaw   &law  = laws[i].law;
-        const double      unit = law.extension * sums.bonds +
-                            (volumetric ? law.volumetric * law.dilatation * sums.dilatations : 0.);
-        critical[i] = material.critical_stretch ?
-                        material.critical_stretch->value(p) :
-                        std::sqrt(material.fracture_energy->value(p) / unit);
-        if (message.empty() && !(critical[i] > 0.))
+        const Point<dim> &p   = nodes.position(i);
+        const StateLaw   &law = laws[i].law;
+        double           &s   = stretches.local_element(i);
+        if (converts)
+          {
+            const CrossingSums sums = nodes.lattice() ? of_lattice :
+                                                        own_crossing_sums(bonds, i, family);
+            s                       = std::sqrt(material.fracture_energy->value(p) /
+                          (law.extension * sums.bonds +
+                           (volumetric ? law.volumetric * law.dilatation * sums.dilatations : 0.)));
+          }
+        else
+          s = material.critical_stretch->value(p);
+        if (message.empty() && !(s > 0.))
           {
             std::ostringstream where;
-            where << "'" << (material.critical_stretch ? "Critical stretch" : "Fracture energy")
+            where << "'" << (converts ? "Fracture energy" : "Critical stretch")
                   << "' in section 'Material' is not positive at (" << p << ").";
             message = where.str();
           }
       }
     throw_on_all_if_any(nodes.communicator(), message);
+    stretches.update_ghost_values();
+    critical.assign(stretches.begin(), stretches.begin() + nodes.n_local());
   }
 
 

@@ -138,6 +138,36 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool CrackGeometry<dim>::covers(const Point<dim> &p) const
+  {
+    return plane_point_inside(p, true);
+  }
+
+
+  template <int dim>
+  bool CrackGeometry<dim>::is_closed_near(const Point<dim> &p) const
+  {
+    if (dim == 2)
+      return closed[(p - corner_points[0]) * first_axis > 0.5 * content ? 1 : 0];
+    std::size_t nearest  = 0;
+    double      distance = std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < corner_points.size(); ++i)
+      {
+        const Tensor<1, dim> edge =
+          corner_points[(i + 1) % corner_points.size()] - corner_points[i];
+        const double along = std::clamp((p - corner_points[i]) * edge / edge.norm_square(), 0., 1.);
+        const double apart = p.distance(corner_points[i] + along * edge);
+        if (apart < distance)
+          {
+            distance = apart;
+            nearest  = i;
+          }
+      }
+    return closed[nearest];
+  }
+
+
+  template <int dim>
   bool CrackGeometry<dim>::is_near(const Point<dim> &p, const double radius) const
   {
     for (unsigned int d = 0; d < dim; ++d)
@@ -209,6 +239,18 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  std::vector<CrackGeometry<dim>> make_open_geometries(std::vector<CrackPiece<dim>> pieces)
+  {
+    for (CrackPiece<dim> &piece : pieces)
+      piece.closed.clear();
+    return make_crack_geometries(pieces);
+  }
+
+
+  template std::vector<CrackGeometry<1>> make_open_geometries(std::vector<CrackPiece<1>>);
+  template std::vector<CrackGeometry<2>> make_open_geometries(std::vector<CrackPiece<2>>);
+  template std::vector<CrackGeometry<3>> make_open_geometries(std::vector<CrackPiece<3>>);
   template std::vector<CrackGeometry<1>> make_crack_geometries(const std::vector<CrackPiece<1>> &);
   template std::vector<CrackGeometry<2>> make_crack_geometries(const std::vector<CrackPiece<2>> &);
   template std::vector<CrackGeometry<3>> make_crack_geometries(const std::vector<CrackPiece<3>> &);

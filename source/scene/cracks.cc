@@ -99,6 +99,15 @@ namespace PeriDeal
       "or cut cells conduct nothing. `auto`: pairs, with `Physics = elasticity` removed; there pairs are not defined.",
       {"pairs", "faces", "removed", "auto"});
     declare(
+      "Nodes on cracks",
+      EntryType::choice,
+      "avoid",
+      "",
+      "A crack that runs along a row of nodes of the lattice: `avoid` takes up to three `Cells` more or fewer across it, with which it runs "
+      "between rows; a note says so. `left`: nodes exactly on a crack belong to its left side, so that it acts half a cell beside its "
+      "place. Meshes from files, images and lattices with `Coarsening` or `Extra layers` keep their cells.",
+      {"avoid", "left"});
+    declare(
       "Transmission",
       EntryType::formula,
       "0",
@@ -174,7 +183,8 @@ namespace PeriDeal
     mesh = choice<CrackMesh>("Mesh");
     if (mesh == CrackMesh::automatic)
       mesh = physics == Physics::elasticity ? CrackMesh::removed : CrackMesh::pairs;
-    through_tips = choice<ThroughTips>("Bonds through tips");
+    through_tips    = choice<ThroughTips>("Bonds through tips");
+    nodes_on_cracks = choice<NodesOnCracks>("Nodes on cracks");
     if (physics == Physics::elasticity && through_tips == ThroughTips::automatic)
       through_tips = ThroughTips::cut; // whatever 'Surface correction' does
     parse_conductance();

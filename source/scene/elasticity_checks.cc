@@ -381,10 +381,6 @@ namespace PeriDeal
         entry_error(
           where,
           "has no effect: finite elements do not break. Add 'peridynamics' to 'Models', or leave the entry out.");
-      if (material.fracture_energy && scene.domain.shape == Shape::mesh_file)
-        entry_error(
-          where,
-          "is turned into a stretch by sums over a lattice, which 'Shape = mesh file' has not. Give 'Critical stretch'.");
     }
 
 
@@ -398,12 +394,15 @@ namespace PeriDeal
         if (fault)
           entry_error(scene.elasticity.where("Micromodulus"), "'constant' " + what);
       };
-      refuse(!runs(scene, Model::peridynamics),
-             "is for peridynamics in the whole body: add 'peridynamics' to 'Models', or leave the entry out.");
-      refuse(scene.domain.shape == Shape::mesh_file,
-             "is that of the complete family of a lattice, which 'Shape = mesh file' has not. Leave the entry out.");
-      refuse(scene.peridynamics.corrects_elastic_bonds() || scene.peridynamics.completes_families(),
-             "leaves surfaces soft, which 'Surface correction' and fictitious nodes (section 'Peridynamics') mend. Leave one of them out.");
+      refuse(
+        !runs(scene, Model::peridynamics),
+        "is for peridynamics in the whole body: add 'peridynamics' to 'Models', or leave the entry out.");
+      refuse(
+        scene.domain.shape == Shape::mesh_file,
+        "is that of the complete family of a lattice, which 'Shape = mesh file' has not. Leave the entry out.");
+      refuse(
+        scene.peridynamics.corrects_elastic_bonds() || scene.peridynamics.completes_families(),
+        "leaves surfaces soft, which 'Surface correction' and fictitious nodes (section 'Peridynamics') mend. Leave one of them out.");
     }
 
 

@@ -32,6 +32,16 @@ namespace PeriDeal
     problem->peridynamics.set("Operator form", "auto"); // that of elastic bonds is meant
     // Both share the mesh.
     problem->cracks.set("Mesh", cracks.mesh == CrackMesh::faces ? "faces" : "removed");
+    problem->cracks.set("Nodes on cracks", "left");
+    if (domain.shape != Shape::mesh_file && domain.shape != Shape::image &&
+        !domain.has_extra_layers())
+      {
+        std::string cells;
+        for (const unsigned int n : domain.cells)
+          cells += (cells.empty() ? "" : ", ") + std::to_string(n);
+        problem->domain.set("Node spacing", "");
+        problem->domain.set("Cells", cells);
+      }
     problem->domain.scene_folder = domain.scene_folder;
     problem->domain.communicator = domain.communicator;
     try

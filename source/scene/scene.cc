@@ -304,6 +304,7 @@ namespace PeriDeal
                               general.physics,
                               elasticity.computes_temperature);
     cracks.parse(general.physics);
+    keep_cracks_off_nodes();
     peridynamics.parse(general.physics);
     coupling.parse();
     finite_elements.parse();

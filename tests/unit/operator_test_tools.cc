@@ -13,6 +13,7 @@ namespace PeriDeal
     void set(Scene<dim> &scene, const Settings &settings)
     {
       scene.general.set("Dimension", std::to_string(dim));
+      scene.cracks.set("Nodes on cracks", "left"); // the lattice is the one asked for
       for (const auto &[path, text] : settings)
         {
           const auto  slash   = path.rfind('/');

@@ -5,6 +5,7 @@
 
 #include <perideal/scene/crack_geometry.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace PeriDeal
@@ -19,6 +20,53 @@ namespace PeriDeal
           for (unsigned int b = 0; b < a; ++b)
             if (crack.separates(cell->vertex(a), cell->vertex(b)))
               return true;
+    return false;
+  }
+
+  /**
+   * Whether a cell carries nothing when cut cells are removed: a crack holds the middle of what its
+   * line or plane cuts out of the cell. So a tip counts from the middle of a cell on, and a tip at
+   * the edge of a cell leaves that cell whole. A cell that a crack only touches at a vertex (3D: or
+   * an edge) stays; of two cells on both sides of a crack along their common face the one on the
+   * right goes. Pieces that meet have no tip there.
+   *
+   * @param cracks from make_open_geometries()
+   */
+  template <int dim, typename Cell>
+  bool is_removed(const Cell &cell, const std::vector<CrackGeometry<dim>> &cracks)
+  {
+    const double same = 1e-6 * cell->diameter();
+    for (const CrackGeometry<dim> &crack : cracks)
+      {
+        if (!crack.is_near(cell->center(), cell->diameter()))
+          continue;
+        // Where the edges of the cell cross the line or plane of the crack.
+        std::vector<dealii::Point<dim>> section;
+        for (unsigned int v = 0; v < cell->n_vertices(); ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const unsigned int w = v | (1u << d);
+              if (w == v)
+                continue;
+              const double at_v = crack.signed_distance(cell->vertex(v)),
+                           at_w = crack.signed_distance(cell->vertex(w));
+              if ((at_v > 0.) == (at_w > 0.))
+                continue;
+              const dealii::Point<dim> p =
+                cell->vertex(v) + at_v / (at_v - at_w) * (cell->vertex(w) - cell->vertex(v));
+              if (std::none_of(section.begin(), section.end(), [&](const auto &q) {
+                    return q.distance(p) <= same;
+                  }))
+                section.push_back(p);
+            }
+        if (section.size() < dim)
+          continue;
+        dealii::Point<dim> middle;
+        for (const dealii::Point<dim> &p : section)
+          middle += (p - dealii::Point<dim>()) / static_cast<double>(section.size());
+        if (crack.covers(middle) || (crack.is_closed_near(middle) && is_cut<dim>(cell, {crack})))
+          return true;
+      }
     return false;
   }
 } // namespace PeriDeal

@@ -39,6 +39,12 @@ namespace PeriDeal
     /** Whether the point lies on the crack itself, tips included (not only on its line or plane). */
     bool contains(const dealii::Point<dim> &p) const;
 
+    /** Whether a point near the crack's line or plane lies beside the crack itself, tips included. */
+    bool covers(const dealii::Point<dim> &p) const;
+
+    /** Whether the end (3D: the edge) of the crack that is nearest to a point on its line or plane is closed. */
+    bool is_closed_near(const dealii::Point<dim> &p) const;
+
     /** Whether the ball of the given radius about p meets the crack's bounding box and its line or plane: a quick test to skip far nodes. */
     bool is_near(const dealii::Point<dim> &p, const double radius) const;
 
@@ -73,4 +79,8 @@ namespace PeriDeal
   /** The pieces of the cracks of a scene in the given order, with closed joints. */
   template <int dim>
   std::vector<CrackGeometry<dim>> make_crack_geometries(const std::vector<CrackPiece<dim>> &pieces);
+
+  /** The same with no other ends closed than joints. */
+  template <int dim>
+  std::vector<CrackGeometry<dim>> make_open_geometries(std::vector<CrackPiece<dim>> pieces);
 } // namespace PeriDeal

@@ -34,6 +34,14 @@ namespace PeriDeal
   };
 
 
+  /** Entry `Nodes on cracks` of section `Cracks`. */
+  enum class NodesOnCracks
+  {
+    avoid,
+    left
+  };
+
+
   /**
    * Section `Cracks`: segments in 2D (two points each), planar polygons in 3D (three or more
    * corners each), and how their ends and corners move.
@@ -47,8 +55,9 @@ namespace PeriDeal
     std::vector<std::vector<dealii::Point<dim>>>
                                cracks; // before they grow; a segment that grows may have no length
     std::vector<CrackTip<dim>> tips;   // that move
-    CrackMesh                  mesh         = CrackMesh::pairs;
-    ThroughTips                through_tips = ThroughTips::automatic;
+    CrackMesh                  mesh            = CrackMesh::pairs;
+    ThroughTips                through_tips    = ThroughTips::automatic;
+    NodesOnCracks              nodes_on_cracks = NodesOnCracks::avoid;
     Expression                 transmission;              // of t alone
     double                     contact_conductance = -1.; // negative: not given
     double                     growth_step         = -1.; // length; negative: not given

@@ -108,6 +108,9 @@ namespace PeriDeal
     void parse_and_validate();
 
   private:
+    /** Changes `Cells` where a crack runs along a row of nodes, or says in a note what that means. */
+    void keep_cracks_off_nodes();
+
     /** What `Boundary treatment = auto` means here. Throws UserError where `exchange` is asked for and not possible. */
     void resolve_boundary_treatment();
 

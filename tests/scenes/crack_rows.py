@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Cracks along rows of nodes and tips on edges of cells: symmetric where the scene is, and no jump where a crack moves by 1e-9.
+
+    crack_rows.py heat | elasticity | fracture | mesh
+"""
+
+import math
+import os
+import sys
+import tempfile
+
+from scene_test import Comparison, check, check_close, check_message, finish, run_scene
+
+FEM, PD, COUPLED = "finite elements", "peridynamics", "coupled"
+SHIFT = 1e-9
+POINTS = [(0, 0.1), (0, -0.1), (0.3, 0.07), (0.3, -0.07)]
+PROBES = " ; ".join(f"{x!r},{y!r}" for x, y in POINTS)
+QUIET = {"Output/Fields": "none", "Output/Line": "", "Output/Write at": "", "Time/Tolerance": "1e-9", "Output/Probes": PROBES}
+
+
+def heat_content(run, model):
+    return [row["value"] for row in run.totals if row["model"] == model and row["quantity"] == "heat content"][-1]
+
+
+def temperatures(run, model, points=POINTS):
+    return [run.probe(model, point) for point in points]
+
+
+def is_antisymmetric(run, model, what):
+    check_close(heat_content(run, model), 0, absolute=1e-9, what=f"{what}, {model}: heat content")
+    found = temperatures(run, model)
+    check_close(found[0::2], [-T for T in found[1::2]], absolute=1e-8, what=f"{what}, {model}: above and below")
+
+
+def plate(cells, crack="-0.5,0 ; 0.5,0", models=f"{FEM}, {PD}, {COUPLED}", **more):
+    return run_scene("prm/quick_start.prm", {**QUIET, "Models": models, "Domain/Cells": cells, "Cracks/Segments": crack, **more})
+
+
+def heat():
+    """A plate that is hot above and cold below; the crack on a row of nodes, beside it, and between rows."""
+    models = (FEM, PD, COUPLED)
+    on, between = plate("20, 20"), plate("20, 21")
+    check(any("Crack 1" in note and "20, 21" in note for note in on.summary["notes"]), f"a note names the cells: {on.summary['notes']}")
+    beside = [plate("20, 20", f"-0.5,{y} ; 0.5,{y}") for y in (SHIFT, -SHIFT)]
+    left = plate("20, 20", **{"Cracks/Nodes on cracks": "left"})
+    fine = plate("81, 81", models=f"{FEM}, {COUPLED}")
+    for model in models:
+        is_antisymmetric(on, model, "crack on a row")
+        check_close(temperatures(on, model), temperatures(between, model), relative=1e-12, what=f"{model}: the lattice that is taken")
+        for run in beside:
+            check_close(temperatures(run, model), temperatures(on, model), relative=1e-6, what=f"{model}: 1e-9 beside a row")
+        check(abs(heat_content(left, model)) > 0.5, f"{model}: nodes of the left side alone are not symmetric")
+    wanted = temperatures(fine, COUPLED)
+    error = {name: max(abs(a - b) for a, b in zip(temperatures(run, COUPLED), wanted)) for name, run in (("on", on), ("left", left))}
+    check(error["on"] < 0.75 * error["left"], f"more accurate than nodes of one side: {error}")
+
+    # One end grows along a row, and reaches over the middle.
+    growth = {"Cracks/Growth": "2: 0, 2,0", "Time/End time": "0.2"}
+    first = plate("20, 20", "-0.5,0 ; -0.4,0", **growth)
+    second = plate("20, 20", f"-0.5,{-SHIFT} ; -0.4,{-SHIFT}", **growth)
+    for model in models:
+        is_antisymmetric(first, model, "growing")
+        check_close(temperatures(first, model), temperatures(second, model), relative=1e-6, what=f"{model}: growing, 1e-9 beside a row")
+
+    # Along a diagonal of the cells, and a tip on the edge of a cell.
+    diagonal = [plate("20, 20", f"-0.4,{-0.4 + y} ; 0.4,{0.4 + y}") for y in (0, SHIFT, -SHIFT)]
+    tips = [plate("20, 21", f"{-0.5 - x},0 ; {0.5 + x},0") for x in (0, SHIFT, -SHIFT)]
+    for model in models:
+        check_close(heat_content(diagonal[0], model), 0, absolute=1e-9, what=f"{model}, diagonal: heat content")
+        for name, runs in (("diagonal", diagonal), ("tips", tips)):
+            for run in runs[1:]:
+                check_close(temperatures(run, model), temperatures(runs[0], model), relative=1e-6, what=f"{model}, {name}: moved by 1e-9")
+
+    # A lattice that cannot give way says what that means.
+    fixed = plate("16, 16", models=COUPLED, **{"Domain/Coarsening": "1", "Domain/Fine where": "1"})
+    check(any("left side" in note for note in fixed.summary["notes"]), f"a note where cells are fixed: {fixed.summary['notes']}")
+
+    # Three dimensions.
+    block = {"Domain/Cells": "8, 8, 8", "Output/Fields": "none", "Output/Line": "", "Time/Steady": "true", "Models": f"{FEM}, {COUPLED}"}
+    square = "0.25,{0},0.25 ; 0.75,{0},0.25 ; 0.75,{0},0.75 ; 0.25,{0},0.75"
+    solved = [run_scene("prm/heat/block_with_crack.prm", {**block, "Cracks/Polygons": square.format(y)}) for y in (0.5, 0.5 + SHIFT)]
+    for model in (FEM, COUPLED):
+        first, second = ([row["value"] for row in run.rows(model)] for run in solved)
+        check(len(first) > 0, "the block has probes")
+        check_close(first, second, relative=1e-6, what=f"{model}: block, moved by 1e-9")
+        check(any("8, 9, 8" in note for note in solved[0].summary["notes"]), "a note names the cells of the block")
+
+
+SENT = """
+set Dimension = 2
+set Physics = elasticity
+subsection Domain
+  set Lower corner = 0, -1.5
+  set Upper corner = 1, 1.5
+end
+subsection Material
+  set Young modulus = 1
+  set Poisson ratio = 0.3
+end
+subsection Boundary conditions
+  set Traction = top: 0, 1
+  set Displacement = bottom: 0, 0
+end
+subsection Output
+  set Fields = none
+end
+"""
+
+
+def edge_crack(cells, end, y=0.0, models=f"{FEM}, {COUPLED}"):
+    return run_scene(SENT, {"Domain/Cells": cells, "Cracks/Segments": f"0,{y!r} ; {end!r},{y!r}", "Models": models})
+
+
+def intensity(run, model):
+    return run.model(model)["stress intensity"]["crack 1 end 2"]["I"]
+
+
+def handbook(a):
+    """Single edge notch in tension, width 1 (Tada, Paris and Irwin 2000): 0.5 % for a up to 0.6."""
+    return (1.12 - 0.231 * a + 10.55 * a**2 - 21.72 * a**3 + 30.39 * a**4) * math.sqrt(math.pi * a)
+
+
+def elasticity():
+    """An edge crack whose tip is on the edge of a cell: K_I beside the handbook, and no jump."""
+    table = Comparison("K_I over that of the handbook")
+    on = edge_crack("20, 61", 0.5)
+    rows = [edge_crack("20, 60", 0.5, y) for y in (0.0, SHIFT, -SHIFT)]
+    for model, limit in ((FEM, 0.02), (COUPLED, 0.03)):
+        K = intensity(on, model)
+        table.add(f"{model}, 20 x 61 cells", K / handbook(0.5), 1, relative=limit)
+        for x in (SHIFT, -SHIFT):
+            check_close(intensity(edge_crack("20, 61", 0.5 + x, models=model), model), K, relative=1e-6, what=f"{model}: the tip moved by {x}")
+        for run in rows:
+            check_close(intensity(run, model), K, relative=1e-6, what=f"{model}: along a row of nodes")
+    table.show()
+
+
+def fracture():
+    """A plate torn from an edge crack along a row of cell centres stays symmetric."""
+    plate = {"Domain/Cells": "40, 17", "Peridynamics/Horizon ratio": "3", "Output/Fields": "none", "Output/Write every": "1e-5", "Time/End time": "2e-5",
+             "Output/Probes": "0.0511,0.0061 ; 0.0511,-0.0061 ; 0.02,0.0101 ; 0.02,-0.0101"}
+    runs = [run_scene("prm/fracture/branching_crack.prm", {**plate, "Cracks/Segments": f"0,{y!r} ; 0.05,{y!r}"}) for y in (0.0, SHIFT)]
+    bonds = [run.model(PD)["energy balance"]["broken bonds"] for run in runs]
+    check(bonds[0] > 20 and bonds[0] == bonds[1], f"as many bonds break: {bonds}")
+    check(any("row of cell centres" in note and "40, 18" in note for note in runs[0].summary["notes"]), "a note names the cells")
+    rows = runs[0].rows(PD, time=2e-5)
+    size = max(abs(row["uy"]) for row in rows)
+    for above, below in zip(rows[0::2], rows[1::2]):
+        check_close([above["ux"], above["uy"]], [below["ux"], -below["uy"]], absolute=1e-6 * size, what="above and below")
+
+
+def write_mesh(path, x, y):
+    """A Gmsh file of rectangles between the lines x and y; sides 1 left, 2 right, 3 bottom, 4 top."""
+    n, m = len(x), len(y)
+    node = lambda i, j: 1 + i + n * j
+    elements = [f"1 2 {1 + k} {1 + k} {node(k * (n - 1), j)} {node(k * (n - 1), j + 1)}" for k in (0, 1) for j in range(m - 1)]
+    elements += [f"1 2 {3 + k} {3 + k} {node(i, k * (m - 1))} {node(i + 1, k * (m - 1))}" for k in (0, 1) for i in range(n - 1)]
+    elements += [f"3 2 9 9 {node(i, j)} {node(i + 1, j)} {node(i + 1, j + 1)} {node(i, j + 1)}" for j in range(m - 1) for i in range(n - 1)]
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{n * m}\n")
+        file.writelines(f"{node(i, j)} {x[i]!r} {y[j]!r} 0\n" for j in range(m) for i in range(n))
+        file.write(f"$EndNodes\n$Elements\n{len(elements)}\n")
+        file.writelines(f"{k + 1} {element}\n" for k, element in enumerate(elements))
+        file.write("$EndElements\n")
+
+
+def mesh():
+    """`Fracture energy` on a mesh from a file: the lattice's stretch on equal cells, near it on others; the work of tearing."""
+    bar = """
+set Dimension = 2
+set Physics = elasticity
+set Models = peridynamics
+subsection Material
+  set Young modulus = 1
+  set Poisson ratio = 0.3
+  set Fracture energy = 1e-4
+end
+subsection Elasticity
+  set Solver = dynamics
+end
+subsection Peridynamics
+  set Horizon = 0.125
+  set Volume fraction = none
+  set Kernel exponent = 0
+end
+subsection Time
+  set End time = 0.2
+end
+subsection Output
+  set Fields = none
+end
+"""
+    folder = tempfile.mkdtemp()
+    n = 24
+    even = [i / n for i in range(n + 1)]
+    uneven = [(i + 0.2 * math.sin(2.7 * i) * (0 < i < n)) / n for i in range(n + 1)]
+    stretch = {}
+    for name, lines in (("even", even), ("uneven", uneven)):
+        path = os.path.join(folder, name + ".msh")
+        write_mesh(path, lines, lines)
+        on_mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": path, "Boundary conditions/Displacement": "1: 0, 0"}
+        runs = [run_scene(bar, on_mesh, ranks=ranks) for ranks in (1, 2)]
+        found = [run.model(PD)["settings"]["critical stretch"] for run in runs]
+        check(found[0] == found[1], f"{name}: the same on two processes: {found}")
+        stretch[name] = [float(s) for s in found[0].split(" to ")]
+    box = run_scene(bar, {"Domain/Cells": f"{n}, {n}", "Boundary conditions/Displacement": "left: 0, 0"})
+    wanted = float(box.model(PD)["settings"]["critical stretch"])
+    print("critical stretch: lattice", wanted, "meshes", stretch)
+    check(stretch["even"][0] <= wanted * (1 + 1e-5) and stretch["even"][-1] >= wanted * (1 - 1e-5), f"equal cells: {stretch['even']} around {wanted}")
+    for name in stretch:
+        check_close([stretch[name][0], stretch[name][-1]], [wanted, wanted], relative=0.15, what=f"{name} cells: lowest and highest stretch")
+
+
+def main():
+    parts = {"heat": heat, "elasticity": elasticity, "fracture": fracture, "mesh": mesh}
+    for name in sys.argv[1:] or parts:
+        parts[name]()
+    finish()
+
+
+if __name__ == "__main__":
+    main()
