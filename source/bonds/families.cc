@@ -18,6 +18,20 @@ namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** Bonds in a zone of elastic elements do better with tips left open, as elements are; elastic peridynamics cuts. */
+    template <int dim>
+    bool cuts_at_tips(const Scene<dim> &scene, const HaloAround halo)
+    {
+      if (scene.general.physics == Physics::elasticity &&
+          scene.cracks.through_tips == ThroughTips::automatic)
+        return halo == HaloAround::nodes;
+      return scene.cracks.cuts_bonds_at_tips(scene.peridynamics.surface_correction);
+    }
+  } // namespace
+
+
   template <int dim>
   Families<dim>::Families(Nodes<dim>       &nodes,
                           const Scene<dim> &scene,
@@ -28,7 +42,7 @@ namespace PeriDeal
     , parameters(scene.peridynamics)
     , history(scene.crack_history())
     , cracks_of(history.representative(0.))
-    , cut_at_tips(scene.cracks.cuts_bonds_at_tips(scene.peridynamics.surface_correction))
+    , cut_at_tips(cuts_at_tips(scene, halo))
     , cracks(make_crack_geometries(history.pieces(cracks_of, cut_at_tips)))
     , transmission(history.transmission(cracks_of))
     , contact_conductance(scene.cracks.contact_conductance)

@@ -185,8 +185,6 @@ namespace PeriDeal
       mesh = physics == Physics::elasticity ? CrackMesh::removed : CrackMesh::pairs;
     through_tips    = choice<ThroughTips>("Bonds through tips");
     nodes_on_cracks = choice<NodesOnCracks>("Nodes on cracks");
-    if (physics == Physics::elasticity && through_tips == ThroughTips::automatic)
-      through_tips = ThroughTips::cut; // whatever 'Surface correction' does
     parse_conductance();
     parse_growth();
     parse_paths();

@@ -77,7 +77,7 @@ def heat():
     check(any("left side" in note for note in fixed.summary["notes"]), f"a note where cells are fixed: {fixed.summary['notes']}")
 
     # Three dimensions.
-    block = {"Domain/Cells": "8, 8, 8", "Output/Fields": "none", "Output/Line": "", "Time/Steady": "true", "Models": f"{FEM}, {COUPLED}"}
+    block = {"Domain/Cells": "8, 8, 8", "Output/Fields": "none", "Output/Write at": "", "Output/Line": "", "Time/Steady": "true", "Models": f"{FEM}, {COUPLED}"}
     square = "0.25,{0},0.25 ; 0.75,{0},0.25 ; 0.75,{0},0.75 ; 0.25,{0},0.75"
     solved = [run_scene("prm/heat/block_with_crack.prm", {**block, "Cracks/Polygons": square.format(y)}) for y in (0.5, 0.5 + SHIFT)]
     for model in (FEM, COUPLED):
