@@ -204,8 +204,9 @@ namespace PeriDeal
                                cells_off_cracks(pieces, domain, at_centers);
     if (cells)
       {
-        domain.notes.push_back(name + ", so that the lattice has " + text_of<dim>(*cells) +
-                               ". 'Nodes on cracks = left' keeps 'Cells' as they are.");
+        domain.notes.push_back(
+          name + ": 'Cells' in section 'Domain' are taken as " + text_of<dim>(*cells) +
+          ", with which it lies between rows. 'Nodes on cracks = left' keeps them as given.");
         domain.cells = *cells;
       }
     else
