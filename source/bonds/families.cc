@@ -20,13 +20,14 @@ namespace PeriDeal
 
   namespace
   {
-    /** Bonds in a zone of elastic elements do better with tips left open, as elements are; elastic peridynamics cuts. */
+    /** Exchanged elastic bonds do better with open tips unless they are scaled; all other elastic ones are cut there. */
     template <int dim>
     bool cuts_at_tips(const Scene<dim> &scene, const HaloAround halo)
     {
       if (scene.general.physics == Physics::elasticity &&
           scene.cracks.through_tips == ThroughTips::automatic)
-        return halo == HaloAround::nodes;
+        return halo == HaloAround::nodes || scene.coupling.scheme != CouplingScheme::exchange ||
+               scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling;
       return scene.cracks.cuts_bonds_at_tips(scene.peridynamics.surface_correction);
     }
   } // namespace

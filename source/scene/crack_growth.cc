@@ -57,8 +57,8 @@ namespace PeriDeal
       "auto",
       "",
       "Whether a bond that only touches a crack's tip is cut. `auto`: not with `Surface correction = energy`, else it is; each "
-      "was measured to be the more accurate there. With `Physics = elasticity` the bonds of `coupled` are kept, those of `peridynamics` "
-      "cut. Finite elements always cut such pairs.",
+      "was measured to be the more accurate there. With `Physics = elasticity` bonds of `Scheme = exchange` without crack scaling are "
+      "kept, all others cut. Finite elements always cut such pairs.",
       {"auto", "cut", "keep"});
     declare(
       "Growth step",

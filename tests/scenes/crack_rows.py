@@ -10,7 +10,7 @@ import os
 import sys
 import tempfile
 
-from scene_test import Comparison, check, check_close, check_message, finish, run_scene
+from scene_test import Comparison, check, check_close, finish, run_scene
 
 FEM, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 SHIFT = 1e-9
@@ -33,8 +33,8 @@ def is_antisymmetric(run, model, what):
     check_close(found[0::2], [-T for T in found[1::2]], absolute=1e-8, what=f"{what}, {model}: above and below")
 
 
-def plate(cells, crack="-0.5,0 ; 0.5,0", models=f"{FEM}, {PD}, {COUPLED}", **more):
-    return run_scene("prm/quick_start.prm", {**QUIET, "Models": models, "Domain/Cells": cells, "Cracks/Segments": crack, **more})
+def plate(cells, crack="-0.5,0 ; 0.5,0", models=f"{FEM}, {PD}, {COUPLED}", ranks=1, **more):
+    return run_scene("prm/quick_start.prm", {**QUIET, "Models": models, "Domain/Cells": cells, "Cracks/Segments": crack, **more}, ranks=ranks)
 
 
 def heat():
@@ -44,7 +44,9 @@ def heat():
     check(any("Crack 1" in note and "20, 21" in note for note in on.summary["notes"]), f"a note names the cells: {on.summary['notes']}")
     beside = [plate("20, 20", f"-0.5,{y} ; 0.5,{y}") for y in (SHIFT, -SHIFT)]
     left = plate("20, 20", **{"Cracks/Nodes on cracks": "left"})
-    fine = plate("81, 81", models=f"{FEM}, {COUPLED}")
+    fine = plate("81, 81", models=COUPLED)
+    for model in models:
+        check_close(temperatures(plate("20, 20", models=model, ranks=2), model), temperatures(on, model), relative=1e-10, what=f"{model}: two processes")
     for model in models:
         is_antisymmetric(on, model, "crack on a row")
         check_close(temperatures(on, model), temperatures(between, model), relative=1e-12, what=f"{model}: the lattice that is taken")
