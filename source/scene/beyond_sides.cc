@@ -14,7 +14,7 @@ namespace PeriDeal
   template <int dim>
   std::string hindrance_of_fictitious_nodes(const Scene<dim> &scene)
   {
-    if (scene.peridynamics.surface_correction != SurfaceCorrection(6))
+    if (scene.peridynamics.surface_correction != SurfaceCorrection::automatic)
       return {};
     if (scene.domain.shape == Shape::mesh_file)
       return "the nodes of a mesh file are on no lattice";
@@ -33,7 +33,7 @@ namespace PeriDeal
   {
     std::array<BeyondSide, 2 * dim> beyond;
     beyond.fill(BeyondSide::nothing);
-    const bool automatic = scene.peridynamics.surface_correction == SurfaceCorrection(6);
+    const bool automatic = scene.peridynamics.surface_correction == SurfaceCorrection::automatic;
     if (!automatic && !scene.peridynamics.completes_families())
       return beyond;
     if (automatic && !hindrance_of_fictitious_nodes(scene).empty())

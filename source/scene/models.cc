@@ -175,7 +175,7 @@ namespace PeriDeal
     flux_treatment       = choice<FluxTreatment>("Flux treatment");
     surface_correction   = choice<SurfaceCorrection>("Surface correction");
     correction_direction = choice<CorrectionDirection>("Correction direction");
-    if (physics != Physics::elasticity && surface_correction == SurfaceCorrection(6))
+    if (physics != Physics::elasticity && surface_correction == SurfaceCorrection::automatic)
       surface_correction = SurfaceCorrection::none;
     if (physics != Physics::elasticity &&
         (surface_correction == SurfaceCorrection::volume ||

@@ -206,8 +206,9 @@ namespace PeriDeal
       {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
       {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},
       {"surface correction",
-       p.surface_correction == SurfaceCorrection(6)    ? "auto: " + automatic_correction(scene) :
-       p.surface_correction == SurfaceCorrection::none ? "none" :
+       p.surface_correction == SurfaceCorrection::automatic ?
+         "auto: " + automatic_correction(scene) :
+       p.surface_correction == SurfaceCorrection::none          ? "none" :
        p.surface_correction == SurfaceCorrection::crack_scaling ? "crack scaling" :
        p.surface_correction == SurfaceCorrection::volume        ? "volume" :
        p.surface_correction == SurfaceCorrection::moments       ? "moments" :
