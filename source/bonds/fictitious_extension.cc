@@ -79,9 +79,11 @@ namespace PeriDeal
     site.terms.assign(1, start);
     for (unsigned int d = 0; d < dim; ++d)
       {
-        if (!resolve(d, index[d], steps, image[d]))
-          return false;
         const int last = lattice.n_sites[d] - 1;
+        if (index[d] >= 0 && index[d] <= last)
+          steps.assign(1, {index[d], 1., false});
+        else if (!resolve(d, index[d], steps, image[d]))
+          return false;
         for (const bool above : {false, true})
           if (!lattice.at_centers && image[d] == (above ? last : 0) &&
               beyond[2 * d + (above ? 1 : 0)] != BeyondSide::nothing)

@@ -193,7 +193,7 @@ namespace PeriDeal
           continue;
         const Tensor<1, dim> xi = bonds.bond_vector(own, j);
         double               w  = member.intact / bonds.bond_conductivity(own, j);
-        if (extension && extension->find(site_of(j), site))
+        if (extension && !extension->is_inside(site_of(j)) && extension->find(site_of(j), site))
           w *= site.volume / bonds.nodes().volume(j); // with what is missing of a node on a side
         list.push_back({{{0, -w * xi}, {static_cast<unsigned int>(nodes.size()), w * xi}},
                         w * xi.norm_square(),
