@@ -126,16 +126,18 @@ def made_by_surfaces(run, model, field, nodes):
     return ((nodes < low + horizon) | (nodes > high - horizon))[:, high > low].any(axis=1)
 
 
-def extreme(run, index, model, field, which):
-    """(value, node) of the largest or smallest value of a field, or None."""
+def extreme(run, index, model, field, which, with_surfaces=True):
+    """(value, node) of the largest or smallest value of a field, or None; with or without what a
+    surface alone makes of stresses."""
     if run.field_file(index, model) is None:
         return None
     values = run.field(index, model, field.name, required=False)
     if values is None or not np.isfinite(values).any():
         return None
     mesh = run.mesh(index, model)
-    inner = np.where(made_by_surfaces(run, model, field, mesh.nodes), np.nan, values)
-    values = inner if np.isfinite(inner).any() else values
+    if not with_surfaces:
+        inner = np.where(made_by_surfaces(run, model, field, mesh.nodes), np.nan, values)
+        values = inner if np.isfinite(inner).any() else values
     at = int((np.nanargmax if which == "largest" else np.nanargmin)(values))
     point = mesh.nodes[at]
     if model == PD and run.at_cell_centers():

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "elastic_scene_tools.h"
 #include "elastic_test_tools.h"
 
 using namespace PeriDeal;
@@ -255,10 +256,12 @@ TEST(FictitiousBonds, diagonal_is_that_of_the_matrix)
       body.op().clear_constrained(free);
       for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
         if (free.local_element(i) > 0.)
-          EXPECT_NEAR(matrix.diag_element(diagonal.get_partitioner()->local_to_global(i)) /
-                        diagonal.local_element(i),
-                      1.,
-                      1e-12);
+          {
+            EXPECT_NEAR(matrix.diag_element(diagonal.get_partitioner()->local_to_global(i)) /
+                          diagonal.local_element(i),
+                        1.,
+                        1e-12);
+          }
     }
 }
 
@@ -280,7 +283,9 @@ TEST(FictitiousBonds, same_on_all_processes)
       for (unsigned int i = 0; i < y.locally_owned_size(); ++i)
         for (unsigned int k = 0; k < z.locally_owned_size() / 2; ++k)
           if (together.position(i / 2).distance(alone.position(k)) < 1e-9)
-            EXPECT_NEAR(y.local_element(i), z.local_element(2 * k + i % 2), 1e-12);
+            {
+              EXPECT_NEAR(y.local_element(i), z.local_element(2 * k + i % 2), 1e-12);
+            }
     }
 }
 
@@ -296,4 +301,32 @@ TEST(FictitiousBonds, turned_bodies_have_no_forces)
   Vector       y(u);
   body.op().unbalanced(y, u, 0.);
   EXPECT_LT(y.linfty_norm(), 1e-12);
+}
+
+
+TEST(FictitiousBonds, no_scene_is_refused)
+{
+  using SceneTests::elastic_fault;
+  using SceneTests::Overrides;
+  const std::string            b = "Boundary conditions/", e = "Elasticity/";
+  const std::vector<Overrides> scenes = {
+    {},
+    {"Models=finite elements"},
+    {"Models=coupled", "Coupling/Zone=x-0.5"},
+    {"Models=coupled", "Coupling/Zone=x-0.5", "Coupling/Scheme=blending"},
+    {"Domain/Nodes=cell centers"},
+    {"Peridynamics/Nodal volume=full"},
+    {"Cracks/Segments=0.2,0.5 ; 0.5,0.5", "Cracks/Mesh=faces"},
+    {e + "Kinematics=full", e + "Solver=conjugate gradients"},
+    {"Material/Fracture energy=0.1"},
+    {b + "Traction=right: 1, 0", b + "Traction layer=0.1"},
+    {e + "Model=bond-based", e + "Micromodulus=constant"},
+    {b + "Symmetry=bottom, top"},
+    {b + "Symmetry=top", "Cracks/Segments=0.2,0.5 ; 0.5,0.99"},
+    {"Peridynamics/Operator form=lattice"}};
+  for (Overrides overrides : scenes)
+    {
+      overrides.push_back("Peridynamics/Surface correction=auto");
+      EXPECT_EQ(elastic_fault(overrides), "");
+    }
 }
