@@ -4,7 +4,7 @@
 
 import findings
 import loading
-from elastic_tables import extreme, last_totals, place
+from elastic_tables import extreme, last_totals, made_by_surfaces, place
 from style import name, plain
 
 
@@ -27,13 +27,17 @@ def what_ran(run, words):
 
 def largest_values(run, index, field, when=""):
     """The largest value of a field by each model, or None."""
-    found = {m: extreme(run, index, m, field, "largest") for m in run.models}
+    found = {m: extreme(run, index, m, field, "largest", False) for m in run.models}
     found = {m: f for m, f in found.items() if f is not None}
     if not found:
         return None
     listed = " and ".join(f"{field.amount(value)} at {place(point)} ({m})"
                           for m, (value, point) in found.items())
-    return f"The largest {field.text}{when} is {listed}."
+    inside = any(m in found and made_by_surfaces(run, m, field, run.mesh(index, m).nodes).any()
+                 for m in run.models)
+    comma = "" if when else ","
+    where = f"{comma} of peridynamics more than a horizon inside," if inside else ""
+    return f"The largest {field.text}{when}{where} is {listed}."
 
 
 def what_is_stored(run):

@@ -112,15 +112,33 @@ def place(point):
     return probe_name(np.where(np.abs(point) < 1e-12, 0.0, point))
 
 
-def extreme(run, index, model, field, which):
-    """(value, node) of the largest or smallest value of a field, or None."""
+def made_by_surfaces(run, model, field, nodes):
+    """Nodes whose stress a surface alone may make: within a horizon of the sides of the body, where
+    families of peridynamics end there."""
+    if model != PD or not field.name.startswith(("stress", "von_mises")):
+        return np.zeros(len(nodes), dtype=bool)
+    settings = run.get("models", PD, "settings", default={})
+    correction = settings.get("surface correction", "")
+    if correction and not correction.startswith(("none", "auto: none")):
+        return np.zeros(len(nodes), dtype=bool)
+    horizon = float(settings.get("horizon", 0))
+    low, high = nodes.min(0), nodes.max(0)
+    return ((nodes < low + horizon) | (nodes > high - horizon))[:, high > low].any(axis=1)
+
+
+def extreme(run, index, model, field, which, with_surfaces=True):
+    """(value, node) of the largest or smallest value of a field, or None; with or without what a
+    surface alone makes of stresses."""
     if run.field_file(index, model) is None:
         return None
     values = run.field(index, model, field.name, required=False)
     if values is None or not np.isfinite(values).any():
         return None
-    at = int((np.nanargmax if which == "largest" else np.nanargmin)(values))
     mesh = run.mesh(index, model)
+    if not with_surfaces:
+        inner = np.where(made_by_surfaces(run, model, field, mesh.nodes), np.nan, values)
+        values = inner if np.isfinite(inner).any() else values
+    at = int((np.nanargmax if which == "largest" else np.nanargmin)(values))
     point = mesh.nodes[at]
     if model == PD and run.at_cell_centers():
         point = mesh.nodes[mesh.cells[np.flatnonzero((mesh.cells == at).any(axis=1))[0]]].mean(0)

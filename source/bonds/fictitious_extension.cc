@@ -5,6 +5,7 @@
 #include <perideal/bonds/fictitious_extension.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -12,11 +13,146 @@ namespace PeriDeal
 
   template <int dim>
   FictitiousExtension<dim>::FictitiousExtension(const Families<dim>                   &families,
-                                                const std::vector<types::boundary_id> &symmetry)
+                                                const std::array<BeyondSide, 2 * dim> &beyond)
     : families(families)
+    , beyond(beyond)
+  {}
+
+
+  template <int dim>
+  bool FictitiousExtension<dim>::resolve(const unsigned int axis,
+                                         int                k,
+                                         std::vector<Step> &steps,
+                                         int               &inner) const
   {
-    for (const types::boundary_id side : symmetry)
-      symmetric[side] = true;
+    const Lattice<dim> &lattice = *families.nodes().lattice();
+    const int           last    = lattice.n_sites[axis] - 1;
+    Step                left{k, 1., false}; // what is not resolved yet
+    steps.clear();
+    const auto add = [&](const Step &step) {
+      for (Step &other : steps)
+        if (other.site == step.site && other.even == step.even)
+          {
+            other.factor += step.factor;
+            return;
+          }
+      steps.push_back(step);
+    };
+    while (left.site < 0 || left.site > last)
+      {
+        const bool below = left.site < 0;
+        const int  plane = below ? 0 : last, second = below ? 1 : last - 1;
+        const auto kind = beyond[2 * axis + (below ? 0 : 1)];
+        if (kind == BeyondSide::nothing || last == 0)
+          return false;
+        if (kind == BeyondSide::mirrored)
+          left.even = !left.even;
+        else
+          {
+            add({plane, (lattice.at_centers ? 3. : 2.) * left.factor, left.even});
+            if (lattice.at_centers)
+              add({second, -left.factor, left.even});
+            left.factor *= -1.;
+          }
+        left.site = 2 * plane - left.site;
+        if (lattice.at_centers)
+          left.site += below ? -1 : 1;
+      }
+    inner = left.site;
+    add(left);
+    return true;
+  }
+
+
+  template <int dim>
+  bool FictitiousExtension<dim>::find(const Index &index, Site &site) const
+  {
+    using Term                  = typename Site::Term;
+    const Lattice<dim> &lattice = *families.nodes().lattice();
+    std::vector<Index>  places{index};
+    std::vector<Step>   steps;
+    Index               image = index;
+    Term                start{0, 1., Tensor<1, dim>(), 0};
+    double              parts = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      start.of_component[d] = 1.;
+    site.terms.assign(1, start);
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const int last = lattice.n_sites[d] - 1;
+        if (index[d] >= 0 && index[d] <= last)
+          steps.assign(1, {index[d], 1., false});
+        else if (!resolve(d, index[d], steps, image[d]))
+          return false;
+        for (const bool above : {false, true})
+          if (!lattice.at_centers && image[d] == (above ? last : 0) &&
+              beyond[2 * d + (above ? 1 : 0)] != BeyondSide::nothing)
+            parts *= 2.;
+        const std::size_t n = places.size();
+        for (std::size_t s = 1; s < steps.size(); ++s)
+          for (std::size_t k = 0; k < n; ++k)
+            {
+              places.push_back(places[k]);
+              site.terms.push_back(site.terms[k]);
+            }
+        for (std::size_t k = 0; k < places.size(); ++k)
+          {
+            const Step &step = steps[k / n];
+            Term       &term = site.terms[k];
+            places[k][d]     = step.site;
+            term.factor *= step.factor;
+            term.of_component *= step.factor;
+            if (step.even)
+              {
+                term.of_component[d] *= -1.;
+                term.mirrored |= 1u << d;
+              }
+          }
+      }
+    for (std::size_t k = 0; k < places.size(); ++k)
+      {
+        site.terms[k].node = families.node_at(places[k]);
+        if (site.terms[k].node == numbers::invalid_unsigned_int)
+          return false;
+      }
+    site.origin = families.node_at(image);
+    if (site.origin == numbers::invalid_unsigned_int)
+      return false;
+    site.volume = parts * families.nodes().volume(site.origin);
+    return true;
+  }
+
+
+  template <int dim>
+  int FictitiousExtension<dim>::distance(const Index &index) const
+  {
+    const Lattice<dim> &lattice = *families.nodes().lattice();
+    int                 nearest = std::numeric_limits<int>::max();
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        if (beyond[2 * d] != BeyondSide::nothing)
+          nearest = std::min(nearest, index[d]);
+        if (beyond[2 * d + 1] != BeyondSide::nothing)
+          nearest = std::min(nearest, lattice.n_sites[d] - 1 - index[d]);
+      }
+    return nearest;
+  }
+
+
+  template <int dim>
+  bool FictitiousExtension<dim>::is_inside(const Index &index) const
+  {
+    const Lattice<dim> &lattice = *families.nodes().lattice();
+    for (unsigned int d = 0; d < dim; ++d)
+      if (index[d] < 0 || index[d] >= lattice.n_sites[d])
+        return false;
+    return distance(index) > (lattice.at_centers ? -1 : 0);
+  }
+
+
+  template <int dim>
+  void throw_if_narrow(const Families<dim> &families)
+  {
     const Lattice<dim> &lattice = *families.nodes().lattice();
     for (const FamilyMember<dim> &member : families.lattice_members())
       for (unsigned int d = 0; d < dim; ++d)
@@ -30,64 +166,11 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  bool FictitiousExtension<dim>::find(const Index &index, Site &site) const
-  {
-    using Term                            = typename Site::Term;
-    const Lattice<dim>           &lattice = *families.nodes().lattice();
-    std::array<Index, (1 << dim)> places;
-    places[0]     = index;
-    site.n_terms  = 1;
-    site.terms[0] = Term{0, 1., Tensor<1, dim>()};
-    for (unsigned int d = 0; d < dim; ++d)
-      site.terms[0].of_component[d] = 1.;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        const int  last  = lattice.n_sites[d] - 1;
-        const bool below = index[d]<0, above = index[d]> last;
-        if (!below && !above)
-          continue;
-        const int          plane = below ? 0 : last;
-        const bool         even  = symmetric[2 * d + (above ? 1 : 0)];
-        const unsigned int n     = site.n_terms;
-        for (unsigned int k = 0; k < n; ++k)
-          {
-            if (!even)
-              {
-                places[site.n_terms]    = places[k];
-                places[site.n_terms][d] = plane;
-                Term &on_side           = site.terms[site.n_terms++];
-                on_side                 = site.terms[k];
-                on_side.factor *= 2.;
-                on_side.of_component *= 2.;
-              }
-            Term &mirrored = site.terms[k];
-            places[k][d]   = 2 * plane - index[d];
-            if (even)
-              mirrored.of_component[d] *= -1.;
-            else
-              {
-                mirrored.factor *= -1.;
-                mirrored.of_component *= -1.;
-              }
-          }
-      }
-    for (unsigned int k = 0; k < site.n_terms; ++k)
-      {
-        site.terms[k].node = families.node_at(places[k]);
-        if (site.terms[k].node == numbers::invalid_unsigned_int)
-          return false;
-      }
-    // The first place is the mirror of all sides.
-    site.volume = families.nodes().volume(site.terms[0].node);
-    for (unsigned int d = 0; d < dim; ++d)
-      if (places[0][d] == 0 || places[0][d] == lattice.n_sites[d] - 1)
-        site.volume *= 2.;
-    return true;
-  }
-
-
-  template class FictitiousExtension<1>;
-  template class FictitiousExtension<2>;
-  template class FictitiousExtension<3>;
+#define PERIDEAL_INSTANTIATE(dim)          \
+  template class FictitiousExtension<dim>; \
+  template void throw_if_narrow(const Families<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

@@ -5,6 +5,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/operators/displacement_conditions.h>
+#include <perideal/scene/beyond_sides.h>
 
 #include <algorithm>
 #include <limits>
@@ -69,8 +70,10 @@ namespace PeriDeal
                                                       const Scene<dim>                   &scene,
                                                       const MPI_Comm communicator)
   {
-    const auto                        &conditions = scene.boundary_conditions;
-    const bool                         box        = scene.domain.shape != Shape::mesh_file;
+    const auto &conditions = scene.boundary_conditions;
+    const bool  box        = scene.domain.shape != Shape::mesh_file;
+    const bool  at_centers = scene.domain.nodes == NodePlacement::cell_centers;
+    const auto  beyond     = beyond_sides(scene);
     std::map<unsigned int, Prescribed> found;
     const auto require = [&](const types::boundary_id side, const std::string &entry) {
       const bool any = std::any_of(nodes.begin(), nodes.end(), [&](const NodeOnSide<dim> &node) {
@@ -105,6 +108,8 @@ namespace PeriDeal
     for (const types::boundary_id side : conditions.symmetry)
       {
         require(side, "Symmetry");
+        if (at_centers && side < 2 * dim && beyond[side] == BeyondSide::mirrored)
+          continue; // families go on beyond the side, on which no node lies
         const unsigned int d = normal_direction(nodes, side, scene, communicator);
         for (const NodeOnSide<dim> &node : nodes)
           if (node.side == side)

@@ -111,6 +111,7 @@ namespace PeriDeal
           stored_nodes.push_back(i);
       }
     throw_on_all_if_any(nodes.communicator(), message);
+    complete_families();
     if (scene.elasticity.micromodulus == Micromodulus::constant)
       weighted = complete_weighted();
     weighted.update_ghost_values();
@@ -215,6 +216,10 @@ namespace PeriDeal
                         laws[j].law.extension / weighted.local_element(j)) /
                        springs[k]; // W x^2
         }
+    if (beyond)
+      beyond->find_springs(
+        [&](const unsigned int i) { return laws[i].law.extension / weighted.local_element(i); },
+        full);
     if (!full)
       return;
     across.resize(neighbors.size(), 0.);

@@ -26,7 +26,8 @@ namespace PeriDeal
     if (scene.peridynamics.completes_families())
       {
         symmetry_sides = scene.boundary_conditions.symmetry;
-        extension.emplace(bonds, symmetry_sides);
+        throw_if_narrow(bonds);
+        extension.emplace(bonds, beyond_sides(scene));
       }
     find_nodes_that_act();
     laws.resize(nodes.n_owned());
@@ -192,7 +193,7 @@ namespace PeriDeal
           continue;
         const Tensor<1, dim> xi = bonds.bond_vector(own, j);
         double               w  = member.intact / bonds.bond_conductivity(own, j);
-        if (extension && extension->find(site_of(j), site))
+        if (extension && !extension->is_inside(site_of(j)) && extension->find(site_of(j), site))
           w *= site.volume / bonds.nodes().volume(j); // with what is missing of a node on a side
         list.push_back({{{0, -w * xi}, {static_cast<unsigned int>(nodes.size()), w * xi}},
                         w * xi.norm_square(),
@@ -232,7 +233,7 @@ namespace PeriDeal
           xi[d] = member.offset[d] * lattice.spacing[d];
         BondOfFamily bond{{{0, -w * xi}}, w * xi.norm_square(), 0.5 * own_strain, 0.};
         bool reached = true; // no crack separates the node from those that the other one follows
-        for (unsigned int k = 0; k < site.n_terms && reached; ++k)
+        for (std::size_t k = 0; k < site.terms.size() && reached; ++k)
           {
             const auto &term  = site.terms[k];
             const auto  place = std::find(nodes.begin(), nodes.end(), term.node);

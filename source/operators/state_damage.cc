@@ -173,14 +173,18 @@ namespace PeriDeal
           breaking.push_back({k, found / limit});
           most = std::max(most, found / limit);
         }
+    find_overstretched_images(u.begin());
     u.set_ghost_state(false);
     if (share <= 0.)
       return;
+    for (const auto &[number, ratio] : breaking_images)
+      most = std::max(most, ratio);
     const double at_least = share * Utilities::MPI::max(most, nodes.communicator());
-    breaking.erase(std::remove_if(breaking.begin(),
-                                  breaking.end(),
-                                  [&](const auto &bond) { return bond.second < at_least; }),
-                   breaking.end());
+    for (auto *const list : {&breaking, &breaking_images})
+      list->erase(std::remove_if(list->begin(),
+                                 list->end(),
+                                 [&](const auto &bond) { return bond.second < at_least; }),
+                  list->end());
   }
 
 
@@ -190,10 +194,9 @@ namespace PeriDeal
     if (!breaks)
       return 0;
     find_overstretched(u, share);
-    const unsigned long long n_ends =
-      Utilities::MPI::sum(static_cast<unsigned long long>(breaking.size()),
-                          bonds.nodes().communicator());
-    if (n_ends == 0)
+    const MPI_Comm     all    = bonds.nodes().communicator();
+    unsigned long long n_ends = breaking.size() + breaking_images.size();
+    if (Utilities::MPI::sum(n_ends, all) == 0)
       return 0;
     const double before = energy(u);
     for (const auto &[k, ratio] : breaking)
@@ -203,6 +206,7 @@ namespace PeriDeal
         if (full)
           lengths[k] = across[k] = 0.;
       }
+    n_ends = Utilities::MPI::sum(breaking.size() + break_images(), all);
     released += before - energy(u);
     n_bonds -= 0.5 * breaking.size();
     n_broken += n_ends / 2;
@@ -254,6 +258,13 @@ namespace PeriDeal
             left += springs[k] > 0. ? volume : 0.;
             ++k;
           }
+        if (beyond)
+          beyond->for_each_of(i, [&](const auto &bond) {
+            if (!beyond->may_break(bond))
+              return;
+            all += beyond->volume(bond.image);
+            left += bond.spring > 0. ? beyond->volume(bond.image) : 0.;
+          });
         result[i] = all > 0. ? 1. - left / all : 0.;
       }
     return result;

@@ -61,6 +61,7 @@ namespace PeriDeal
         const double    q    = weighted.local_element(i);
         tau.local_element(i) = law.volumetric * law.dilatation * sum / (q * q * nodes.volume(i));
       }
+    add_images_to_dilatations(u, true);
     tau.update_ghost_values();
   }
 
@@ -85,6 +86,7 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           y.local_element(dim * i + d) = -force[d];
       }
+    add_strained_image_forces(y, u);
   }
 
 
@@ -127,6 +129,7 @@ namespace PeriDeal
           moments[k] = lengths[k] / bond.norm() * bond;
           across[k]  = size * lengths[k] / bond.norm();
         }
+    linearize_images(u);
     u.set_ghost_state(false);
   }
 
@@ -149,6 +152,7 @@ namespace PeriDeal
           for (unsigned int d = 0; d < dim; ++d)
             y.local_element(dim * i + d) -= across[k] * change[d];
         }
+    add_geometric_image_forces(y, x);
   }
 
 
@@ -172,6 +176,11 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           y.local_element(dim * i + d) = -force[d];
       }
+    if (beyond)
+      {
+        beyond->find_images(x);
+        beyond->add_forces(y, v, nullptr);
+      }
     v.set_ghost_state(false);
     conditions->mask(y);
   }
@@ -181,10 +190,11 @@ namespace PeriDeal
   double StateOperator<dim>::damping_bound() const
   {
     // Gershgorin with the norms of the blocks.
-    double bound = 0.;
+    double       bound  = 0.;
+    const Vector images = rows_of_images(false);
     for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
       {
-        double row = 0.;
+        double row = images.local_element(i);
         for_each_bond(i, [&](const Bond &bond) {
           row += 2. * bond.spring * bond.moment.norm_square();
         });

@@ -65,6 +65,8 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::find_thermal_loads()
   {
+    if (beyond && any_thermal)
+      beyond->set_thermal_strains([&](const unsigned int i) { return laws[i].thermal; });
     if (any_thermal && !full) // with full kinematics it is in the extensions
       {
         const Nodes<dim> &nodes = bonds.nodes();
@@ -83,6 +85,11 @@ namespace PeriDeal
             for (unsigned int d = 0; d < dim; ++d)
               thermal_loads.local_element(dim * i + d) = force[d];
           }
+        thermal_loads *= -1.;
+        add_strained_image_forces(thermal_loads, scratch);
+        if (beyond)
+          beyond->keep_forces();
+        thermal_loads *= -1.;
       }
     if (!loads_vary)
       find_loads(constant_loads, 0.);
@@ -147,6 +154,7 @@ namespace PeriDeal
         const double    q    = weighted.local_element(i);
         tau.local_element(i) = law.volumetric * law.dilatation * sum / (q * q * nodes.volume(i));
       }
+    add_images_to_dilatations(x, false);
     tau.update_ghost_values();
   }
 
@@ -180,6 +188,11 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           y.local_element(dim * i + d) = -force[d];
       }
+    if (!beyond)
+      return;
+    if (!volumetric) // else they have been found
+      beyond->find_images(u);
+    beyond->add_forces(y, x, volumetric ? t : nullptr);
   }
 
 
@@ -319,7 +332,8 @@ namespace PeriDeal
       bonds.memory_consumption() +
       neighbors.size() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
       laws.size() * sizeof(NodeLaw) + starts.size() * sizeof(std::size_t) +
-      stored_nodes.size() * sizeof(unsigned int) + (lattice ? lattice->memory_consumption() : 0);
+      stored_nodes.size() * sizeof(unsigned int) + (lattice ? lattice->memory_consumption() : 0) +
+      (beyond ? beyond->memory_consumption() : 0);
     size.form = lattice ? "lattice" : "stored";
     return size;
   }
@@ -378,6 +392,14 @@ namespace PeriDeal
     reactions -= loads;
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     conditions->add_reactions(reactions, sums);
+    if (beyond)
+      {
+        // Bonds to mirror images pull at the body; those of the last application are known.
+        const auto planes = beyond->forces_of_planes();
+        for (types::boundary_id side = 0; side < 2 * dim; ++side)
+          if (planes[side] != Tensor<1, dim>())
+            sums[side] += planes[side];
+      }
     for_each_load(t, [&](const auto side, const unsigned int unknown, const double value) {
       sums[side][unknown % dim] += value;
     });

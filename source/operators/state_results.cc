@@ -56,6 +56,7 @@ namespace PeriDeal
         if (is_regular)
           regular = i;
       }
+    add_images_to_diagonal(factor);
     // Nodes without bonds, all of them broken: any positive number.
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
       if (!(stiffness_diagonal.local_element(i) > 0.))
@@ -79,17 +80,19 @@ namespace PeriDeal
           length += bond.moment.norm();
           sum += bond.moment;
         });
-        const double q          = weighted.local_element(i);
-        source.local_element(i) = volumetric ?
-                                    std::abs(laws[i].law.volumetric) * laws[i].law.dilatation *
-                                      (length + sum.norm()) / (q * q * nodes.volume(i)) :
-                                    0.;
+        const double q = weighted.local_element(i);
+        source.local_element(i) =
+          volumetric ? std::abs(laws[i].law.volumetric) * laws[i].law.dilatation *
+                         (length + (beyond ? beyond->sum_of_lengths(i) : 0.) + sum.norm()) /
+                         (q * q * nodes.volume(i)) :
+                       0.;
       }
     source.update_ghost_values();
-    double bound = 0.;
+    double       bound  = 0.;
+    const Vector images = rows_of_images(volumetric);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        double         row = 0.;
+        double         row = images.local_element(i);
         Tensor<1, dim> sum;
         for_each_bond(i, [&](const Bond &bond) {
           row += 2. * bond.spring * bond.moment.norm_square() +
@@ -116,7 +119,7 @@ namespace PeriDeal
       find_strained_dilatation_forces(u);
     else if (volumetric)
       find_dilatation_forces(u);
-    double sum = 0.;
+    double sum = energy_of_images(u);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         for_each_bond(i, [&](const Bond &bond) {
@@ -141,10 +144,16 @@ namespace PeriDeal
     const Nodes<dim> &nodes = bonds.nodes();
     u.update_ghost_values();
     theta.assign(nodes.n_owned(), 0.);
+    if (beyond)
+      beyond->find_images(u.begin());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         for_each_bond(i,
                       [&](const Bond &bond) { theta[i] += extension_moment(u.begin(), i, bond); });
+        if (beyond)
+          beyond->for_each_of(i, [&](const auto &bond) {
+            theta[i] += beyond->extension_moment(bond, u.begin());
+          });
         theta[i] *= laws[i].law.dilatation / (weighted.local_element(i) * nodes.volume(i));
       }
     u.set_ghost_state(false);
@@ -163,6 +172,8 @@ namespace PeriDeal
       find_strained_dilatation_forces(u);
     else if (volumetric)
       find_dilatation_forces(u);
+    if (beyond)
+      beyond->find_images(u.begin());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         Tensor<2, dim> gradient, shape, stress;
@@ -191,6 +202,29 @@ namespace PeriDeal
           else
             stress += force * outer_product(xi, xi);
         });
+        if (beyond)
+          beyond->for_each_of(i, [&](const auto &bond) {
+            const Tensor<1, dim> xi  = beyond->bond_vector(bond),
+                                 eta = beyond->change(bond, u.begin());
+            const double x2          = xi.norm_square();
+            const double weight      = beyond->length(bond) / std::sqrt(x2);
+            // With several phases the mean with that of the node that it is an image of.
+            const unsigned int o     = beyond->origin(bond.image);
+            const double       other = several_phases ?
+                                         laws[o].law.extension / weighted.local_element(o) /
+                                     (laws[i].law.extension / weighted.local_element(i)) :
+                                         1.;
+            const double       tension =
+              !volumetric    ? 0. :
+                    several_phases ? 0.5 * (tau.local_element(i) + tau.local_element(o)) :
+                                     tau.local_element(i);
+            const double force = weight * (tension + 0.5 * (1. + other) * bond.spring *
+                                                       beyond->extension_moment(bond, u.begin()));
+            gradient += weight * outer_product(eta, xi);
+            shape += weight * outer_product(xi, xi);
+            const Tensor<1, dim> y = full ? xi + eta : xi;
+            stress += (full ? force * std::sqrt(x2) / y.norm() : force) * outer_product(y, y);
+          });
         // Few bonds may be left, or none.
         const bool           held = determinant(shape) > 1e-12 * std::pow(trace(shape) / dim, dim);
         const Tensor<2, dim> slopes = held ? gradient * invert(shape) : Tensor<2, dim>();
@@ -312,6 +346,14 @@ namespace PeriDeal
             own += block;
             add(j, -block);
           }
+        // Between cell centres a plane of symmetry holds nodes by bonds to their own images.
+        if (beyond)
+          beyond->for_each_of(i, [&](const auto &bond) {
+            const Tensor<1, dim> xi = beyond->bond_vector(bond);
+            if (bond.spring > 0. && beyond->is_own_image(bond) && is_near(i, xi))
+              own += 4. * nodes.volume(i) * beyond->volume(bond.image) * extension[i] /
+                     sums.local_element(i) / xi.norm_square() * outer_product(xi, xi);
+          });
         // Springs alone would not hold every node, and hardly those that few are left of.
         const double share = own == Tensor<2, dim>() ? 1. : damaged[i] ? 1e-2 : 1e-8;
         for (unsigned int d = 0; d < dim; ++d)

@@ -215,6 +215,7 @@ namespace PeriDeal
       const std::string scheme =
         "'Scheme = " + scene.coupling.scheme_text() + "' in section 'Coupling'";
       if (scene.peridynamics.surface_correction != SurfaceCorrection::none &&
+          scene.peridynamics.surface_correction != SurfaceCorrection::automatic &&
           !scene.peridynamics.completes_families())
         entry_error(scene.peridynamics.where("Surface correction"),
                     "is for 'Scheme = exchange', not for " + scheme +

@@ -114,12 +114,13 @@ namespace PeriDeal
       EntryType::choice,
       "none",
       "",
-      "Factors of bonds that make up for missing ones: beside cracks only (`crack scaling`, for finite elements with "
+      "What makes up for missing bonds. `auto`: nothing for what diffuses; families of elastic peridynamics on a lattice go on beyond planes of symmetry and all flat sides (where bonds may break, "
+      "beyond those with conditions), at no more cost than their bonds. Factors of bonds: beside cracks only (`crack scaling`, for finite elements with "
       "`Mesh = pairs`, too); or wherever the energy of a unit gradient is not that of the classical body (`energy`), at sides, cracks and "
       "voids. Elasticity has `energy`, of stretches along the axes, `volume`, by the volumes of both ends' families, and `moments`, the smallest change of bonds "
       "with which a uniform strain has its dilatation, stress and energy at each node whose bonds do not get negative factors by it; and `fictitious nodes` beyond flat sides, "
       "which continue the displacement linearly and complete the families inside.",
-      {"none", "crack scaling", "energy", "volume", "moments", "fictitious nodes"});
+      {"none", "crack scaling", "energy", "volume", "moments", "fictitious nodes", "auto"});
     declare(
       "Correction direction",
       EntryType::choice,
@@ -174,6 +175,8 @@ namespace PeriDeal
     flux_treatment       = choice<FluxTreatment>("Flux treatment");
     surface_correction   = choice<SurfaceCorrection>("Surface correction");
     correction_direction = choice<CorrectionDirection>("Correction direction");
+    if (physics != Physics::elasticity && surface_correction == SurfaceCorrection::automatic)
+      surface_correction = SurfaceCorrection::none;
     if (physics != Physics::elasticity &&
         (surface_correction == SurfaceCorrection::volume ||
          surface_correction == SurfaceCorrection::moments || completes_families()))

@@ -6,6 +6,7 @@
 
 #include <perideal/analysis/heat_flux.h>
 #include <perideal/operators/bond_operator.h>
+#include <perideal/scene/beyond_sides.h>
 
 #include "model_runs.h"
 
@@ -205,6 +206,8 @@ namespace PeriDeal
       {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
       {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},
       {"surface correction",
+       p.surface_correction == SurfaceCorrection::automatic ?
+         "auto: " + automatic_correction(scene) :
        p.surface_correction == SurfaceCorrection::none          ? "none" :
        p.surface_correction == SurfaceCorrection::crack_scaling ? "crack scaling" :
        p.surface_correction == SurfaceCorrection::volume        ? "volume" :

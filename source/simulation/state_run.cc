@@ -6,6 +6,7 @@
 #include <deal.II/fe/fe_q.h>
 
 #include <perideal/operators/state_operator.h>
+#include <perideal/scene/beyond_sides.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -181,6 +182,11 @@ namespace PeriDeal
         const std::string entry     = "'Surface correction = moments' in section 'Peridynamics' ";
         const unsigned long long n  = states->n_uncorrected_nodes();
         std::vector<std::string> list;
+        if (const std::string reason = hindrance_of_fictitious_nodes(scene); !reason.empty() && scene.elasticity.micromodulus != Micromodulus::constant)
+          list.push_back(
+            "'Surface correction = auto' in section 'Peridynamics': families of peridynamics end at the sides, because " +
+            reason +
+            ". Displacements of sides that are held or loaded, and stresses within a horizon of all sides, do not converge as the nodes get denser.");
         if (dim > 1 && scene.elasticity.model == ElasticModel::bond_based &&
             scene.elasticity.micromodulus == Micromodulus::family)
           list.push_back(

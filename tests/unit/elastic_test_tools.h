@@ -55,7 +55,7 @@ namespace PeriDeal
     inline const char *const zeros[] = {"", "0", "0, 0", "0, 0, 0"};
 
 
-    /** A box with cubic cells, held on its left side. */
+    /** A box with cubic cells, held on its left side. Families of its nodes end at the sides. */
     template <int dim>
     Settings box()
     {
@@ -63,6 +63,7 @@ namespace PeriDeal
               {"Domain/Upper corner", lists[dim]},
               {"Domain/Cells", cells[dim]},
               {"Peridynamics/Horizon ratio", dim == 3 ? "2" : "3"},
+              {"Peridynamics/Surface correction", "none"},
               {"Material/Young modulus", "3"},
               {"Material/Poisson ratio", "0.2"},
               {"Boundary conditions/Displacement", std::string("left: ") + zeros[dim]}};

@@ -69,6 +69,12 @@ TEST(StateMatrix, is_the_operator)
                                        {"Material/Phases/Young modulus", "stiff: 30"},
                                        {"Material/Phases/Poisson ratio", "stiff: 0.1"}});
       expect_same<3>(chosen);
+      const Settings completed = chosen + Settings{{"Peridynamics/Surface correction", "auto"},
+                                                   {"Boundary conditions/Symmetry", "bottom"}};
+      expect_same<2>(completed);
+      expect_same<2>(completed + Settings{{"Domain/Nodes", "cell centers"}});
+      expect_same<2>(completed + Settings{{"Elasticity/Model", "bond-based"}});
+      expect_same<3>(completed);
     }
 }
 
@@ -78,5 +84,8 @@ TEST(StateMatrix, is_the_tangent_of_large_displacements)
   const Settings full = {{"Elasticity/Kinematics", "full"},
                          {"Elasticity/Solver", "conjugate gradients"}};
   expect_same<2>(full, true);
+  expect_same<2>(full + Settings{{"Peridynamics/Surface correction", "auto"},
+                                 {"Boundary conditions/Symmetry", "bottom"}},
+                 true);
   expect_same<3>(full, true);
 }

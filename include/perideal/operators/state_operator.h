@@ -9,6 +9,7 @@
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/displacement_conditions.h>
 #include <perideal/operators/elastic_operator.h>
+#include <perideal/operators/fictitious_bonds.h>
 #include <perideal/operators/surface_factors.h>
 #include <perideal/operators/traction_layer.h>
 
@@ -38,7 +39,8 @@ namespace PeriDeal
    *   q_i = sum_j W_ij x^2 / V_i,  theta_i = d sum_j W_ij x e_ij / (V_i q_i)
    *   F_i = sum_j W_ij [ (c_i theta_i/q_i + c_j theta_j/q_j) x + (b_i/q_i + b_j/q_j) e_ij ] M
    *
-   * `Surface correction` multiplies W by a bond's factor a in theta and in the forces from it, by s in those of e, and changes q (surface_factors.h).
+   * `Surface correction` multiplies W by a bond's factor a in theta and in the forces from it, by s in those of e, and changes q (surface_factors.h), or lets families go on beyond the
+   * sides (FictitiousBonds).
    *
    * with d, c, b the factors dilatation, volumetric and extension of StateLaw. The prefactor of omega drops out. An application takes two passes over
    * the bonds, the dilatations first. On a lattice in 2D and 3D, with linear kinematics, where nothing breaks and no surface is corrected, nodes without cut bonds store none (StateLattice). Other
@@ -113,11 +115,9 @@ namespace PeriDeal
     /** How many of this process's bonds are stored, each counted at both ends. */
     std::size_t n_stored_bonds() const;
 
-    /** Of all processes: those that `Surface correction = moments` leaves as they are. */
+    /** With `Surface correction = moments`: the nodes of all processes that it leaves as they are, and SurfaceFactors::gap. */
     unsigned long long n_uncorrected_nodes() const;
-
-    /** Of `Surface correction = moments`: SurfaceFactors::gap. */
-    double gap_of_moments() const;
+    double             gap_of_moments() const;
 
     /** Of the owned nodes and their ghosts; empty where bonds do not break. */
     const std::vector<double> &critical_stretches() const;
@@ -125,7 +125,7 @@ namespace PeriDeal
     /** 1 - the sum of the volumes of neighbours over unbroken bonds over that of the whole family, at the owned nodes; bonds that cracks of the scene cut count as broken, those that voids cut as none. */
     std::vector<double> damage() const;
 
-    /** theta at the owned nodes, thermal extension taken off. Collective. */
+    /** theta, thermal extension taken off. Collective. */
     void dilatations(const Vector &u, std::vector<double> &theta) const;
 
     /**
@@ -171,6 +171,7 @@ namespace PeriDeal
                                const std::vector<LatticeBond> &list,
                                const Visit                    &visit) const;
 
+    void     complete_families();
     void     find_laws();
     bool     may_leave_out_bonds() const;
     bool     has_complete_family(const unsigned int i) const; // cut or not
@@ -197,12 +198,21 @@ namespace PeriDeal
     void sum_deformed_forces(Vector &y, const Vector &u) const;
     void find_forces(Vector &y, const Vector &u) const;
 
-    bool holds(const CellCorner<dim> &corner) const; // no bond of its node has broken
+    // What the bonds beyond the sides add.
+    void         add_images_to_dilatations(const Vector &u, const bool strained) const; // to tau
+    void         add_strained_image_forces(Vector &y, const Vector &u) const;
+    void         add_geometric_image_forces(Vector &y, const Vector &x) const;
+    void         linearize_images(const Vector &u);
+    double       energy_of_images(const Vector &u) const;
+    void         add_images_to_diagonal(const std::vector<double> &factor);
+    Vector       rows_of_images(const bool with_dilatations) const;
+    void         find_overstretched_images(const double *u);
+    unsigned int break_images(); // ends of bonds
 
-    /** xi + u_j - u_i. */
-    dealii::Tensor<1, dim> deformed_bond(const double      *u,
-                                         const unsigned int i,
-                                         const unsigned int j) const;
+    bool holds(const CellCorner<dim> &corner) const; // no bond of its node has broken
+    dealii::Tensor<1, dim> deformed_bond(const double *u,
+                                         unsigned int  i,
+                                         unsigned int  j) const; // Y
 
     /** W x e of a bond of an owned node, thermal extension taken off. */
     double extension_moment(const double *u, const unsigned int i, const Bond &bond) const
@@ -220,7 +230,6 @@ namespace PeriDeal
       return {neighbors[k], moments[k], springs[k], full ? lengths[k] : 0.};
     }
 
-    /** The same in general. */
     double strained_extension_moment(const double *u, const unsigned int i, const Bond &bond) const;
 
     const Scene<dim>                                          &scene;
@@ -229,6 +238,7 @@ namespace PeriDeal
     std::unique_ptr<DisplacementConditions<dim>>               conditions;
     std::vector<NodeLaw>                                       laws;     // owned and ghosts
     Vector                                                     weighted; // q_i; ghosts up to date
+    std::unique_ptr<FictitiousBonds<dim>>                      beyond;   // or none
     std::unique_ptr<StateLattice<dim>>                         lattice;  // or none
     std::vector<bool>                   on_lattice; // owned nodes that store no bond
     std::vector<LatticeBond>            lattice_bonds;
@@ -239,20 +249,15 @@ namespace PeriDeal
     std::vector<double>                 springs; // (b_i/q_i + b_j/q_j)/(W x^2)
     std::vector<double>                 lengths,
       across; // full kinematics: W x, and the tangent's stiffness across the bond
-    bool                            full       = false;
-    bool                            volumetric = false, any_thermal = false, several_phases = false;
-    double                          n_bonds = 0., released = 0.;
-    unsigned long long              n_broken        = 0;
-    unsigned long long              n_not_corrected = 0;
-    double                          moments_gap     = 0.;
+    bool   full = false, volumetric = false, any_thermal = false, several_phases = false;
+    double n_bonds = 0., released = 0., moments_gap = 0.;
+    unsigned long long              n_broken = 0, n_not_corrected = 0;
     std::vector<TractionShare<dim>> tractions;
     std::vector<double> critical; // stretch, of owned nodes and ghosts; empty: nothing breaks
-    std::vector<std::pair<std::size_t, double>>
-                   breaking;       // overstretched bonds: place, stretch over critical stretch
-    bool           breaks = false; // some bond may, on any process
+    std::vector<std::pair<std::size_t, double>> breaking,
+      breaking_images; // overstretched bonds: place, stretch over critical stretch
+    bool           breaks = false, loads_vary = false; // some bond may break, on any process
     Vector         mass, stiffness_diagonal, thermal_loads, constant_loads;
-    double         thermal_energy = 0.;
-    bool           loads_vary     = false;
     mutable Vector scratch, source, tau;          // tau_i = c_i theta_i/q_i
     mutable std::vector<CellCorner<dim>> corners; // once they have been asked for
   };

@@ -67,7 +67,8 @@ namespace PeriDeal
     energy,
     volume, // this and the next: elasticity
     moments,
-    fictitious_nodes
+    fictitious_nodes,
+    automatic // elasticity; what diffuses has none
   };
 
   enum class CorrectionDirection

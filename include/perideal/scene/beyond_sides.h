@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/scene.h>
+
+#include <array>
+#include <string>
+
+namespace PeriDeal
+{
+  /** How the families of an elastic body go on beyond a flat side of a lattice. */
+  enum class BeyondSide
+  {
+    nothing,  // they end there
+    mirrored, // as in the mirror image of the body, at planes of symmetry
+    continued // by a linear continuation of its displacement
+  };
+
+
+  /**
+   * Of the sides left, right, bottom, top, back, front. With `Surface correction = fictitious nodes` all go on. With `auto` they do where the scene allows, for `Models = peridynamics`; where bonds may
+   * break those with conditions alone, since bonds at free sides break as those of their own families. Not collective.
+   */
+  template <int dim>
+  std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene);
+
+
+  /** With `Surface correction = auto`: why no families can go on; empty where they can, and with other corrections. */
+  template <int dim>
+  std::string hindrance_of_fictitious_nodes(const Scene<dim> &scene);
+
+
+  /** What `Surface correction = auto` does, for reports: "fictitious nodes beyond left, right", or "none" and why. */
+  template <int dim>
+  std::string automatic_correction(const Scene<dim> &scene);
+} // namespace PeriDeal

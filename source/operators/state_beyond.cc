@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Families that go on beyond the sides of the body.
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/interleaved.h>
+#include <perideal/operators/state_operator.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "state_lattice.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** A traction acts on the side, where the displacement is 3/2 u_0 - 1/2 u_1 of the cell centres in the two outermost rows. */
+    template <int dim>
+    void draw_on_to_side(const Families<dim>                   &families,
+                         const std::array<BeyondSide, 2 * dim> &sides,
+                         std::vector<TractionShare<dim>>       &tractions)
+    {
+      const Nodes<dim>                  &nodes = families.nodes();
+      std::map<types::boundary_id, bool> loaded;
+      const auto                         next =
+        [&](const unsigned int node, const types::boundary_id side, const int step) {
+          auto site = nodes.lattice()->index(nodes.position(node));
+          site[side / 2] += side % 2 == 0 ? step : -step;
+          return families.node_at(site);
+        };
+      for (TractionShare<dim> &share : tractions)
+        {
+          loaded[share.side] = true;
+          if (sides[share.side] == BeyondSide::continued &&
+              next(share.node, share.side, 1) != numbers::invalid_unsigned_int)
+            share.area *= 1.5;
+        }
+      for (unsigned int side = 0; side < 2 * dim; ++side)
+        {
+          const unsigned int axis = side / 2;
+          const int          last = nodes.lattice()->n_sites[axis] - 1;
+          // Rows of other processes may be loaded.
+          if (Utilities::MPI::max(loaded.count(side), nodes.communicator()) == 0 ||
+              sides[side] != BeyondSide::continued || last == 0)
+            continue;
+          const double area = nodes.lattice()->cell_volume() / nodes.lattice()->spacing[axis];
+          for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+            {
+              const int row = nodes.lattice()->index(nodes.position(i))[axis];
+              if (row != (side % 2 == 0 ? 1 : last - 1))
+                continue;
+              if (const unsigned int outer = next(i, side, -1);
+                  outer != numbers::invalid_unsigned_int)
+                tractions.push_back({i, side, -0.5 * area, nodes.position(outer)});
+            }
+        }
+    }
+  } // namespace
+
+
+  template <int dim>
+  void StateOperator<dim>::complete_families()
+  {
+    const auto sides = beyond_sides(scene);
+    if (!bonds.has_unique_sites() || std::all_of(sides.begin(), sides.end(), [](const auto side) {
+          return side == BeyondSide::nothing;
+        }))
+      return;
+    const bool cut_at_tips = scene.cracks.cuts_bonds_at_tips(scene.peridynamics.surface_correction);
+    beyond                 = std::make_unique<FictitiousBonds<dim>>(
+      bonds,
+      sides,
+      make_crack_geometries(bonds.crack_history().pieces(bonds.cracks_now(), cut_at_tips)));
+    if (bonds.nodes().lattice()->at_centers && scene.boundary_conditions.traction_layer <= 0.)
+      draw_on_to_side(bonds, sides, tractions);
+    beyond->add_weights(weighted);
+    // The lattice knows what is complete to the last bit.
+    const double complete = complete_weighted();
+    for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
+      if (std::abs(weighted.local_element(i) - complete) < 1e-12 * complete)
+        weighted.local_element(i) = complete;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::add_images_to_dilatations(const Vector &u, const bool strained) const
+  {
+    if (!beyond)
+      return;
+    beyond->find_images(u.begin());
+    for (const unsigned int i : beyond->nodes())
+      {
+        double sum = 0.;
+        beyond->for_each_of(i, [&](const auto &bond) {
+          sum += strained ? beyond->extension_moment(bond, u.begin()) :
+                            bond.moment * beyond->change(bond, u.begin());
+        });
+        const StateLaw &law = laws[i].law;
+        const double    q   = weighted.local_element(i);
+        tau.local_element(i) +=
+          law.volumetric * law.dilatation * sum / (q * q * bonds.nodes().volume(i));
+      }
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::add_strained_image_forces(Vector &y, const Vector &u) const
+  {
+    if (!beyond)
+      return;
+    beyond->find_images(u.begin());
+    beyond->begin_forces();
+    beyond->for_each([&](const auto &bond) {
+      const double size = bond.spring * beyond->extension_moment(bond, u.begin()) +
+                          (volumetric ? tau.local_element(bond.node) : 0.);
+      const Tensor<1, dim> force = size * beyond->direction(bond, u.begin());
+      for (unsigned int d = 0; d < dim; ++d)
+        y.local_element(dim * bond.node + d) -= force[d];
+      beyond->pull(bond, force);
+    });
+    beyond->pass_on(y);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::linearize_images(const Vector &u)
+  {
+    if (!beyond)
+      return;
+    beyond->find_images(u.begin());
+    beyond->for_each([&](const auto &bond) {
+      const Tensor<1, dim> direction = beyond->direction(bond, u.begin());
+      const double         size      = bond.spring * beyond->extension_moment(bond, u.begin()) +
+                          (volumetric ? tau.local_element(bond.node) : 0.);
+      const Tensor<1, dim> y = beyond->bond_vector(bond) + beyond->change(bond, u.begin());
+      beyond->set_tangent(bond, direction, size * beyond->length(bond) / y.norm());
+    });
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::add_geometric_image_forces(Vector &y, const Vector &x) const
+  {
+    if (!beyond)
+      return;
+    beyond->begin_forces();
+    beyond->for_each([&](const auto &bond) {
+      const double length = beyond->length(bond);
+      if (length == 0.)
+        return; // broken
+      Tensor<1, dim> force = beyond->change(bond, x.begin());
+      force -= (bond.moment * force) / (length * length) * bond.moment;
+      force *= beyond->stiffness_across(bond);
+      for (unsigned int d = 0; d < dim; ++d)
+        y.local_element(dim * bond.node + d) -= force[d];
+      beyond->pull(bond, force);
+    });
+    beyond->pass_on(y);
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::energy_of_images(const Vector &u) const
+  {
+    double sum = 0.;
+    if (!beyond)
+      return sum;
+    beyond->find_images(u.begin());
+    beyond->for_each([&](const auto &bond) {
+      const double product = beyond->extension_moment(bond, u.begin());
+      sum += 0.5 * bond.spring * product * product;
+    });
+    return sum;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::add_images_to_diagonal(const std::vector<double> &factor)
+  {
+    if (!beyond)
+      return;
+    // theta_i is a sum over coefficients of displacements. What images change of these, and what was counted without them:
+    Vector                      sum;
+    std::vector<Tensor<1, dim>> own(bonds.nodes().n_local()), change(own.size());
+    std::vector<unsigned int>   touched;
+    std::vector<bool>           is_touched(own.size(), false);
+    sum.reinit(unknowns);
+    const auto touch = [&](const unsigned int node) {
+      if (!is_touched[node])
+        touched.push_back(node);
+      is_touched[node] = true;
+    };
+    for (const unsigned int i : beyond->nodes())
+      {
+        touched.clear();
+        beyond->for_each_of(i, [&](const auto &bond) {
+          Tensor<1, dim> of_node = bond.moment;
+          touch(i);
+          change[i] -= bond.moment;
+          beyond->for_each_term(bond.image, [&](const auto node, const auto &factors) {
+            Tensor<1, dim> p;
+            for (unsigned int d = 0; d < dim; ++d)
+              p[d] = factors[d] * bond.moment[d];
+            if (node == i)
+              of_node -= p;
+            else
+              for (unsigned int d = 0; d < dim; ++d)
+                sum.local_element(dim * node + d) += bond.spring * p[d] * p[d];
+            touch(node);
+            change[node] += p;
+          });
+          for (unsigned int d = 0; d < dim; ++d)
+            sum.local_element(dim * i + d) += bond.spring * of_node[d] * of_node[d];
+        });
+        own[i] = Tensor<1, dim>();
+        for_each_bond(i, [&](const Bond &bond) {
+          own[bond.neighbor] = bond.moment;
+          own[i] -= bond.moment;
+        });
+        for (const unsigned int node : touched)
+          for (unsigned int d = 0; d < dim; ++d)
+            sum.local_element(dim * node + d) +=
+              factor[i] * change[node][d] * (change[node][d] + 2. * own[node][d]);
+        for (const unsigned int node : touched)
+          {
+            change[node]     = Tensor<1, dim>();
+            is_touched[node] = false;
+          }
+        for_each_bond(i, [&](const Bond &bond) { own[bond.neighbor] = Tensor<1, dim>(); });
+        own[i] = Tensor<1, dim>();
+      }
+    sum.compress(VectorOperation::add);
+    stiffness_diagonal += sum;
+  }
+
+
+  template <int dim>
+  Vector StateOperator<dim>::rows_of_images(const bool with_dilatations) const
+  {
+    Vector rows(bonds.nodes().partitioner());
+    if (!beyond)
+      return rows;
+    beyond->for_each([&](const auto &bond) {
+      const double p    = bond.moment.norm();
+      double       size = bond.spring * p * (1. + beyond->sum_of_factors(bond.image));
+      size += with_dilatations ? source.local_element(bond.node) : 0.;
+      rows.local_element(bond.node) += size * p;
+      beyond->for_each_term(bond.image, [&](const auto node, const auto &factors) {
+        double largest = 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          largest = std::max(largest, std::abs(factors[d]));
+        rows.local_element(node) += size * largest * p;
+        if (full)
+          rows.local_element(node) += largest * std::abs(beyond->stiffness_across(bond)) *
+                                      (1. + beyond->sum_of_factors(bond.image));
+      });
+      if (full)
+        rows.local_element(bond.node) +=
+          std::abs(beyond->stiffness_across(bond)) * (1. + beyond->sum_of_factors(bond.image));
+    });
+    rows.compress(VectorOperation::add);
+    return rows;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_overstretched_images(const double *u)
+  {
+    breaking_images.clear();
+    if (!beyond)
+      return;
+    beyond->find_images(u);
+    beyond->for_each([&](const auto &bond) {
+      if (!beyond->may_break(bond))
+        return;
+      const Tensor<1, dim> xi  = beyond->bond_vector(bond);
+      const double         all = full ? beyond->length(bond) * xi.norm() : bond.moment * xi;
+      const double         limit =
+        all * std::min(critical[bond.node], critical[beyond->origin(bond.image)]);
+      const double found = beyond->extension_moment(bond, u);
+      if (found > limit)
+        breaking_images.push_back({bond.number, found / limit});
+    });
+  }
+
+
+  template <int dim>
+  unsigned int StateOperator<dim>::break_images()
+  {
+    if (!beyond)
+      return 0;
+    unsigned int           n_ends = 0;
+    std::vector<double>    broken;
+    std::size_t            next = 0; // both lists are sorted
+    std::set<unsigned int> touched;
+    beyond->for_each([&](const auto &bond) {
+      if (next < breaking_images.size() && breaking_images[next].first == bond.number)
+        {
+          n_ends += beyond->n_ends(bond);
+          beyond->break_bond(bond.number);
+          touched.insert(bond.node);
+          ++next;
+        }
+    });
+    for (const auto &[k, ratio] : breaking)
+      touched.insert(std::upper_bound(starts.begin(), starts.end(), k) - starts.begin() - 1);
+    for (const unsigned int i : touched)
+      {
+        std::vector<unsigned int> lost;
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          if (springs[k] == 0.)
+            lost.push_back(neighbors[k]);
+        beyond->break_dependent(i, lost);
+      }
+    return n_ends;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template void   StateOperator<dim>::complete_families();                                         \
+  template void   StateOperator<dim>::add_images_to_dilatations(const Vector &, const bool) const; \
+  template void   StateOperator<dim>::add_strained_image_forces(Vector &, const Vector &) const;   \
+  template void   StateOperator<dim>::add_geometric_image_forces(Vector &, const Vector &) const;  \
+  template void   StateOperator<dim>::linearize_images(const Vector &);                            \
+  template double StateOperator<dim>::energy_of_images(const Vector &) const;                      \
+  template void   StateOperator<dim>::add_images_to_diagonal(const std::vector<double> &);         \
+  template Vector StateOperator<dim>::rows_of_images(const bool) const;                            \
+  template void   StateOperator<dim>::find_overstretched_images(const double *);                   \
+  template unsigned int StateOperator<dim>::break_images();
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Families of the linear peridynamic solid that go on beyond the sides (`Surface correction = auto`).
+
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <cmath>
+
+#include "elastic_scene_tools.h"
+#include "elastic_test_tools.h"
+
+using namespace PeriDeal;
+using namespace PeriDeal::OperatorTests;
+
+namespace
+{
+  using dealii::Point;
+  using dealii::Tensor;
+
+  const Settings centers{{"Domain/Nodes", "cell centers"}};
+  const Settings full{{"Elasticity/Kinematics", "full"},
+                      {"Elasticity/Solver", "conjugate gradients"}};
+
+
+  /** A box whose families go on. */
+  template <int dim>
+  Settings completed()
+  {
+    return box<dim>() + Settings{{"Peridynamics/Surface correction", "auto"}};
+  }
+
+
+  template <int dim>
+  Tensor<1, dim> strained(const Point<dim> &p)
+  {
+    return some_gradient<dim>() * p;
+  }
+
+
+  /**
+   * The forces of a uniform strain: none inside. Those of a side carry the stress, sigma n times its area, and all of them balance.
+   */
+  template <int dim>
+  void check_uniform_strain(const Settings &more)
+  {
+    const Body<dim>           body(completed<dim>() + more, Model::peridynamics);
+    const StateOperator<dim> &op = *body.states;
+    const Vector              u  = body.values(strained<dim>);
+    Vector                    y(u);
+    op.multiply(y, u);
+    const double   farthest = op.families().reach() + 1e-9, largest = y.linfty_norm();
+    const bool     at_centers = body.scene.domain.nodes == NodePlacement::cell_centers;
+    const auto     tensors    = op.tensors(u);
+    Tensor<1, dim> right; // the force on the right side
+    for (unsigned int i = 0; i < tensors.stress.size(); ++i)
+      {
+        const Point<dim> &p     = body.position(i);
+        bool              inner = true;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double depth = at_centers ? farthest :
+                                              1e-9; // extrapolated from the two outermost rows
+            inner              = inner && p[d] > depth && p[d] < body.scene.domain.upper[d] - depth;
+          }
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            if (inner)
+              {
+                EXPECT_LT(std::abs(y.local_element(dim * i + d)), 1e-12 * largest);
+              }
+            if (p[0] > body.scene.domain.upper[0] - farthest)
+              right[d] += y.local_element(dim * i + d);
+          }
+        EXPECT_LT((tensors.stress[i] - tensors.stress[0]).norm(), 1e-12 * tensors.stress[0].norm());
+      }
+    right       = dealii::Utilities::MPI::sum(right, MPI_COMM_WORLD);
+    double area = 1.;
+    for (unsigned int d = 1; d < dim; ++d)
+      area *= body.scene.domain.upper[d];
+    // Near the edges of the side forces of the sides around it are among these, which cancel but for rotations.
+    EXPECT_NEAR(right[0] / (tensors.stress[0][0][0] * area), 1., 1e-11);
+    for (const Vector &motion : op.near_null_space())
+      EXPECT_LT(std::abs(motion * y), 1e-11 * motion.linfty_norm() * y.l1_norm());
+  }
+
+
+  /** Half a body with a plane of symmetry at x = 0, and the whole one. */
+  template <int dim>
+  struct Halves
+  {
+    static Settings sized(const char *lower, const char *cells)
+    {
+      return completed<dim>() +
+             Settings{{"Domain/Lower corner", lower},
+                      {"Domain/Cells", cells},
+                      {"Boundary conditions/Displacement", std::string("right: ") + zeros[dim]}};
+    }
+
+    /** Of a crack that crosses the plane the half body has half. */
+    static Settings half_of(Settings more)
+    {
+      for (auto &[path, text] : more)
+        if (path == "Cracks/Segments")
+          text = "0,0.412 ; 0.21,0.412";
+      return more;
+    }
+
+    explicit Halves(const Settings &more)
+      : half(sized(zeros[dim], dim == 2 ? "16, 12" : "8, 6, 4") +
+               Settings{{"Boundary conditions/Symmetry", "left"}} + half_of(more),
+             Model::peridynamics,
+             MPI_COMM_SELF)
+      , whole(sized(dim == 2 ? "-1, 0" : "-1, 0, 0", dim == 2 ? "32, 12" : "16, 6, 4") + more,
+              Model::peridynamics,
+              MPI_COMM_SELF)
+    {}
+
+    /** A displacement that is its own mirror image. */
+    static Tensor<1, dim> field(const Point<dim> &p)
+    {
+      Tensor<1, dim> u;
+      u[0] = 0.02 * std::sin(2. * p[0]) * (1. + p[1]);
+      for (unsigned int d = 1; d < dim; ++d)
+        u[d] = 0.02 * std::cos((2. + d) * p[0]) * p[d] * p[1];
+      return u;
+    }
+
+    /** visit(i, k): nodes of the half and the whole body at one place, off the plane. */
+    template <typename Visit>
+    void for_each_pair(const Visit &visit) const
+    {
+      unsigned int n = 0;
+      for (unsigned int i = 0; i < half.nodes->n_owned(); ++i)
+        for (unsigned int k = 0; k < whole.nodes->n_owned(); ++k)
+          if (half.position(i)[0] > 1e-9 && half.position(i).distance(whole.position(k)) < 1e-9)
+            {
+              visit(i, k);
+              ++n;
+            }
+      EXPECT_GT(n, 100u);
+    }
+
+    const Body<dim> half, whole;
+  };
+
+
+  template <int dim>
+  void check_halves(const Settings &more)
+  {
+    const Halves<dim> bodies(more);
+    const Body<dim>  &a = bodies.half, &b = bodies.whole;
+    Vector u = a.values(Halves<dim>::field), of_half(u), v = b.values(Halves<dim>::field),
+           of_whole(v);
+    a.op().unbalanced(of_half, u, 0.);
+    b.op().unbalanced(of_whole, v, 0.);
+    const double size        = of_whole.linfty_norm();
+    const auto   stress_half = a.states->tensors(u).stress, stress = b.states->tensors(v).stress;
+    const auto   damage_half = a.states->damage(), damage = b.states->damage();
+    bodies.for_each_pair([&](const unsigned int i, const unsigned int k) {
+      for (unsigned int d = 0; d < dim; ++d)
+        EXPECT_NEAR(of_half.local_element(dim * i + d),
+                    of_whole.local_element(dim * k + d),
+                    1e-12 * size);
+      EXPECT_LT((stress_half[i] - stress[k]).norm(), 1e-11 * (1. + stress[k].norm()));
+      EXPECT_NEAR(damage_half[i], damage[k], 1e-12);
+    });
+    const double energy = b.op().energy(v);
+    EXPECT_NEAR(2. * a.op().energy(u) / energy, 1., 1e-12);
+  }
+} // namespace
+
+
+TEST(FictitiousBonds, uniform_strains)
+{
+  for (const std::string form : {"auto", "stored"})
+    for (const Settings &nodes : {Settings(), centers})
+      {
+        const Settings more = nodes + Settings{{"Peridynamics/Operator form", form}};
+        check_uniform_strain<1>(more);
+        check_uniform_strain<2>(more);
+        check_uniform_strain<2>(more + Settings{{"Elasticity/Plane", "strain"}});
+        check_uniform_strain<2>(more + Settings{{"Elasticity/Model", "bond-based"}});
+        check_uniform_strain<3>(more);
+      }
+}
+
+
+TEST(FictitiousBonds, narrower_than_a_family)
+{
+  const Settings narrow{{"Domain/Upper corner", "1, 0.125"}, {"Domain/Cells", "16, 2"}};
+  check_uniform_strain<2>(narrow);
+  check_uniform_strain<2>(narrow + centers);
+}
+
+
+TEST(FictitiousBonds, planes_of_symmetry)
+{
+  for (const Settings &nodes : {Settings(), centers})
+    for (const Settings &more : {Settings(),
+                                 full,
+                                 Settings{{"Material/Thermal expansion", "0.001"},
+                                          {"Elasticity/Temperature change", "3 + x*x"}},
+                                 Settings{{"Cracks/Segments", "-0.21,0.412 ; 0.21,0.412"}},
+                                 Settings{{"Material/Phases/Regions", "stiff: abs(x) > 0.6"},
+                                          {"Material/Phases/Young modulus", "stiff: 30"},
+                                          {"Material/Phases/Poisson ratio", "stiff: 0.1"}}})
+      {
+        check_halves<2>(nodes + more);
+        if (more.size() < 2)
+          check_halves<3>(nodes + (more.empty() ? more : Settings()));
+      }
+}
+
+
+TEST(FictitiousBonds, bonds_break_as_in_the_whole_body)
+{
+  for (const Settings &nodes : {Settings(), centers})
+    {
+      const Halves<2> bodies(
+        nodes + Settings{{"Elasticity/Solver", "dynamics"}, {"Material/Critical stretch", "0.03"}});
+      const Vector u    = bodies.half.values(Halves<2>::field),
+                   v    = bodies.whole.values(Halves<2>::field);
+      const auto n_half = bodies.half.op().break_bonds(u), n = bodies.whole.op().break_bonds(v);
+      EXPECT_GT(n_half, 100u);
+      EXPECT_NEAR(static_cast<double>(n_half), 0.5 * n, 7.); // those that the plane halves
+      EXPECT_NEAR(2. * bodies.half.op().released_energy() / bodies.whole.op().released_energy(),
+                  1.,
+                  1e-12);
+      Vector of_half(u), of_whole(v);
+      bodies.half.op().multiply(of_half, u);
+      bodies.whole.op().multiply(of_whole, v);
+      const auto damage_half = bodies.half.states->damage(), damage = bodies.whole.states->damage();
+      bodies.for_each_pair([&](const unsigned int i, const unsigned int k) {
+        for (unsigned int d = 0; d < 2; ++d)
+          EXPECT_NEAR(of_half.local_element(2 * i + d), of_whole.local_element(2 * k + d), 1e-12);
+        EXPECT_NEAR(damage_half[i], damage[k], 1e-12);
+      });
+    }
+}
+
+
+TEST(FictitiousBonds, diagonal_is_that_of_the_matrix)
+{
+  for (const Settings &nodes : {Settings(), centers})
+    {
+      const Body<2>                          body(completed<2>() + nodes +
+                           Settings{{"Boundary conditions/Displacement", "left: 0, free"},
+                                    {"Boundary conditions/Symmetry", "bottom"}},
+                         Model::peridynamics);
+      dealii::TrilinosWrappers::SparseMatrix matrix;
+      body.states->matrix(matrix);
+      const Vector &diagonal = body.op().diagonal();
+      Vector        free(diagonal);
+      free = 1.;
+      body.op().clear_constrained(free);
+      for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
+        if (free.local_element(i) > 0.)
+          {
+            EXPECT_NEAR(matrix.diag_element(diagonal.get_partitioner()->local_to_global(i)) /
+                          diagonal.local_element(i),
+                        1.,
+                        1e-12);
+          }
+    }
+}
+
+
+TEST(FictitiousBonds, same_on_all_processes)
+{
+  for (const Settings &nodes : {Settings(), centers})
+    {
+      const Settings settings =
+        completed<2>() + nodes + Settings{{"Boundary conditions/Symmetry", "bottom"}};
+      const Body<2> together(settings, Model::peridynamics),
+        alone(settings, Model::peridynamics, MPI_COMM_SELF);
+      const Vector u = together.values(bumpy_vector<2>), v = alone.values(bumpy_vector<2>);
+      Vector       y(u), z(v);
+      together.op().multiply(y, u);
+      alone.op().multiply(z, v);
+      EXPECT_NEAR(together.op().energy(u) / alone.op().energy(v), 1., 1e-13);
+      EXPECT_NEAR(together.op().spectrum().safe / alone.op().spectrum().safe, 1., 1e-12);
+      for (unsigned int i = 0; i < y.locally_owned_size(); ++i)
+        for (unsigned int k = 0; k < z.locally_owned_size() / 2; ++k)
+          if (together.position(i / 2).distance(alone.position(k)) < 1e-9)
+            {
+              EXPECT_NEAR(y.local_element(i), z.local_element(2 * k + i % 2), 1e-12);
+            }
+    }
+}
+
+
+TEST(FictitiousBonds, turned_bodies_have_no_forces)
+{
+  const Body<2> body(completed<2>() + full, Model::peridynamics);
+  const auto    turned = [](const Point<2> &p) {
+    const double c = std::cos(1.2), s = std::sin(1.2);
+    return Tensor<1, 2>({c * p[0] - s * p[1] - p[0], s * p[0] + c * p[1] - p[1]});
+  };
+  const Vector u = body.values(turned);
+  Vector       y(u);
+  body.op().unbalanced(y, u, 0.);
+  EXPECT_LT(y.linfty_norm(), 1e-12);
+}
+
+
+TEST(FictitiousBonds, no_scene_is_refused)
+{
+  using SceneTests::elastic_fault;
+  using SceneTests::Overrides;
+  const std::string            b = "Boundary conditions/", e = "Elasticity/";
+  const std::vector<Overrides> scenes = {
+    {},
+    {"Models=finite elements"},
+    {"Models=coupled", "Coupling/Zone=x-0.5"},
+    {"Models=coupled", "Coupling/Zone=x-0.5", "Coupling/Scheme=blending"},
+    {"Domain/Nodes=cell centers"},
+    {"Peridynamics/Nodal volume=full"},
+    {"Cracks/Segments=0.2,0.5 ; 0.5,0.5", "Cracks/Mesh=faces"},
+    {e + "Kinematics=full", e + "Solver=conjugate gradients"},
+    {"Material/Fracture energy=0.1"},
+    {b + "Traction=right: 1, 0", b + "Traction layer=0.1"},
+    {e + "Model=bond-based", e + "Micromodulus=constant"},
+    {b + "Symmetry=bottom, top"},
+    {b + "Symmetry=top", "Cracks/Segments=0.2,0.5 ; 0.5,0.99"},
+    {"Peridynamics/Operator form=lattice"}};
+  for (Overrides overrides : scenes)
+    {
+      overrides.push_back("Peridynamics/Surface correction=auto");
+      EXPECT_EQ(elastic_fault(overrides), "");
+    }
+}
