@@ -260,9 +260,12 @@ namespace PeriDeal
                      const std::string     &where,
                      const std::string     &list)
     {
-      if (condition.id >= 2 * dim)
-        entry_error(where, "needs flat sides, and '" + list + "' names 'hole'. Leave it empty.");
-      const unsigned int axis  = condition.id / 2;
+      const types::boundary_id side = scene.boundary_conditions.side_of(condition.id);
+      if (side >= 2 * dim)
+        entry_error(where,
+                    "needs flat sides, and '" + list + "' names '" + condition.name +
+                      "'. Leave it empty.");
+      const unsigned int axis  = side / 2;
       const double       width = scene.domain.upper[axis] - scene.domain.lower[axis];
       if (depth > width)
         entry_error(where,
@@ -309,7 +312,8 @@ namespace PeriDeal
         {
           check_layer(scene, condition, conditions.traction_layer, where, "Traction");
           for (const auto &crack : scene.cracks.cracks)
-            if (distance_to_side(scene, crack, condition.id) < conditions.traction_layer)
+            if (distance_to_side(scene, crack, conditions.side_of(condition.id)) <
+                conditions.traction_layer)
               entry_error(
                 where,
                 "a crack lies within it at the side '" + condition.name +
@@ -358,6 +362,13 @@ namespace PeriDeal
       };
       has_start(loads.initial_displacement, "Initial displacement");
       has_start(loads.initial_velocity, "Initial velocity");
+      for (const VectorCondition &condition : scene.boundary_conditions.displacement)
+        if (condition.rate)
+          entry_error(
+            scene.boundary_conditions.where("Velocity"),
+            "is for motion, but 'Solver' in section 'Elasticity' is '" +
+              scene.elasticity.solver_name() +
+              "', which finds an equilibrium. Use 'dynamics', or 'Displacement' with t in its formula.");
       // With a computed temperature it is the heat problem that is steady.
       if (scene.is_loaded_slowly() && scene.time.steady && !with_heat)
         entry_error(scene.time.where("Steady"), "is true, but there are loads that depend on t.");
@@ -398,12 +409,15 @@ namespace PeriDeal
         if (fault)
           entry_error(scene.elasticity.where("Micromodulus"), "'constant' " + what);
       };
-      refuse(!runs(scene, Model::peridynamics),
-             "is for peridynamics in the whole body: add 'peridynamics' to 'Models', or leave the entry out.");
-      refuse(scene.domain.shape == Shape::mesh_file,
-             "is that of the complete family of a lattice, which 'Shape = mesh file' has not. Leave the entry out.");
-      refuse(scene.peridynamics.corrects_elastic_bonds() || scene.peridynamics.completes_families(),
-             "leaves surfaces soft, which 'Surface correction' and fictitious nodes (section 'Peridynamics') mend. Leave one of them out.");
+      refuse(
+        !runs(scene, Model::peridynamics),
+        "is for peridynamics in the whole body: add 'peridynamics' to 'Models', or leave the entry out.");
+      refuse(
+        scene.domain.shape == Shape::mesh_file,
+        "is that of the complete family of a lattice, which 'Shape = mesh file' has not. Leave the entry out.");
+      refuse(
+        scene.peridynamics.corrects_elastic_bonds() || scene.peridynamics.completes_families(),
+        "leaves surfaces soft, which 'Surface correction' and fictitious nodes (section 'Peridynamics') mend. Leave one of them out.");
     }
 
 
