@@ -204,8 +204,16 @@ namespace PeriDeal
             moment += pieces[end].moment;
             share.inside = share.inside || pieces[end].inside;
           }
+        // Of an area that the part cuts, the middle: pieces of one node add up to what it has of a load that is a straight line.
+        const types::boundary_id side  = conditions.side_of(share.id);
+        const auto               whole = std::lower_bound(
+          shares.begin(),
+          shares.end(),
+          std::pair(share.node, side),
+          [](const BoundaryShare &a, const auto &b) { return std::pair(a.node, a.id) < b; });
+        const bool is_cut = share.area > 0. && share.area < (1. - 1e-9) * whole->area;
         for (unsigned int d = 0; d < dim; ++d)
-          share.place[d] = share.area > 0. ? moment[d] / share.area : positions[share.node][d];
+          share.place[d] = is_cut ? moment[d] / share.area : positions[share.node][d];
         with_parts.push_back(share);
       }
     for (const PartNode &node :
@@ -213,7 +221,12 @@ namespace PeriDeal
                         std::vector<Point<dim>>(positions.begin(), positions.begin() + owned_count),
                         volumes,
                         communicator()))
-      with_parts.push_back({node.node, node.id, node.share, true, {}});
+      {
+        BoundaryShare share{node.node, node.id, node.share, true, {}};
+        for (unsigned int d = 0; d < dim; ++d)
+          share.place[d] = positions[node.node][d];
+        with_parts.push_back(share);
+      }
     return *this;
   }
 
@@ -228,7 +241,7 @@ namespace PeriDeal
   template <int dim>
   Point<dim> Nodes<dim>::place_of(const BoundaryShare &share) const
   {
-    if (share.inside)
+    if (share.id < first_part_id)
       return positions[share.node];
     Point<dim> p;
     for (unsigned int d = 0; d < dim; ++d)

@@ -295,7 +295,7 @@ def scene_mistakes(folder):
         ("elastic part between nodes", {**ELASTIC, "Boundary conditions/Dirichlet": "", PARTS: "a: right if abs(y - 0.54) < 0.02",
                                         "Boundary conditions/Displacement": "left: 0, 0 ; a: 1, 0"}, ["'Displacement'", "'a'", "holds no node"]),
         ("part behind its side", {PARTS: "a: top if x > 0.5", DIRICHLET: "top: 0 ; bottom: 0 ; a: 1"}, ["'Dirichlet'", "'a'", "named before", "Name the part first"]),
-        ("formula of a part that is no number", {PARTS: "a: top if sqrt(x - 0.5) < 2", **HOT}, ["'Parts'", "part 'a'", "is not finite"]),
+        ("formula of a part that is no number", {PARTS: "a: top if sqrt(x - 0.5)", **HOT}, ["'Parts'", "part 'a'", "is not finite"]),
         ("parts with two values", {PARTS: "a: left if y < 0.6 ; b: left if y > 0.4", DIRICHLET: "bottom: 0 ; a: 1 ; b: 2"},
          ["'Dirichlet'", "'b' overlaps 'a'", "different values"]),
         ("regions with two values", {PARTS: "a: region x < 0.6 ; b: region x > 0.4", DIRICHLET: "bottom: 0 ; a: 1 ; b: 2"}, ["'b' overlaps 'a'", "different values"]),

@@ -41,7 +41,7 @@ namespace PeriDeal
     dealii::types::boundary_id id;
     double                     area;
     bool                  inside = true; // the node lies in the part, not only some of its area
-    std::array<double, 3> place{};       // of the area, for nodes that are not inside
+    std::array<double, 3> place{};       // of parts: where formulas are taken
   };
 
 
@@ -94,7 +94,7 @@ namespace PeriDeal
     /** Those of boundary_shares() and behind them those of parts. */
     const std::vector<BoundaryShare> &condition_shares() const;
 
-    /** Where formulas of a condition are taken for a share: at the node, or in the middle of the share's area if the node is not in the part. */
+    /** Where formulas of a condition are taken for a share: at the node, or in the middle of the share's area if a part cuts it. */
     dealii::Point<dim> place_of(const BoundaryShare &share) const;
 
     /** The lattice of a box or a plate with a hole. Empty on mesh files. */
