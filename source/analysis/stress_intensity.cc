@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -38,6 +39,40 @@ namespace PeriDeal
           stress[0][1] = c * (1. - s * s3);
         }
       return stress / std::sqrt(2. * pi * r);
+    }
+  } // namespace
+
+
+  namespace
+  {
+    /** From a point to the nearest region or point that is held or loaded; regions are looked at in the centres and corners of cells. */
+    double distance_to_parts(const Scene<2> &scene, const Point<2> &p)
+    {
+      const auto &conditions = scene.boundary_conditions;
+      double      nearest    = std::numeric_limits<double>::max();
+      for (const Part &part : conditions.parts)
+        {
+          const bool used = find_condition(conditions.displacement, part.id) != nullptr ||
+                            find_condition(conditions.traction, part.id) != nullptr;
+          if (!used || part.kind == Part::of_side)
+            continue;
+          if (part.kind == Part::point)
+            {
+              nearest = std::min(nearest, p.distance(part.position<2>()));
+              continue;
+            }
+          const Domain<2>   &domain = scene.domain;
+          const Tensor<1, 2> h      = domain.spacing();
+          for (unsigned int j = 0; j <= 2 * domain.cells[1]; ++j)
+            for (unsigned int i = 0; i <= 2 * domain.cells[0]; ++i)
+              {
+                const Point<2> place(domain.lower[0] + 0.5 * i * h[0],
+                                     domain.lower[1] + 0.5 * j * h[1]);
+                if (p.distance(place) < nearest && part.holds(place))
+                  nearest = p.distance(place);
+              }
+        }
+      return nearest;
     }
   } // namespace
 
@@ -93,13 +128,26 @@ namespace PeriDeal
   void CrackEndIntegral::add(const Point<2>              &p,
                              const double                 weight,
                              const Tensor<2, 2>          &gradient,
-                             const SymmetricTensor<2, 2> &stress)
+                             const SymmetricTensor<2, 2> &stress,
+                             const Tensor<1, 2>          &force)
   {
     const Tensor<1, 2> x = frame * (p - end);
     const double       r = x.norm();
-    if (r <= inner || r >= outer)
+    if (r >= outer || r == 0.)
       return;
-    const double       angle = std::atan2(x[1], x[0]);
+    const double angle = std::atan2(x[1], x[0]);
+    if (force.norm_square() > 0.)
+      {
+        // A body force does work on the fields that move with the end, wherever q is not 0.
+        const double       q = std::min(1., (outer - r) / (outer - inner));
+        const Tensor<1, 2> b = frame * force;
+        const Tensor<2, 2> u = frame * gradient * transpose(frame);
+        sums[0] -= weight * q * (b * Tensor<1, 2>({u[0][0], u[1][0]}));
+        for (unsigned int mode = 0; mode < 2; ++mode)
+          sums[1 + mode] -= weight * q * (b * near_slope(mode, r, angle));
+      }
+    if (r <= inner)
+      return;
     const Tensor<1, 2> slope = (-1. / ((outer - inner) * r)) * x; // of q
     const Tensor<2, 2> u     = frame * gradient * transpose(frame);
     const Tensor<2, 2> sigma = frame * static_cast<Tensor<2, 2>>(stress) * transpose(frame);
@@ -133,9 +181,10 @@ namespace PeriDeal
     const bool                    warm     = scene.elasticity.computes_temperature ||
                       !scene.elasticity.temperature_change.is_constant() ||
                       scene.elasticity.temperature_change.value(Point<2>()) != 0.;
-    const double size = 2. * scene.domain.spacing().norm(); // of cells: a ring has to hold some
-    if (!scene.elasticity.is_static() || scene.domain.shape != Shape::box ||
-        !material.uniform_moduli() || warm || !scene.initial_and_source.body_force.empty())
+    const double size     = 2. * scene.domain.spacing().norm(); // of cells: a ring has to hold some
+    const bool   is_plate = scene.domain.shape == Shape::box ||
+                          scene.domain.shape == Shape::plate_with_hole;
+    if (!scene.elasticity.is_static() || !is_plate || !material.uniform_moduli() || warm)
       return list;
     for (unsigned int k = 0; k < cracks.size(); ++k)
       for (unsigned int e = 0; e < 2; ++e)
@@ -147,6 +196,8 @@ namespace PeriDeal
           for (unsigned int d = 0; d < 2; ++d)
             room = std::min(
               {room, end[d] - scene.domain.body_lower[d], scene.domain.body_upper[d] - end[d]});
+          room =
+            std::min({room, scene.domain.distance_to_holes(end), distance_to_parts(scene, end)});
           for (unsigned int other = 0; other < cracks.size(); ++other)
             if (other != k)
               room = std::min(room, distance_to_piece(cracks[other], end));

@@ -46,6 +46,18 @@ namespace PeriDeal
     }
 
 
+    /** The point of a side that is nearest to a site. */
+    template <int dim>
+    Point<dim> foot_of(const Lattice<dim>                 &lattice,
+                       const typename Lattice<dim>::Index &site,
+                       const unsigned int                  side)
+    {
+      Point<dim> foot = lattice.position(site);
+      foot[side / 2]  = side % 2 == 0 ? lattice.lower[side / 2] : lattice.upper[side / 2];
+      return clamp_to_body(lattice, foot);
+    }
+
+
     /** The image of a node or of an earlier fictitious node about one side. */
     template <int dim>
     FictitiousNode<dim> image(const FictitiousNode<dim> &original,
@@ -59,10 +71,8 @@ namespace PeriDeal
       node.side                = side;
       if (dirichlet == nullptr) // symmetry
         return node;
-      Point<dim> foot = lattice.position(node.site);
-      foot[side / 2]  = side % 2 == 0 ? lattice.lower[side / 2] : lattice.upper[side / 2];
-      foot            = clamp_to_body(lattice, foot);
-      node.sign       = constant ? 0. : -original.sign;
+      const Point<dim> foot = foot_of(lattice, node.site, side);
+      node.sign             = constant ? 0. : -original.sign;
       for (auto &term : node.terms)
         term.coefficient *= -1.;
       if (constant)
@@ -95,12 +105,15 @@ namespace PeriDeal
     std::vector<FictitiousNode<dim>> all;
     for (unsigned int side = 0; side < 2 * dim; ++side)
       {
-        const SideCondition *dirichlet =
-          layers ? BoundaryConditions<dim>::find(conditions.dirichlet, side) : nullptr;
+        const bool held = layers && std::any_of(conditions.dirichlet.begin(),
+                                                conditions.dirichlet.end(),
+                                                [&](const SideCondition &condition) {
+                                                  return conditions.side_of(condition.id) == side;
+                                                });
         const bool symmetric =
           std::find(conditions.symmetry.begin(), conditions.symmetry.end(), side) !=
           conditions.symmetry.end();
-        if (dirichlet == nullptr && !symmetric)
+        if (!held && !symmetric)
           continue;
         AssertThrow(
           lattice.n_sites[side / 2] > reach[side / 2],
@@ -112,7 +125,14 @@ namespace PeriDeal
           if (inside < 0 || inside > reach[side / 2] ||
               (inside == 0 && nodal_volume == NodalVolume::full))
             return;
-          all.push_back(image(original, lattice, side, dirichlet, constant));
+          // Of a side that is held in parts only, nodes lie beyond those parts.
+          const SideCondition *const dirichlet =
+            symmetric ? nullptr :
+                        conditions.first_at(conditions.dirichlet,
+                                            side,
+                                            foot_of(lattice, original.site, side));
+          if (symmetric || dirichlet != nullptr)
+            all.push_back(image(original, lattice, side, dirichlet, constant));
         };
         const std::size_t n_before = all.size();
         for (unsigned int i = 0; i < nodes.n_local(); ++i)

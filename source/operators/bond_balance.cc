@@ -34,7 +34,7 @@ namespace PeriDeal
     const auto side_of = [&](const FictitiousNode<dim> &node) {
       const SideCondition *const given = node.terms.empty() ? condition(node.mirror) :
                                                               node.terms.back().condition;
-      return given != nullptr ? given->name : name_of_side(node.side, true);
+      return given != nullptr ? given->name : scene.boundary_conditions.name_of(node.side);
     };
     std::vector<typename Families<dim>::Bond> family;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
@@ -60,22 +60,20 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes = bonds.nodes();
     for (const SideLoad &load : fluxes)
-      balance.sides[load.condition->name] +=
-        load.area * load.condition->value.value(nodes.position(load.node), t);
+      balance.sides[load.condition->name] += load.area * load.condition->value.value(load.place, t);
     for (std::size_t k = 0; k < convections.size(); ++k)
       {
         const unsigned int i = convections[k].node;
         balance.sides[convections[k].condition->name] +=
           convection_diagonal[k].second *
-          (convections[k].condition->value.value(nodes.position(i), t) - u.local_element(i));
+          (convections[k].condition->value.value(convections[k].place, t) - u.local_element(i));
       }
     if (scene.peridynamics.flux_treatment != FluxTreatment::natural)
-      for (const BoundaryShare &share : nodes.boundary_shares())
+      for (const BoundaryShare &share : nodes.condition_shares())
         if (const auto *flux =
               BoundaryConditions<dim>::find(scene.boundary_conditions.flux, share.id);
             flux != nullptr && constraints->kind(share.node) == NodeConstraints<dim>::slave)
-          balance.sides[flux->name] +=
-            share.area * flux->value.value(nodes.position(share.node), t);
+          balance.sides[flux->name] += share.area * flux->value.value(nodes.place_of(share), t);
   }
 
 
@@ -133,7 +131,7 @@ namespace PeriDeal
       for (const SideCondition &condition : *list)
         balance.sides[condition.name];
     for (const types::boundary_id side : conditions.symmetry)
-      balance.sides[name_of_side(side, scene.domain.shape != Shape::mesh_file)];
+      balance.sides[conditions.name_of(side)];
     // In a prescribed node it has come in through the node's side.
     for (const auto &entry : constraints->prescribed_nodes())
       balance.sides[entry.condition->name] += heat.local_element(entry.node);
@@ -201,11 +199,11 @@ namespace PeriDeal
       return 0.;
     const Nodes<dim> &nodes = bonds.nodes();
     double            sum   = 0.;
-    for (const BoundaryShare &share : nodes.boundary_shares())
+    for (const BoundaryShare &share : nodes.condition_shares())
       if (const auto *flux =
             BoundaryConditions<dim>::find(scene.boundary_conditions.flux, share.id);
           flux != nullptr && constraints->kind(share.node) == NodeConstraints<dim>::slave)
-        sum += share.area * flux->value.value(nodes.position(share.node), t);
+        sum += share.area * flux->value.value(nodes.place_of(share), t);
     return sum;
   }
 

@@ -19,7 +19,7 @@ namespace PeriDeal
   template <int dim>
   BondOperator<dim>::BondOperator(Nodes<dim> &nodes, const Scene<dim> &scene)
     : scene(scene)
-    , bonds(nodes, scene)
+    , bonds(nodes.find_parts(scene.boundary_conditions), scene)
     , constraints(std::make_unique<NodeConstraints<dim>>(bonds, scene))
     , cracks_of(bonds.crack_history().representative(0.))
   {
@@ -98,9 +98,10 @@ namespace PeriDeal
   template <int dim>
   void BondOperator<dim>::find_side_loads()
   {
-    const bool  natural    = scene.peridynamics.flux_treatment == FluxTreatment::natural;
-    const auto &conditions = scene.boundary_conditions;
-    for (const BoundaryShare &share : bonds.nodes().boundary_shares())
+    const bool        natural    = scene.peridynamics.flux_treatment == FluxTreatment::natural;
+    const auto       &conditions = scene.boundary_conditions;
+    const Nodes<dim> &nodes      = bonds.nodes();
+    for (const BoundaryShare &share : nodes.condition_shares())
       {
         // Prescribed nodes have no equation, but what enters there counts in the balance of heat.
         if (constraints->kind(share.node) == NodeConstraints<dim>::slave)
@@ -108,15 +109,16 @@ namespace PeriDeal
         const auto *flux       = BoundaryConditions<dim>::find(conditions.flux, share.id);
         const auto *convection = BoundaryConditions<dim>::find(conditions.convection, share.id);
         if (flux != nullptr && natural)
-          fluxes.push_back({share.node, share.area, flux});
+          fluxes.push_back({share.node, share.area, flux, nodes.place_of(share)});
         if (convection != nullptr)
-          {
-            convections.push_back({share.node, share.area, convection});
-            convection_diagonal.emplace_back(
-              share.node,
-              share.area * convection->coefficient.value(bonds.nodes().position(share.node)));
-          }
+          convections.push_back({share.node, share.area, convection, nodes.place_of(share)});
       }
+    std::stable_sort(convections.begin(),
+                     convections.end(),
+                     [](const SideLoad &a, const SideLoad &b) { return a.node < b.node; });
+    for (const SideLoad &load : convections)
+      convection_diagonal.emplace_back(load.node,
+                                       load.area * load.condition->coefficient.value(load.place));
   }
 
 
@@ -280,7 +282,7 @@ namespace PeriDeal
     ++applications;
     u.update_ghost_values();
     fictitious_values(u, t, outside_values);
-    entering_now = through_sides(u, outside_values.data()) + through_slaves(t) + free_loads;
+    entering_now         = through_sides(u, outside_values.data()) + through_slaves(t) + free_loads;
     double       *values = r.begin();
     const double *loads  = constant_loads.size() > 0 ? constant_loads.begin() : nullptr;
     form->apply(values,
@@ -333,11 +335,11 @@ namespace PeriDeal
       for (unsigned int i = 0; i < nodes.n_owned(); ++i)
         add(i, nodes.volume(i) * source.value(nodes.position(i), t));
     for (const SideLoad &load : fluxes)
-      add(load.node, load.area * load.condition->value.value(nodes.position(load.node), t));
+      add(load.node, load.area * load.condition->value.value(load.place, t));
     for (std::size_t k = 0; k < convections.size(); ++k)
       add(convections[k].node,
           convection_diagonal[k].second *
-            convections[k].condition->value.value(nodes.position(convections[k].node), t));
+            convections[k].condition->value.value(convections[k].place, t));
     return sum;
   }
 

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/operators/condition_faces.h>
 #include <perideal/operators/displacement_conditions.h>
 #include <perideal/scene/beyond_sides.h>
 
@@ -45,21 +46,25 @@ namespace PeriDeal
           found = d;
       AssertThrow(found < dim,
                   UserError("'Symmetry' in section 'Boundary conditions': the side '" +
-                            name_of_side(side, false) + "' is not normal to an axis."));
+                            scene.boundary_conditions.name_of(side) +
+                            "' is not normal to an axis."));
       return found;
     }
 
 
     /** Whether a place is within `Displacement layer` of a side of the box. */
     template <int dim>
-    bool is_in_layer(const Point<dim> &p, const types::boundary_id side, const Scene<dim> &scene)
+    bool is_in_layer(Point<dim> p, const types::boundary_id id, const Scene<dim> &scene)
     {
       const Domain<dim> &domain   = scene.domain;
+      const auto         side     = scene.boundary_conditions.side_of(id);
       const unsigned int axis     = side / 2;
       const double       width    = domain.upper[axis] - domain.lower[axis];
       const double       distance = side % 2 == 0 ? p[axis] - domain.lower[axis] :
                                                     domain.upper[axis] - p[axis];
-      return distance <= scene.boundary_conditions.displacement_layer + 1e-9 * width;
+      p[axis]                     = side % 2 == 0 ? domain.lower[axis] : domain.upper[axis];
+      return distance <= scene.boundary_conditions.displacement_layer + 1e-9 * width &&
+             scene.boundary_conditions.holds_at(id, p);
     }
   } // namespace
 
@@ -71,10 +76,10 @@ namespace PeriDeal
                                                       const MPI_Comm communicator)
   {
     const auto &conditions = scene.boundary_conditions;
-    const bool  box        = scene.domain.shape != Shape::mesh_file;
     const bool  at_centers = scene.domain.nodes == NodePlacement::cell_centers;
     const auto  beyond     = beyond_sides(scene);
     std::map<unsigned int, Prescribed> found;
+    std::vector<unsigned long long>    n_nodes(conditions.displacement.size(), 0), n_held(n_nodes);
     const auto require = [&](const types::boundary_id side, const std::string &entry) {
       const bool any = std::any_of(nodes.begin(), nodes.end(), [&](const NodeOnSide<dim> &node) {
         return node.side == side;
@@ -82,19 +87,28 @@ namespace PeriDeal
       AssertThrow(Utilities::MPI::max(any ? 1 : 0, communicator) > 0,
                   UserError("'" + entry +
                             "' in section 'Boundary conditions': no node lies on the side '" +
-                            name_of_side(side, box) + "'."));
+                            conditions.name_of(side) + "'."));
     };
-    for (const VectorCondition &condition : conditions.displacement)
+    for (std::size_t k = 0; k < conditions.displacement.size(); ++k)
       {
-        require(condition.id, "Displacement");
+        const VectorCondition &condition = conditions.displacement[k];
+        if (conditions.part(condition.id) == nullptr)
+          require(condition.id, condition.rate ? "Velocity" : "Displacement");
         for (unsigned int d = 0; d < dim; ++d)
           if (condition.values[d])
             {
-              varies          = varies || condition.values[d]->depends_on_time();
+              varies          = varies || condition.rate || condition.values[d]->depends_on_time();
               const auto hold = [&](const unsigned int node, const Point<dim> &position) {
-                found.try_emplace(
-                  dim * node + d,
-                  Prescribed{dim * node + d, condition.id, &*condition.values[d], position});
+                ++n_nodes[k];
+                if (condition.holds(d, position))
+                  n_held[k] += found
+                                 .try_emplace(dim * node + d,
+                                              Prescribed{dim * node + d,
+                                                         condition.id,
+                                                         &*condition.values[d],
+                                                         position,
+                                                         condition.rate})
+                                 .second;
               };
               for (const NodeOnSide<dim> &node : nodes)
                 if (node.side == condition.id)
@@ -105,6 +119,12 @@ namespace PeriDeal
                   hold(i, positions[i]);
             }
       }
+    require_held_parts(conditions,
+                       conditions.displacement,
+                       n_nodes,
+                       n_held,
+                       "Displacement",
+                       communicator);
     for (const types::boundary_id side : conditions.symmetry)
       {
         require(side, "Symmetry");
@@ -147,8 +167,20 @@ namespace PeriDeal
   void DisplacementConditions<dim>::distribute(Vector &u, const double t) const
   {
     for (const Prescribed &entry : prescribed)
-      u.local_element(entry.unknown) =
-        entry.value == nullptr ? 0. : entry.value->value(entry.position, t);
+      u.local_element(entry.unknown) = entry.value == nullptr ? 0. :
+                                       entry.rate             ? moved(entry, t) :
+                                                                entry.value->value(entry.position, t);
+  }
+
+
+  template <int dim>
+  double DisplacementConditions<dim>::moved(const Prescribed &entry, const double t) const
+  {
+    if (t < entry.time) // another beginning
+      entry.time = entry.way = 0.;
+    entry.way += integral_over_time(*entry.value, entry.position, entry.time, t);
+    entry.time = t;
+    return entry.way;
   }
 
 
@@ -196,8 +228,7 @@ namespace PeriDeal
     };
     result.body = total(numbers::internal_face_boundary_id);
     for (const types::boundary_id side : sides)
-      if (const std::string name = name_of_side(side, scene.domain.shape != Shape::mesh_file);
-          result.sides.count(name) == 0)
+      if (const std::string name = conditions.name_of(side); result.sides.count(name) == 0)
         result.sides[name] = total(side);
     return result;
   }

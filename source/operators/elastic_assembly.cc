@@ -200,18 +200,25 @@ namespace PeriDeal
           }
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary())
-            for (const VectorCondition &condition : scene.boundary_conditions.traction)
-              if (condition.id == cell->face(f)->boundary_id())
-                {
-                  data.face_values.reinit(cell, f);
-                  add(
-                    data.face_values,
-                    [&](const unsigned int d) -> const Expression & {
-                      return *condition.values[d];
-                    },
-                    condition.id);
-                }
+            condition_faces.for_each(
+              scene.boundary_conditions.traction,
+              cell,
+              f,
+              data.face_values,
+              [&](const VectorCondition &condition, const auto &values) {
+                add(
+                  values,
+                  [&](const unsigned int d) -> const Expression & { return *condition.values[d]; },
+                  condition.id);
+              });
       }
+    for (const PartUnknown<dim> &unknown : part_unknowns)
+      for (const VectorCondition &condition : scene.boundary_conditions.traction)
+        for (unsigned int d = 0; condition.id == unknown.id && d < dim; ++d)
+          visit(condition.id,
+                dim * nodes->local_to_global(unknown.node) + d,
+                d,
+                unknown.share * condition.values[d]->value(unknown.position, t));
   }
 
 

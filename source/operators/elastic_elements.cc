@@ -29,6 +29,7 @@ namespace PeriDeal
     : dofs(dof_handler)
     , scene(scene)
     , coupling(std::move(given_coupling))
+    , condition_faces(dofs, scene.boundary_conditions)
   {
     IndexSet relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
@@ -124,8 +125,15 @@ namespace PeriDeal
                   const unsigned int       node = nodes->global_to_local(indices[i]);
                   if (seen.try_emplace({side, node}).second)
                     on_sides.push_back({node, side, positions[node]});
+                  for (const Part &part : scene.boundary_conditions.parts)
+                    if (part.side == side && part.holds(positions[node]) &&
+                        seen.try_emplace({part.id, node}).second)
+                      on_sides.push_back({node, part.id, positions[node]});
                 }
       }
+    part_unknowns = unknowns_of_parts(dofs, scene.boundary_conditions);
+    for (const PartUnknown<dim> &unknown : part_unknowns)
+      on_sides.push_back({unknown.node, unknown.id, unknown.position});
     const std::vector<Point<dim>> own(positions.begin(),
                                       positions.begin() + nodes->locally_owned_size());
     conditions =

@@ -177,22 +177,22 @@ namespace PeriDeal
       coupling->finish_cell(cell, data.stiffness);
     for (const unsigned int f : cell->face_indices())
       if (cell->face(f)->at_boundary())
-        if (const auto *condition =
-              BoundaryConditions<dim>::find(scene.boundary_conditions.convection,
-                                            cell->face(f)->boundary_id()))
-          {
-            data.face_values.reinit(cell, f);
-            for (const unsigned int q : data.face_values.quadrature_point_indices())
-              {
-                const double h =
-                  condition->coefficient.value(data.face_values.quadrature_point(q)) *
-                  data.face_values.JxW(q);
-                for (unsigned int i = 0; i < n; ++i)
-                  for (unsigned int j = 0; j < n; ++j)
-                    data.convection(i, j) +=
-                      h * data.face_values.shape_value(i, q) * data.face_values.shape_value(j, q);
-              }
-          }
+        condition_faces.for_each(scene.boundary_conditions.convection,
+                                 cell,
+                                 f,
+                                 data.face_values,
+                                 [&](const SideCondition &condition, const auto &values) {
+                                   for (const unsigned int q : values.quadrature_point_indices())
+                                     {
+                                       const double h =
+                                         condition.coefficient.value(values.quadrature_point(q)) *
+                                         values.JxW(q);
+                                       for (unsigned int i = 0; i < n; ++i)
+                                         for (unsigned int j = 0; j < n; ++j)
+                                           data.convection(i, j) += h * values.shape_value(i, q) *
+                                                                    values.shape_value(j, q);
+                                     }
+                                 });
     cell->get_dof_indices(data.indices);
   }
 
@@ -368,25 +368,38 @@ namespace PeriDeal
           {
             if (!cell->face(f)->at_boundary())
               continue;
-            const auto  id   = cell->face(f)->boundary_id();
-            const auto *flux = BoundaryConditions<dim>::find(scene.boundary_conditions.flux, id);
-            const auto *convection =
-              BoundaryConditions<dim>::find(scene.boundary_conditions.convection, id);
-            if (flux == nullptr && convection == nullptr)
-              continue;
-            data.face_values.reinit(cell, f);
-            for (const unsigned int q : data.face_values.quadrature_point_indices())
-              {
-                const Point<dim> &p        = data.face_values.quadrature_point(q);
-                double            entering = flux != nullptr ? flux->value.value(p, t) : 0.;
-                if (convection != nullptr)
-                  entering += convection->coefficient.value(p) * convection->value.value(p, t);
-                for (unsigned int i = 0; i < data.indices.size(); ++i)
-                  loads(data.indices[i]) +=
-                    entering * data.face_values.shape_value(i, q) * data.face_values.JxW(q);
-              }
+            const auto add = [&](const auto &values, const auto &entering) {
+              for (const unsigned int q : values.quadrature_point_indices())
+                {
+                  const double heat = entering(values.quadrature_point(q)) * values.JxW(q);
+                  for (unsigned int i = 0; i < data.indices.size(); ++i)
+                    loads(data.indices[i]) += heat * values.shape_value(i, q);
+                }
+            };
+            const auto &conditions = scene.boundary_conditions;
+            condition_faces.for_each(
+              conditions.flux,
+              cell,
+              f,
+              data.face_values,
+              [&](const SideCondition &flux, const auto &values) {
+                add(values, [&](const Point<dim> &p) { return flux.value.value(p, t); });
+              });
+            condition_faces.for_each(conditions.convection,
+                                     cell,
+                                     f,
+                                     data.face_values,
+                                     [&](const SideCondition &convection, const auto &values) {
+                                       add(values, [&](const Point<dim> &p) {
+                                         return convection.coefficient.value(p) *
+                                                convection.value.value(p, t);
+                                       });
+                                     });
           }
       }
+    for_each_part_flux([&](const PartUnknown<dim> &unknown, const SideCondition &flux) {
+      loads.local_element(unknown.node) += unknown.share * flux.value.value(unknown.position, t);
+    });
     loads.compress(VectorOperation::add);
     condense(loads);
   }
@@ -397,10 +410,9 @@ namespace PeriDeal
                                                   const double  t,
                                                   Balance      &balance) const
   {
-    const Expression   &source     = scene.initial_and_source.source;
-    const bool          any_source = !source.is_constant() || source.value(Point<dim>()) != 0.;
-    CellData           &data       = *cell_data;
-    std::vector<double> temperature(data.face_values.n_quadrature_points);
+    const Expression &source     = scene.initial_and_source.source;
+    const bool        any_source = !source.is_constant() || source.value(Point<dim>()) != 0.;
+    CellData         &data       = *cell_data;
     u.update_ghost_values();
     for (const auto &cell : dofs.active_cell_iterators())
       {
@@ -417,26 +429,40 @@ namespace PeriDeal
           {
             if (!cell->face(f)->at_boundary())
               continue;
-            const auto  id   = cell->face(f)->boundary_id();
-            const auto *flux = BoundaryConditions<dim>::find(scene.boundary_conditions.flux, id);
-            const auto *convection =
-              BoundaryConditions<dim>::find(scene.boundary_conditions.convection, id);
-            if (flux == nullptr && convection == nullptr)
-              continue;
-            data.face_values.reinit(cell, f);
-            data.face_values.get_function_values(u, temperature);
-            for (const unsigned int q : data.face_values.quadrature_point_indices())
-              {
-                const Point<dim> &p = data.face_values.quadrature_point(q);
-                if (flux != nullptr)
-                  balance.sides[flux->name] += flux->value.value(p, t) * data.face_values.JxW(q);
-                if (convection != nullptr)
-                  balance.sides[convection->name] +=
-                    convection->coefficient.value(p) *
-                    (convection->value.value(p, t) - temperature[q]) * data.face_values.JxW(q);
-              }
+            const auto &conditions = scene.boundary_conditions;
+            condition_faces.for_each(
+              conditions.flux,
+              cell,
+              f,
+              data.face_values,
+              [&](const SideCondition &flux, const auto &values) {
+                for (const unsigned int q : values.quadrature_point_indices())
+                  balance.sides[flux.name] +=
+                    flux.value.value(values.quadrature_point(q), t) * values.JxW(q);
+              });
+            cell->get_dof_indices(data.indices);
+            condition_faces.for_each(
+              conditions.convection,
+              cell,
+              f,
+              data.face_values,
+              [&](const SideCondition &convection, const auto &values) {
+                for (const unsigned int q : values.quadrature_point_indices())
+                  {
+                    const Point<dim> &p           = values.quadrature_point(q);
+                    double            temperature = 0.;
+                    for (unsigned int i = 0; i < data.indices.size(); ++i)
+                      temperature += u(data.indices[i]) * values.shape_value(i, q);
+                    balance.sides[convection.name] += convection.coefficient.value(p) *
+                                                      (convection.value.value(p, t) - temperature) *
+                                                      values.JxW(q);
+                  }
+              });
           }
       }
+    for_each_part_flux([&](const PartUnknown<dim> &unknown, const SideCondition &flux) {
+      balance.sides[flux.name] += unknown.share * flux.value.value(unknown.position, t);
+    });
     u.set_ghost_state(false);
   }
 

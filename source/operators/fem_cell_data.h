@@ -72,4 +72,16 @@ namespace PeriDeal
     FactorData factors;
     LocalBound bound;
   };
+
+
+  /** Call visit(unknown, flux) for the regions and points in `Flux`. */
+  template <int dim>
+  template <typename Visit>
+  void FEMOperator<dim>::for_each_part_flux(const Visit &visit) const
+  {
+    for (const PartUnknown<dim> &unknown : part_unknowns)
+      for (const SideCondition &flux : scene.boundary_conditions.flux)
+        if (flux.id == unknown.id)
+          visit(unknown, flux);
+  }
 } // namespace PeriDeal

@@ -144,19 +144,21 @@ namespace PeriDeal
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned() && cell->at_boundary())
         for (const unsigned int f : cell->face_indices())
-          if (const auto *condition =
-                cell->face(f)->at_boundary() ?
-                  BoundaryConditions<dim>::find(scene.boundary_conditions.convection,
-                                                cell->face(f)->boundary_id()) :
-                  nullptr)
+          if (cell->face(f)->at_boundary())
             {
-              data.face_values.reinit(cell, f);
               cell->get_dof_indices(data.indices);
-              for (const unsigned int q : data.face_values.quadrature_point_indices())
-                for (unsigned int i = 0; i < data.indices.size(); ++i)
-                  sums(data.indices[i]) +=
-                    condition->coefficient.value(data.face_values.quadrature_point(q)) *
-                    data.face_values.JxW(q) * data.face_values.shape_value(i, q);
+              condition_faces.for_each(
+                scene.boundary_conditions.convection,
+                cell,
+                f,
+                data.face_values,
+                [&](const SideCondition &condition, const auto &values) {
+                  for (const unsigned int q : values.quadrature_point_indices())
+                    for (unsigned int i = 0; i < data.indices.size(); ++i)
+                      sums(data.indices[i]) +=
+                        condition.coefficient.value(values.quadrature_point(q)) * values.JxW(q) *
+                        values.shape_value(i, q);
+                });
             }
     sums.compress(VectorOperation::add);
     condense(sums);

@@ -30,6 +30,7 @@ namespace PeriDeal
     , cracks_of(history.representative(start))
     , cracks(make_crack_geometries(history.pieces(cracks_of)))
     , transmission(history.transmission(cracks_of))
+    , condition_faces(dofs, scene.boundary_conditions)
   {
     if (this->coupling && start > 0.)
       this->coupling->set_cracks_of(cracks_of);
@@ -63,7 +64,13 @@ namespace PeriDeal
     std::vector<types::global_dof_index> indices(fe.n_dofs_per_cell());
     // For each dof the place in the list of the condition that holds: the one named first.
     std::map<unsigned int, std::pair<unsigned int, Point<dim>>> found;
-    const auto &dirichlet = scene.boundary_conditions.dirichlet;
+    const auto                     &dirichlet = scene.boundary_conditions.dirichlet;
+    std::vector<unsigned long long> n_nodes(dirichlet.size(), 0);
+    const auto hold = [&](const unsigned int dof, const unsigned int k, const Point<dim> &p) {
+      const auto [entry, is_new] = found.try_emplace(dof, k, p);
+      entry->second.first        = std::min(entry->second.first, k);
+      ++n_nodes[k];
+    };
     for (const auto &cell : dofs.active_cell_iterators())
       {
         if (cell->is_artificial() || !cell->at_boundary())
@@ -71,22 +78,37 @@ namespace PeriDeal
         cell->get_dof_indices(indices);
         for (const unsigned int f : cell->face_indices())
           for (unsigned int k = 0; k < dirichlet.size(); ++k)
-            if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() == dirichlet[k].id)
+            if (cell->face(f)->at_boundary() &&
+                scene.boundary_conditions.side_of(dirichlet[k].id) == cell->face(f)->boundary_id())
               for (unsigned int i = 0; i < indices.size(); ++i)
                 if (fe.has_support_on_face(i, f) && layout.in_local_range(indices[i]) &&
                     !(any_hanging && constraints.is_constrained(indices[i])))
                   {
                     const Point<dim> p =
                       MappingQ1<dim>().transform_unit_to_real_cell(cell, fe.unit_support_point(i));
-                    const auto [entry, is_new] =
-                      found.try_emplace(layout.get_partitioner()->global_to_local(indices[i]),
-                                        k,
-                                        p);
-                    entry->second.first = std::min(entry->second.first, k);
+                    if (scene.boundary_conditions.holds_at(dirichlet[k].id, p))
+                      hold(layout.get_partitioner()->global_to_local(indices[i]), k, p);
                   }
       }
+    part_unknowns = unknowns_of_parts(dofs, scene.boundary_conditions);
+    for (const PartUnknown<dim> &unknown : part_unknowns)
+      for (unsigned int k = 0; k < dirichlet.size(); ++k)
+        if (dirichlet[k].id == unknown.id &&
+            !(any_hanging &&
+              constraints.is_constrained(layout.get_partitioner()->local_to_global(unknown.node))))
+          hold(unknown.node, k, unknown.position);
+    std::vector<unsigned long long> n_held(dirichlet.size(), 0);
     for (const auto &[dof, entry] : found)
-      prescribed.push_back({dof, entry.second, &dirichlet[entry.first]});
+      {
+        prescribed.push_back({dof, entry.second, &dirichlet[entry.first]});
+        ++n_held[entry.first];
+      }
+    require_held_parts(scene.boundary_conditions,
+                       dirichlet,
+                       n_nodes,
+                       n_held,
+                       "Dirichlet",
+                       dofs.get_communicator());
     for (const Prescribed &entry : prescribed)
       held.push_back(entry.dof);
     for (const HangingNode &node : hanging)

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/operators/condition_faces.h>
 #include <perideal/operators/node_constraints.h>
 
 #include <algorithm>
@@ -23,6 +24,7 @@ namespace PeriDeal
     , kinds(nodes.n_local(), free)
   {
     find_prescribed(scene);
+    check_parts(families, scene);
     find_slaves(families, scene);
     prescribed_exist = Utilities::MPI::max(prescribed_list.empty() ? 0 : 1, nodes.communicator()) >
                        0;
@@ -34,16 +36,17 @@ namespace PeriDeal
 
   namespace
   {
-    /** Of the listed sides, the first in the list on which each owned node lies. */
+    /** Of the listed sides and parts, the first in the list on which each owned node lies, or (partial) some of its area. */
     template <int dim>
     std::map<unsigned int, const SideCondition *> first_sides(
       const Nodes<dim>                 &nodes,
-      const std::vector<SideCondition> &list)
+      const std::vector<SideCondition> &list,
+      const bool                        with_partial = false)
     {
       std::map<unsigned int, const SideCondition *> first;
       for (const SideCondition &condition : list)
-        for (const BoundaryShare &share : nodes.boundary_shares())
-          if (share.id == condition.id)
+        for (const BoundaryShare &share : nodes.condition_shares())
+          if (share.id == condition.id && (share.inside || with_partial))
             first.try_emplace(share.node, &condition);
       return first;
     }
@@ -63,22 +66,29 @@ namespace PeriDeal
           nodes.lattice(),
           UserError(
             "'Boundary treatment = layer' in section 'Peridynamics' needs the lattice of a box."));
-        const Lattice<dim>    &lattice = *nodes.lattice();
-        std::set<unsigned int> rim; // of a hole, which has no lattice rows: its own nodes
-        for (const BoundaryShare &share : nodes.boundary_shares())
-          if (share.id == hole_boundary_id)
-            rim.insert(share.node);
+        const Lattice<dim> &lattice = *nodes.lattice();
+        // Of a hole, which has no lattice rows, the nodes on it
+        // and of parts that are no sides of the box
+        std::set<std::pair<unsigned int, types::boundary_id>> own;
+        const auto &conditions = scene.boundary_conditions;
+        for (const BoundaryShare &share : nodes.condition_shares())
+          if (share.inside && conditions.side_of(share.id) >= 2 * dim)
+            own.insert({share.node, share.id});
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
           {
             const auto site = lattice.index(nodes.position(i));
             for (const SideCondition &condition : dirichlet)
               {
-                const unsigned int d     = condition.id == hole_boundary_id ? 0 : condition.id / 2;
-                const int          depth = condition.id % 2 == 0 ? site[d] :
-                                                                   lattice.n_sites[d] - 1 - site[d];
-                if (condition.id == hole_boundary_id ?
-                      rim.count(i) > 0 :
-                      depth < static_cast<int>(scene.peridynamics.layer_rows))
+                const types::boundary_id side    = conditions.side_of(condition.id);
+                const bool               on_side = side < 2 * dim;
+                const unsigned int       d       = on_side ? side / 2 : 0;
+                const int  depth = side % 2 == 0 ? site[d] : lattice.n_sites[d] - 1 - site[d];
+                Point<dim> foot  = nodes.position(i);
+                if (on_side)
+                  foot[d] = side % 2 == 0 ? lattice.lower[d] : lattice.upper[d];
+                if (on_side ? depth < static_cast<int>(scene.peridynamics.layer_rows) &&
+                                conditions.holds_at(condition.id, foot) :
+                              own.count({i, condition.id}) > 0)
                   {
                     prescribed_list.push_back({i, &condition});
                     break;
@@ -86,11 +96,33 @@ namespace PeriDeal
               }
           }
       }
-    else if (!fictitious || !nodes.lattice() || !nodes.lattice()->at_centers)
+    else
+      // Beyond the sides of a lattice of cell centres it is the fictitious nodes that have the values.
       for (const auto &[node, condition] : first_sides(nodes, dirichlet))
-        prescribed_list.push_back({node, condition});
+        if (!fictitious || !nodes.lattice() || !nodes.lattice()->at_centers ||
+            scene.boundary_conditions.side_of(condition->id) >= 2 * dim)
+          prescribed_list.push_back({node, condition});
     for (const Prescribed &entry : prescribed_list)
       kinds[entry.node] = prescribed;
+  }
+
+
+  template <int dim>
+  void NodeConstraints<dim>::check_parts(const Families<dim> &families,
+                                         const Scene<dim>    &scene) const
+  {
+    const BoundaryConditions<dim>  &conditions = scene.boundary_conditions;
+    const auto                     &dirichlet  = conditions.dirichlet;
+    std::vector<unsigned long long> n_nodes(dirichlet.size(), 0), n_held(dirichlet.size(), 0);
+    for (const BoundaryShare &share : nodes.condition_shares())
+      for (std::size_t k = 0; k < dirichlet.size(); ++k)
+        n_nodes[k] += share.inside && share.id == dirichlet[k].id ? 1 : 0;
+    for (const Prescribed &entry : prescribed_list)
+      ++n_held[entry.condition - dirichlet.data()];
+    for (const FictitiousNode<dim> &node : families.fictitious())
+      for (const auto &term : node.terms)
+        ++n_held[term.condition - dirichlet.data()];
+    require_held_parts(conditions, dirichlet, n_nodes, n_held, "Dirichlet", nodes.communicator());
   }
 
 
@@ -110,14 +142,15 @@ namespace PeriDeal
       for (const SideCondition &condition : scene.boundary_conditions.flux)
         message = extrapolate_layer(families, condition.id, scene);
     else
-      for (const auto &[node, condition] : first_sides(nodes, scene.boundary_conditions.flux))
+      for (const auto &[node, condition] : first_sides(nodes, scene.boundary_conditions.flux, true))
         if (kinds[node] == free)
           {
-            Slave slave;
+            const unsigned int side = scene.boundary_conditions.side_of(condition->id);
+            Slave              slave;
             slave.node              = node;
-            slave.condition         = condition;
-            const std::string fault = extrapolate(families, condition->id, slave);
+            const std::string fault = extrapolate(families, side, condition->name, slave);
             message                 = message.empty() ? fault : message;
+            add_fluxes(scene.boundary_conditions, side, slave);
             slaves.push_back(slave);
           }
     throw_on_all_if_any(nodes.communicator(), message);
@@ -127,8 +160,28 @@ namespace PeriDeal
 
 
   template <int dim>
+  void NodeConstraints<dim>::add_fluxes(const BoundaryConditions<dim> &conditions,
+                                        const unsigned int             side,
+                                        Slave                         &slave) const
+  {
+    double whole = 0.;
+    for (const BoundaryShare &share : nodes.boundary_shares())
+      if (share.node == slave.node && share.id == side)
+        whole = share.area;
+    for (const BoundaryShare &share : nodes.condition_shares())
+      if (share.node == slave.node && conditions.side_of(share.id) == side)
+        if (const SideCondition *const flux = conditions.find(conditions.flux, share.id))
+          slave.fluxes.push_back({flux,
+                                  share.id == side ? slave.flux_coefficient :
+                                                     slave.flux_coefficient * share.area / whole,
+                                  nodes.place_of(share)});
+  }
+
+
+  template <int dim>
   std::string NodeConstraints<dim>::extrapolate(const Families<dim> &families,
                                                 const unsigned int   side,
+                                                const std::string   &name,
                                                 Slave               &slave) const
   {
     std::vector<typename Families<dim>::Bond> bonds;
@@ -152,8 +205,8 @@ namespace PeriDeal
           << "'Flux treatment = extrapolation' in section 'Peridynamics' needs bonds from every node of a side named in "
              "'Flux' into the body, but the node at ("
           << nodes.position(slave.node)
-          << ") has none left. Move the cracks in section 'Cracks' away from the side '"
-          << slave.condition->name << "', or choose 'natural'.";
+          << ") has none left. Move the cracks in section 'Cracks' away from the side '" << name
+          << "', or choose 'natural'.";
         return message.str();
       }
     for (auto &[neighbor, weight] : slave.masters)
@@ -186,9 +239,9 @@ namespace PeriDeal
         Assert(master != numbers::invalid_unsigned_int, ExcInternalError());
         Slave slave;
         slave.node             = i;
-        slave.condition        = flux;
         slave.masters          = {{master, 1.}};
         slave.flux_coefficient = (rows - depth) * lattice.spacing[0] / families.conductivity(i);
+        slave.fluxes           = {{flux, slave.flux_coefficient, nodes.position(i)}};
         slaves.push_back(slave);
       }
     return "";
@@ -268,9 +321,9 @@ namespace PeriDeal
     coupled_loads.setZero();
     for (const Slave &entry : slaves)
       {
-        double value = homogeneous ? 0. :
-                                     entry.flux_coefficient *
-                                       entry.condition->value.value(nodes.position(entry.node), t);
+        double value = 0.;
+        for (const SlaveFlux &flux : entry.fluxes)
+          value += homogeneous ? 0. : flux.coefficient * flux.condition->value.value(flux.place, t);
         for (const auto &[master, coefficient] : entry.masters)
           value += coefficient * u.local_element(master);
         if (entry.coupled >= 0)

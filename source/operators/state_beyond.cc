@@ -37,6 +37,8 @@ namespace PeriDeal
         };
       for (TractionShare<dim> &share : tractions)
         {
+          if (share.side >= 2 * dim)
+            continue; // a part: the outermost row bears what it is given
           loaded[share.side] = true;
           if (sides[share.side] == BeyondSide::continued &&
               next(share.node, share.side, 1) != numbers::invalid_unsigned_int)

@@ -22,13 +22,14 @@ namespace PeriDeal
   template <int dim>
   StateOperator<dim>::StateOperator(Nodes<dim> &nodes, const Scene<dim> &scene)
     : scene(scene)
-    , bonds(nodes, scene)
+    , bonds(nodes.find_parts(scene.boundary_conditions), scene)
     , unknowns(interleaved(*nodes.partitioner(), dim))
     , full(scene.elasticity.kinematics == Kinematics::full)
   {
     std::vector<NodeOnSide<dim>> on_sides;
-    for (const BoundaryShare &share : nodes.boundary_shares())
-      on_sides.push_back({share.node, share.id, nodes.position(share.node)});
+    for (const BoundaryShare &share : nodes.condition_shares())
+      if (share.inside)
+        on_sides.push_back({share.node, share.id, nodes.position(share.node)});
     std::vector<Point<dim>> positions;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       positions.push_back(nodes.position(i));

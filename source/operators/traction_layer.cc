@@ -86,13 +86,14 @@ namespace PeriDeal
 
     template <int dim>
     void spread(const Nodes<dim>                &nodes,
+                const BoundaryConditions<dim>   &conditions,
                 const types::boundary_id         side,
                 const double                     depth,
                 std::vector<TractionShare<dim>> &shares)
     {
-      const Columns<dim>  columns(*nodes.lattice(), side);
+      const Columns<dim>  columns(*nodes.lattice(), conditions.side_of(side));
       std::vector<double> areas(columns.size(), 0.), volumes(columns.size(), 0.);
-      for (const BoundaryShare &share : nodes.boundary_shares())
+      for (const BoundaryShare &share : nodes.condition_shares())
         if (share.id == side)
           areas[columns.column_of(nodes.position(share.node))] += share.area;
       // A column ends where a node is missing: what lies beyond a hole is not pulled.
@@ -142,14 +143,14 @@ namespace PeriDeal
     for (const VectorCondition &condition : conditions.traction)
       if (conditions.traction_layer > 0.)
         {
-          Assert(nodes.lattice() && condition.id < 2 * dim,
+          Assert(nodes.lattice() && conditions.side_of(condition.id) < 2 * dim,
                  ExcInternalError()); // the scene was checked
-          spread(nodes, condition.id, conditions.traction_layer, shares);
+          spread(nodes, conditions, condition.id, conditions.traction_layer, shares);
         }
       else
-        for (const BoundaryShare &share : nodes.boundary_shares())
+        for (const BoundaryShare &share : nodes.condition_shares())
           if (share.id == condition.id)
-            shares.push_back({share.node, share.id, share.area, nodes.position(share.node)});
+            shares.push_back({share.node, share.id, share.area, nodes.place_of(share)});
     return shares;
   }
 

@@ -48,7 +48,7 @@ namespace PeriDeal
     };
     for (const auto *const list : {&conditions.displacement, &conditions.traction})
       for (const VectorCondition &condition : *list)
-        set(condition.id, BeyondSide::continued);
+        set(conditions.side_of(condition.id), BeyondSide::continued);
     for (const types::boundary_id side : conditions.symmetry)
       set(side, BeyondSide::mirrored);
     for (unsigned int side = 0; side < 2 * dim; ++side)

@@ -29,6 +29,26 @@ namespace PeriDeal
         return PeriDeal::depends_on_time(condition);
       });
     }
+
+
+    std::string unknown_side(const std::string       &name,
+                             std::vector<std::string> known,
+                             const std::vector<Part> &parts,
+                             const bool               box_sides)
+    {
+      std::string text = "unknown side '" + name + "'; the sides ";
+      if (known.empty())
+        text += "of this mesh file are its boundary ids (numbers), it has no physical names.";
+      else
+        text += "are: " + join_names(known) + (box_sides ? "." : ", or boundary ids (numbers).");
+      if (parts.empty())
+        return text + did_you_mean(name, known);
+      std::vector<std::string> of_parts;
+      for (const Part &part : parts)
+        of_parts.push_back(part.name);
+      known.insert(known.end(), of_parts.begin(), of_parts.end());
+      return text + " Parts: " + join_names(of_parts) + "." + did_you_mean(name, known);
+    }
   } // namespace
 
 
@@ -53,8 +73,17 @@ namespace PeriDeal
     : SceneSection("Boundary conditions")
   {
     const std::string sides =
-      " Sides: left, right (x), bottom, top (y), back, front (z), hole, or the boundary ids of a "
-      "mesh file.";
+      " Sides: left, right (x), bottom, top (y), back, front (z), hole; of a mesh file its boundary ids and physical names; "
+      "or names of `Parts`.";
+    declare(
+      "Parts",
+      EntryType::list,
+      "",
+      "",
+      "Places for conditions that are no whole sides, several separated by `;`: `name: SIDE if FORMULA`, what of a side the formula (of x, y, z) is true or "
+      "> 0 on; `name: region FORMULA`, the nodes where it is; `name: point X, Y[, Z]`, the node nearest to the point. The names stand wherever those of sides "
+      "do. `Flux` and `Traction` act on the area of a part of a side; on a region or a point they are the total power or force (in 2D per thickness), shared by its nodes in "
+      "proportion to their volume.");
     declare(
       "Dirichlet",
       EntryType::list,
@@ -90,8 +119,16 @@ namespace PeriDeal
       "",
       "length",
       "Elasticity: given displacements, `side: component, component`, several sides separated by `;`; one component per direction, a formula of "
-      "x, y, z, t or the word `free` where nothing holds it. Where two sides meet, the one named first holds." +
+      "x, y, z, t or the word `free` where nothing holds it, also as a branch, `if(y < 1, 0, free)`, whose condition may not depend on t. Where two sides meet, the one named first "
+      "holds." +
         sides);
+    declare(
+      "Velocity",
+      EntryType::list,
+      "",
+      "length/time",
+      "Elasticity with `Solver = dynamics`: given velocities, written like `Displacement`. What is held so moves by the integral of the "
+      "velocity from time 0 on. Comes after `Displacement` where sides meet.");
     declare(
       "Displacement layer",
       EntryType::text,
@@ -137,43 +174,69 @@ namespace PeriDeal
 
 
   template <int dim>
-  dealii::types::boundary_id BoundaryConditions<dim>::side_id(const std::string &name,
-                                                              const std::string &entry,
-                                                              const bool         box_sides,
-                                                              const bool         hole) const
+  std::vector<std::string> BoundaryConditions<dim>::side_names() const
   {
-    if (!box_sides)
-      {
-        if (name.find_first_not_of("0123456789") != std::string::npos)
-          error(entry,
-                "unknown side '" + name +
-                  "': the sides of a mesh file are its boundary ids (numbers).");
-        return parse_whole_number(name, where(entry));
-      }
-    std::vector<std::string> sides(box_side_names().begin(), box_side_names().begin() + 2 * dim);
-    if (hole)
-      sides.emplace_back("hole");
-    const auto found = std::find(sides.begin(), sides.end(), name);
-    if (found == sides.end())
-      error(entry,
-            "unknown side '" + name + "'; the sides are: " + join_names(sides) + "." +
-              did_you_mean(name, sides));
-    return *found == "hole" ? hole_boundary_id : static_cast<unsigned int>(found - sides.begin());
+    std::vector<std::string> names;
+    if (box_sides)
+      names.assign(box_side_names().begin(), box_side_names().begin() + 2 * dim);
+    if (has_hole)
+      names.emplace_back("hole");
+    for (const auto &[name, id] : physical_names)
+      names.push_back(name);
+    return names;
   }
 
 
   template <int dim>
-  std::vector<SideCondition> BoundaryConditions<dim>::parse_list(const std::string &entry,
-                                                                 const bool         box_sides,
-                                                                 const bool         hole) const
+  dealii::types::boundary_id BoundaryConditions<dim>::side_id(const std::string &name,
+                                                              const std::string &entry,
+                                                              const bool         or_part)
+  {
+    for (const Part &part : parts)
+      if (or_part && part.name == name)
+        return part.id;
+    dealii::types::boundary_id id = 0;
+    if (const auto physical = physical_names.find(name); physical != physical_names.end())
+      id = physical->second;
+    else if (!box_sides && name.find_first_not_of("0123456789") == std::string::npos)
+      id = parse_whole_number(name, where(entry), first_part_id - 1);
+    else
+      {
+        const std::vector<std::string> names = side_names();
+        const auto                     found = std::find(names.begin(), names.end(), name);
+        if (found == names.end() || !box_sides)
+          error(entry, unknown_side(name, names, or_part ? parts : std::vector<Part>(), box_sides));
+        id = name == "hole" ? hole_boundary_id : static_cast<unsigned int>(found - names.begin());
+      }
+    used_names.try_emplace(id, name);
+    return id;
+  }
+
+
+  template <int dim>
+  std::string BoundaryConditions<dim>::name_of(const dealii::types::boundary_id id) const
+  {
+    if (const Part *const of = part(id))
+      return of->name;
+    if (const auto used = used_names.find(id); used != used_names.end())
+      return used->second;
+    for (const auto &[name, physical] : physical_names)
+      if (physical == id)
+        return name;
+    return name_of_side(id, box_sides);
+  }
+
+
+  template <int dim>
+  std::vector<SideCondition> BoundaryConditions<dim>::parse_list(const std::string &entry)
   {
     std::vector<SideCondition> list;
     for (const std::string &piece : split_list(text(entry), ';'))
       {
         const auto    name_value = name_and_value(piece, where(entry));
         SideCondition condition;
-        condition.name       = name_value.first;
-        condition.id         = side_id(condition.name, entry, box_sides, hole);
+        condition.id         = side_id(name_value.first, entry);
+        condition.name       = name_of(condition.id);
         const std::string at = where(entry) + ", side '" + condition.name + "'";
         if (find(list, condition.id) != nullptr)
           error(entry, "the side '" + condition.name + "' is named twice.");
@@ -211,20 +274,26 @@ namespace PeriDeal
   {
     if (const SideCondition *const condition = find(list, id))
       error(entry,
-            "the side '" + condition->name + "' is also named in '" + other_entry +
-              "', which contradicts it.");
+            (part(id) != nullptr ? "the part '" : "the side '") + condition->name +
+              "' is also named in '" + other_entry + "', which contradicts it.");
   }
 
 
   template <int dim>
-  void BoundaryConditions<dim>::parse_symmetry(const bool box_sides, const bool hole)
+  void BoundaryConditions<dim>::parse_symmetry()
   {
     symmetry.clear();
     std::string names = text("Symmetry");
     std::replace(names.begin(), names.end(), ';', ',');
     for (const std::string &name : split_list(names, ','))
       {
-        const dealii::types::boundary_id id = side_id(name, "Symmetry", box_sides, hole);
+        const dealii::types::boundary_id id = side_id(name, "Symmetry");
+        if (part(id) != nullptr)
+          error(
+            "Symmetry",
+            "'" + name +
+              "' is a part; only whole sides can be symmetry planes. With elasticity hold the part by 'Displacement', "
+              "0 normal to it and 'free' along it.");
         if (name == "hole")
           error("Symmetry", "'hole' is not flat: only flat sides can be symmetry planes.");
         if (std::find(symmetry.begin(), symmetry.end(), id) != symmetry.end())
@@ -254,22 +323,29 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BoundaryConditions<dim>::parse(const bool    box_sides,
+  void BoundaryConditions<dim>::parse(const bool    given_box_sides,
                                       const bool    hole,
                                       const Physics physics,
                                       const bool    with_heat)
   {
+    box_sides = given_box_sides;
+    has_hole  = hole;
+    used_names.clear();
     refuse_other_physics(physics, with_heat);
-    dirichlet    = parse_list("Dirichlet", box_sides, hole);
-    flux         = parse_list("Flux", box_sides, hole);
-    convection   = parse_list("Convection", box_sides, hole);
-    displacement = parse_vectors("Displacement", box_sides, hole);
-    traction     = parse_vectors("Traction", box_sides, hole);
-    parse_symmetry(box_sides, hole);
+    parse_parts();
+    dirichlet    = parse_list("Dirichlet");
+    flux         = parse_list("Flux");
+    convection   = parse_list("Convection");
+    displacement = parse_vectors("Displacement");
+    for (const VectorCondition &rate : parse_vectors("Velocity"))
+      displacement.push_back(rate);
+    traction = parse_vectors("Traction");
+    parse_symmetry();
     displacement_layer = parse_layer("Displacement layer");
     traction_layer     = parse_layer("Traction layer");
     check_scalar_conditions();
     check_vector_conditions();
+    check_parts();
   }
 
 

@@ -74,6 +74,59 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    const std::string disc_word = "disc";
+
+
+    bool is_disc(const std::string &piece)
+    {
+      const std::size_t colon = piece.find(':');
+      return colon != std::string::npos && trimmed(piece.substr(0, colon)) == disc_word;
+    }
+
+
+    /** Corners of a polygon in place of a circle. */
+    template <int dim>
+    std::vector<Point<dim>> disc(const std::string &piece, const std::string &where)
+    {
+      constexpr unsigned int    n  = 96;
+      const double              pi = std::acos(-1.);
+      const std::string         at = where + ", disc";
+      const std::vector<double> c  = parse_numbers(name_and_value(piece, where).second,
+                                                  7,
+                                                  "numbers (centre, normal, radius)",
+                                                  at);
+      const Point<3>            center(c[0], c[1], c[2]);
+      Tensor<1, 3>              normal({c[3], c[4], c[5]});
+      if (!(normal.norm() > 0.))
+        entry_error(at, "the normal has no direction: it is 0, 0, 0.");
+      if (!(c[6] > 0.))
+        entry_error(at, "the radius is " + number_text(c[6]) + ", needs one greater than 0.");
+      normal /= normal.norm();
+      // The axis that is least along the normal makes the first direction in the plane.
+      unsigned int axis = 0;
+      for (unsigned int d = 1; d < 3; ++d)
+        if (std::abs(normal[d]) < std::abs(normal[axis]))
+          axis = d;
+      Tensor<1, 3> first = -normal[axis] * normal;
+      first[axis] += 1.;
+      first /= first.norm();
+      const Tensor<1, 3>      second = cross_product_3d(normal, first);
+      const double            radius = c[6] * std::sqrt(2. * pi / n / std::sin(2. * pi / n));
+      std::vector<Point<dim>> corners(n);
+      for (unsigned int k = 0; k < n; ++k)
+        {
+          const double   angle = 2. * pi * k / n;
+          const Point<3> p = center + radius * (std::cos(angle) * first + std::sin(angle) * second);
+          for (unsigned int d = 0; d < dim; ++d)
+            corners[k][d] = p[d];
+        }
+      return corners;
+    }
+  } // namespace
+
+
   template <int dim>
   Cracks<dim>::Cracks()
     : SceneSection("Cracks")
@@ -83,11 +136,13 @@ namespace PeriDeal
             "",
             "length",
             "2D: `start ; end ; start ; end ; ...`, two points a crack.");
-    declare("Polygons",
-            EntryType::list,
-            "",
-            "length",
-            "3D: `corner ; corner ; corner ...`, the next polygon after `|`. Each must be planar.");
+    declare(
+      "Polygons",
+      EntryType::list,
+      "",
+      "length",
+      "3D: `corner ; corner ; corner ...`, the next polygon after `|`. Each must be planar. A round crack is `disc: centre, normal, radius`, seven numbers: a regular "
+      "polygon of 96 corners with the area of the circle, seen counterclockwise from where the normal points to.");
     declare(
       "Mesh",
       EntryType::choice,
@@ -156,7 +211,9 @@ namespace PeriDeal
                        "polygons are cracks of 3D bodies; in 2D give 'Segments'.");
     for (const std::string &piece : split_list(text("Polygons"), '|'))
       {
-        const std::vector<Point<dim>> corners = parse_points<dim>(piece, where("Polygons"));
+        const std::vector<Point<dim>> corners = is_disc(piece) ?
+                                                  disc<dim>(piece, where("Polygons")) :
+                                                  parse_points<dim>(piece, where("Polygons"));
         const std::string name = crack_name(static_cast<unsigned int>(cracks.size()), corners);
         if (corners.size() < 3)
           error("Polygons",

@@ -112,6 +112,13 @@ namespace PeriDeal
       "length",
       "Plate with a hole: its centre. Lattice cells whose centre is nearer than the radius do "
       "not exist. In 3D the hole is a bore along z.");
+    declare(
+      "Holes",
+      EntryType::list,
+      "",
+      "length",
+      "Holes in a box or in a plate with a hole, several separated by `;`: `circle: x, y, radius`, `rectangle: x, y, x, y` (its lower left and its upper right corner) and "
+      "`polygon: x, y, x, y, ...` (its corners). Lattice cells whose centre lies in one do not exist; all their rims are the side `hole`. In 3D they are bores along z.");
     declare("Hole radius",
             EntryType::number,
             "0.25",
@@ -260,6 +267,11 @@ namespace PeriDeal
   template <int dim>
   void Domain<dim>::parse_hole()
   {
+    if (split_list(text("Hole center"), ';').size() > 1)
+      error(
+        "Hole center",
+        "found '" + text("Hole center") +
+          "', which are several points; it is that of one hole. Several go into 'Holes', 'circle: x, y, radius ; circle: ...'.");
     hole_center = parse_point<dim>(text("Hole center"), where("Hole center"));
     hole_radius = number("Hole radius");
     hole_shape  = choice<HoleShape>("Hole shape");
@@ -308,6 +320,8 @@ namespace PeriDeal
       }
     parse_extra_layers();
     parse_hole();
+    has_one_hole = shape == Shape::plate_with_hole;
+    parse_holes_of_list();
     coarsening = whole_number("Coarsening");
     parse_fine_part();
     mesh_file = text("Mesh file");
@@ -322,6 +336,12 @@ namespace PeriDeal
   bool Domain<dim>::in_hole(const Point<dim> &p) const
   {
     if (shape != Shape::plate_with_hole)
+      return false;
+    if (dim > 1 && std::any_of(holes.begin(), holes.end(), [&](const Hole &hole) {
+          return hole.contains(Point<2>(p[0], p[dim > 1]));
+        }))
+      return true;
+    if (!has_one_hole)
       return false;
     Tensor<1, dim> r = p - hole_center;
     if (dim == 3) // the hole of a thick plate is a bore along z

@@ -261,9 +261,12 @@ namespace PeriDeal
                      const std::string     &where,
                      const std::string     &list)
     {
-      if (condition.id >= 2 * dim)
-        entry_error(where, "needs flat sides, and '" + list + "' names 'hole'. Leave it empty.");
-      const unsigned int axis  = condition.id / 2;
+      const types::boundary_id side = scene.boundary_conditions.side_of(condition.id);
+      if (side >= 2 * dim)
+        entry_error(where,
+                    "needs flat sides, and '" + list + "' names '" + condition.name +
+                      "'. Leave it empty.");
+      const unsigned int axis  = side / 2;
       const double       width = scene.domain.upper[axis] - scene.domain.lower[axis];
       if (depth > width)
         entry_error(where,
@@ -310,7 +313,8 @@ namespace PeriDeal
         {
           check_layer(scene, condition, conditions.traction_layer, where, "Traction");
           for (const auto &crack : scene.cracks.cracks)
-            if (distance_to_side(scene, crack, condition.id) < conditions.traction_layer)
+            if (distance_to_side(scene, crack, conditions.side_of(condition.id)) <
+                conditions.traction_layer)
               entry_error(
                 where,
                 "a crack lies within it at the side '" + condition.name +
@@ -359,6 +363,13 @@ namespace PeriDeal
       };
       has_start(loads.initial_displacement, "Initial displacement");
       has_start(loads.initial_velocity, "Initial velocity");
+      for (const VectorCondition &condition : scene.boundary_conditions.displacement)
+        if (condition.rate)
+          entry_error(
+            scene.boundary_conditions.where("Velocity"),
+            "is for motion, but 'Solver' in section 'Elasticity' is '" +
+              scene.elasticity.solver_name() +
+              "', which finds an equilibrium. Use 'dynamics', or 'Displacement' with t in its formula.");
       // With a computed temperature it is the heat problem that is steady.
       if (scene.is_loaded_slowly() && scene.time.steady && !with_heat)
         entry_error(scene.time.where("Steady"), "is true, but there are loads that depend on t.");

@@ -71,6 +71,16 @@ namespace PeriDeal
     }
 
 
+    /** `&&` and `||` as the operators `&` and `|` and a blank, so that columns stay: muparser reads its own as two of ours. */
+    std::string with_single_signs(std::string formula)
+    {
+      for (std::size_t i = 0; i + 1 < formula.size(); ++i)
+        if ((formula[i] == '&' || formula[i] == '|') && formula[i + 1] == formula[i])
+          formula[i + 1] = ' ';
+      return formula;
+    }
+
+
     bool is_name_start(const char c)
     {
       return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
@@ -220,7 +230,7 @@ namespace PeriDeal
     int n_results = 0;
     try
       {
-        parser.SetExpr(formula);
+        parser.SetExpr(with_single_signs(formula));
         // before GetUsedVar(), which takes unknown names for variables
         constant  = parser.Eval();
         n_results = parser.GetNumResults();

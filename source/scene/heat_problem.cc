@@ -22,7 +22,7 @@ namespace PeriDeal
           to[k]->set(entry.name, entry.text);
     problem->general.set("Physics", names_of(Physics::heat).physics);
     for (const char *const entry :
-         {"Displacement", "Displacement layer", "Traction", "Traction layer"})
+         {"Displacement", "Displacement layer", "Velocity", "Traction", "Traction layer"})
       problem->boundary_conditions.set(entry, "");
     for (const char *const entry : {"Body force", "Initial displacement", "Initial velocity"})
       problem->initial_and_source.set(entry, "");

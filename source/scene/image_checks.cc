@@ -71,7 +71,7 @@ namespace PeriDeal
     }
 
 
-    /** What holds on a side of the body: components of the displacement, or in component 0 a value of what diffuses. */
+    /** What holds on a side of the body or a part of it: components of the displacement, or in component 0 a value of what diffuses. */
     std::array<bool, 2> held_on_side(const Scene<2> &scene, const types::boundary_id side)
     {
       const auto         &conditions = scene.boundary_conditions;
@@ -79,7 +79,7 @@ namespace PeriDeal
       if (is_elastic(scene))
         {
           for (const VectorCondition &condition : conditions.displacement)
-            if (condition.id == side)
+            if (conditions.side_of(condition.id) == side)
               for (unsigned int d = 0; d < 2; ++d)
                 held[d] = held[d] || condition.values[d].has_value();
           for (const types::boundary_id id : conditions.symmetry)
@@ -87,8 +87,9 @@ namespace PeriDeal
               held[id / 2] = true;
         }
       else
-        held[0] = BoundaryConditions<2>::find(conditions.dirichlet, side) != nullptr ||
-                  BoundaryConditions<2>::find(conditions.convection, side) != nullptr;
+        for (const auto *const list : {&conditions.dirichlet, &conditions.convection})
+          for (const SideCondition &condition : *list)
+            held[0] = held[0] || conditions.side_of(condition.id) == side;
       return held;
     }
 

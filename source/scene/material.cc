@@ -16,11 +16,12 @@ namespace PeriDeal
       "1",
       "power/(length temperature)",
       "Thermal conductivity, diffusivity (moisture) or electrical conductivity: a number or a formula of x, y, z and T, the temperature (wetness, potential) itself.");
-    declare("Density",
-            EntryType::formula,
-            "1",
-            "mass/length^3",
-            "Ignored when steady, and by elasticity unless its solver is `dynamics`; may be 0 then.");
+    declare(
+      "Density",
+      EntryType::formula,
+      "1",
+      "mass/length^3",
+      "Ignored when steady, and by elasticity unless its solver is `dynamics`; may be 0 then.");
     declare(
       "Heat capacity",
       EntryType::formula,
@@ -155,9 +156,9 @@ namespace PeriDeal
     stores                    = !(physics == Physics::electricity && is_zero(capacity));
     conductivity              = property("Conductivity");
     density                   = property("Density");
-    heat_capacity           = phases.property("Heat capacity", capacity);
-    saturated_concentration = property("Saturated concentration");
-    interface_rule          = choice<InterfaceRule>("Interface rule");
+    heat_capacity             = phases.property("Heat capacity", capacity);
+    saturated_concentration   = property("Saturated concentration");
+    interface_rule            = choice<InterfaceRule>("Interface rule");
     if (conductivity.depends_on_temperature() && interface_rule == InterfaceRule::harmonic)
       error(
         "Interface rule",
@@ -220,9 +221,7 @@ namespace PeriDeal
     source        = Expression(text("Source"), where("Source"));
     body_force.clear();
     if (!text("Body force").empty())
-      for (const auto &value :
-           parse_components(text("Body force"), dim, false, where("Body force")))
-        body_force.push_back(*value);
+      body_force = parse_vector(text("Body force"), dim, where("Body force"));
 
     const bool elastic = physics == Physics::elasticity;
     for (auto *const list : {&initial_displacement, &initial_velocity})
@@ -235,12 +234,10 @@ namespace PeriDeal
         if (!elastic)
           error(entry,
                 "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");
-        for (const auto &value : parse_components(text(entry), dim, false, where(entry)))
-          {
-            if (value->depends_on_time())
-              error(entry, "'" + value->text() + "' depends on t; known variables here: x, y, z.");
-            list->push_back(*value);
-          }
+        *list = parse_vector(text(entry), dim, where(entry));
+        for (const Expression &value : *list)
+          if (value.depends_on_time())
+            error(entry, "'" + value.text() + "' depends on t; known variables here: x, y, z.");
       }
     const std::string or_computed = ", or 'Temperature change = computed' in section 'Elasticity'.";
     if (elastic && !with_heat && is_given("Initial value"))

@@ -5,6 +5,7 @@
 #include <perideal/scene/scene.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -17,8 +18,9 @@ namespace PeriDeal
     /** A component of the displacement that a side holds. */
     struct Held
     {
-      types::boundary_id side;
-      unsigned int       component;
+      types::boundary_id     side;
+      unsigned int           component;
+      const VectorCondition *condition; // null: symmetry
     };
 
 
@@ -29,10 +31,10 @@ namespace PeriDeal
       for (const VectorCondition &condition : scene.boundary_conditions.displacement)
         for (unsigned int c = 0; c < dim; ++c)
           if (condition.values[c])
-            list.push_back({condition.id, c});
+            list.push_back({condition.id, c, &condition});
       if (scene.domain.shape != Shape::mesh_file)
         for (const types::boundary_id side : scene.boundary_conditions.symmetry)
-          list.push_back({side, side / 2});
+          list.push_back({side, side / 2, nullptr});
       return list;
     }
 
@@ -49,13 +51,71 @@ namespace PeriDeal
             {
               const bool up = (k >> d) % 2 == 1;
               p[d]          = up ? domain.upper[d] : domain.lower[d];
-              if (side == hole_boundary_id && d < 2 && !domain.image)
+              if (side == hole_boundary_id && d < 2 && domain.has_one_hole)
                 p[d] = domain.hole_center[d] + (up ? 1. : -1.) * domain.hole_radius;
+              else if (side == hole_boundary_id && d < 2 && !domain.holes.empty())
+                {
+                  const auto box = domain.holes.front().box();
+                  p[d]           = up ? box.second[d] : box.first[d];
+                }
             }
           if (side == hole_boundary_id || (k >> (side / 2)) % 2 == side % 2)
             points.push_back(p);
         }
       return points;
+    }
+
+
+    /**
+     * Some of the places of a lattice, at most 40 along each direction, where a condition on a part, or one that is free elsewhere, holds a
+     * component. If it holds in none of them: corners of the body, since what is not seen is not to be refused.
+     */
+    template <int dim>
+    std::vector<Point<dim>> held_points(const Scene<dim> &scene, const Held &held)
+    {
+      constexpr unsigned int         most       = 40;
+      const BoundaryConditions<dim> &conditions = scene.boundary_conditions;
+      const Domain<dim>             &domain     = scene.domain;
+      const Part *const              part       = conditions.part(held.side);
+      const types::boundary_id       side       = conditions.side_of(held.side);
+      if (part != nullptr && part->kind == Part::point)
+        return {part->template position<dim>()};
+      std::vector<Point<dim>>       points;
+      std::array<unsigned int, dim> n;
+      unsigned int                  count = 1;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          n[d] = side < 2 * dim && d == side / 2 ? 1 : std::min(domain.cells[d], most) + 1;
+          count *= n[d];
+        }
+      for (unsigned int k = 0; k < count; ++k)
+        {
+          Point<dim>   p;
+          unsigned int rest = k;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double s = n[d] == 1 ? side % 2 : double(rest % n[d]) / (n[d] - 1);
+              p[d]           = domain.lower[d] + s * (domain.upper[d] - domain.lower[d]);
+              rest /= n[d];
+            }
+          if (conditions.holds_at(held.side, p) && held.condition->holds(held.component, p))
+            points.push_back(p);
+        }
+      if (points.empty())
+        for (unsigned int k = 0; k < (1u << dim); ++k)
+          {
+            Point<dim> corner;
+            for (unsigned int d = 0; d < dim; ++d)
+              corner[d] = (k >> d) % 2 == 1 ? domain.upper[d] : domain.lower[d];
+            points.push_back(corner);
+          }
+      constexpr std::size_t enough = 200;
+      if (points.size() <= enough)
+        return points;
+      std::vector<Point<dim>> some;
+      for (std::size_t k = 0; k < enough; ++k)
+        some.push_back(points[k * (points.size() - 1) / (enough - 1)]);
+      return some;
     }
 
 
@@ -119,7 +179,11 @@ namespace PeriDeal
     const double       size   = (domain.upper - domain.lower).norm();
     Eigen::MatrixXd    rows(0, n_motions(dim));
     for (const Held &entry : held)
-      for (const Point<dim> &p : points_of_side(domain, entry.side))
+      for (const Point<dim> &p :
+           entry.condition != nullptr && (scene.boundary_conditions.part(entry.side) != nullptr ||
+                                          entry.condition->held[entry.component]) ?
+             held_points(scene, entry) :
+             points_of_side(domain, entry.side))
         {
           rows.conservativeResize(rows.rows() + 1, Eigen::NoChange);
           // about the middle of the body and in units of its size, so that all motions are alike

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/lists.h>
+#include <perideal/scene/physical_names.h>
 #include <perideal/scene/scene.h>
 
 #include <algorithm>
@@ -141,11 +142,21 @@ namespace PeriDeal
     template <int dim>
     void check_combinations(const Scene<dim> &scene)
     {
-      const BoundaryConditions<dim> &bc = scene.boundary_conditions;
-      if (runs(scene, Model::peridynamics) &&
-          scene.peridynamics.flux_treatment != FluxTreatment::natural)
+      const BoundaryConditions<dim> &bc        = scene.boundary_conditions;
+      const FluxTreatment            treatment = scene.peridynamics.flux_treatment;
+      if (runs(scene, Model::peridynamics) && treatment != FluxTreatment::natural)
         for (const SideCondition &condition : bc.flux)
-          if (BoundaryConditions<dim>::find(bc.convection, condition.id) != nullptr)
+          if (const Part *const part = bc.part(condition.id);
+              part != nullptr &&
+              (part->kind != Part::of_side || treatment == FluxTreatment::layer_extrapolation))
+            entry_error(bc.where("Flux"),
+                        "the part '" + condition.name +
+                          "' is not for 'Flux treatment' in section 'Peridynamics' = " +
+                          (part->kind != Part::of_side ?
+                             "extrapolation, which is for sides and their parts." :
+                             "layer extrapolation, which is for whole sides.") +
+                          " Use 'natural'.");
+          else if (BoundaryConditions<dim>::find(bc.convection, condition.id) != nullptr)
             entry_error(
               bc.where("Convection"),
               "the side '" + condition.name +
@@ -298,6 +309,10 @@ namespace PeriDeal
                    domain.image,
                    general.physics == Physics::elasticity ? !elasticity.is_static() : !time.steady);
     initial_and_source.parse(general.physics, dim, elasticity.computes_temperature);
+    boundary_conditions.physical_names.clear();
+    if (!domain.mesh_file.empty())
+      boundary_conditions.physical_names =
+        read_physical_names(domain.mesh_file, domain.scene_folder, dim, domain.communicator);
     boundary_conditions.parse(domain.shape != Shape::mesh_file,
                               domain.shape == Shape::plate_with_hole ||
                                 (domain.image && domain.image->has_voids()),

@@ -7,12 +7,30 @@
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 
 namespace PeriDeal
 {
   namespace
   {
     const std::string free_word = "free";
+
+
+    /** Whether the word `free` is in a text, not as a part of a longer word. */
+    bool has_free(const std::string &text)
+    {
+      const auto in_word = [&](const std::size_t i) {
+        return i < text.size() &&
+               (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_');
+      };
+      for (std::size_t at = text.find(free_word); at != std::string::npos;
+           at             = text.find(free_word, at + 1))
+        if ((at == 0 || !in_word(at - 1)) && !in_word(at + free_word.size()))
+          return true;
+      return false;
+    }
+
 
     std::string component_name(const unsigned int c)
     {
@@ -23,9 +41,16 @@ namespace PeriDeal
 
   bool VectorCondition::depends_on_time() const
   {
-    return std::any_of(values.begin(), values.end(), [](const auto &value) {
-      return value && value->depends_on_time();
-    });
+    return rate || std::any_of(values.begin(), values.end(), [](const auto &value) {
+             return value && value->depends_on_time();
+           });
+  }
+
+
+  template <int dim>
+  bool VectorCondition::holds(const unsigned int component, const dealii::Point<dim> &p) const
+  {
+    return values[component] && (!held[component] || held[component]->value(p) > 0.);
   }
 
 
@@ -45,10 +70,38 @@ namespace PeriDeal
   }
 
 
-  std::vector<std::optional<Expression>> parse_components(const std::string &text,
-                                                          const unsigned int dim,
-                                                          const bool         may_be_free,
-                                                          const std::string &where)
+  FreeBranch split_free(const std::string &text, const std::string &where)
+  {
+    if (!has_free(text))
+      return {text, ""};
+    if (trimmed(text) == free_word)
+      return {"0", "0"};
+    const std::string inner     = trimmed(text);
+    const std::size_t open      = inner.find('(');
+    const bool        is_branch = open != std::string::npos && inner.back() == ')' &&
+                           trimmed(inner.substr(0, open)) == "if";
+    const std::vector<std::string> pieces =
+      is_branch ? split_list(inner.substr(open + 1, inner.size() - open - 2), ',') :
+                  std::vector<std::string>();
+    if (pieces.size() != 3 || has_free(pieces[0]))
+      entry_error(
+        where,
+        "found '" + inner +
+          "'; 'free' stands alone or as a branch of its own: if(condition, formula, free).");
+    const FreeBranch a = split_free(pieces[1], where), b = split_free(pieces[2], where);
+    const auto       joined = [&](const std::string &first, const std::string &second) {
+      return "if(" + pieces[0] + ", " + first + ", " + second + ")";
+    };
+    return {joined(a.value, b.value),
+            joined(a.held.empty() ? "1" : a.held, b.held.empty() ? "1" : b.held)};
+  }
+
+
+  void parse_components(const std::string &text,
+                        const unsigned int dim,
+                        const bool         may_be_free,
+                        const std::string &where,
+                        VectorCondition   &condition)
   {
     const std::vector<std::string> pieces = split_list(text, ',');
     if (pieces.size() != dim)
@@ -57,19 +110,33 @@ namespace PeriDeal
                     (dim == 1 ? " component" : " components separated by commas") +
                     (may_be_free ? ", a formula or 'free' each." :
                                    ", a formula" + std::string(dim == 1 ? "." : " each.")));
-    std::vector<std::optional<Expression>> values(dim);
+    condition.values.assign(dim, {});
+    condition.held.assign(dim, {});
+    condition.texts = pieces;
     for (unsigned int c = 0; c < dim; ++c)
       {
-        const bool free = pieces[c] == free_word;
-        if (free && !may_be_free)
+        const std::string at = where + ", component in " + component_name(c);
+        if (has_free(pieces[c]) && !may_be_free)
           entry_error(
             where,
             "'free' stands for displacements that nothing holds; give 0 for the component in " +
               component_name(c) + ".");
-        if (!free)
-          values[c] = Expression(pieces[c], where + ", component in " + component_name(c));
+        const FreeBranch branch = split_free(pieces[c], at);
+        if (pieces[c] == free_word)
+          continue;
+        condition.values[c] = Expression(branch.value, at);
+        if (branch.held.empty())
+          continue;
+        condition.held[c] = Expression(branch.held, at);
+        if (condition.held[c]->depends_on_time())
+          entry_error(
+            at,
+            "found '" + pieces[c] +
+              "', where a component is free at some times only; the condition may depend on x, y, z.");
+        if (condition.held[c]->is_constant() && condition.held[c]->value(dealii::Point<1>()) == 0.)
+          entry_error(at, "'" + pieces[c] + "' is free everywhere; write 'free'.");
       }
-    if (std::none_of(values.begin(), values.end(), [](const auto &value) {
+    if (std::none_of(condition.values.begin(), condition.values.end(), [](const auto &value) {
           return value.has_value();
         }))
       entry_error(
@@ -77,28 +144,89 @@ namespace PeriDeal
         dim == 1 ?
           "is free, which is an empty grip: leave the side out, or give its displacement." :
           "all components are free, which is an empty grip: leave the side out, or give a component its displacement.");
-    return values;
+  }
+
+
+  std::vector<Expression> parse_vector(const std::string &text,
+                                       const unsigned int dim,
+                                       const std::string &where)
+  {
+    VectorCondition condition;
+    parse_components(text, dim, false, where, condition);
+    std::vector<Expression> list;
+    for (const auto &value : condition.values)
+      list.push_back(*value);
+    return list;
+  }
+
+
+  namespace
+  {
+    /** Simpson's rule, halved until two halves agree with the whole. */
+    template <typename Function>
+    double simpson(const Function    &f,
+                   const double       a,
+                   const double       b,
+                   const double       at_a,
+                   const double       at_middle,
+                   const double       at_b,
+                   const unsigned int left)
+    {
+      const double middle = 0.5 * (a + b), whole = (b - a) / 6. * (at_a + 4. * at_middle + at_b);
+      const double of_left = f(0.5 * (a + middle)), of_right = f(0.5 * (middle + b));
+      const double halves =
+        (b - a) / 12. * (at_a + 4. * of_left + 2. * at_middle + 4. * of_right + at_b);
+      const double size = (b - a) * std::max({std::abs(at_a), std::abs(at_middle), std::abs(at_b)});
+      if (left == 0 || std::abs(halves - whole) <= 1e-11 * size)
+        return halves + (halves - whole) / 15.;
+      return simpson(f, a, middle, at_a, of_left, at_middle, left - 1) +
+             simpson(f, middle, b, at_middle, of_right, at_b, left - 1);
+    }
+  } // namespace
+
+
+  template <int dim>
+  double integral_over_time(const Expression         &rate,
+                            const dealii::Point<dim> &p,
+                            const double              from,
+                            const double              to)
+  {
+    if (!rate.depends_on_time())
+      return rate.value(p) * (to - from);
+    if (from == to)
+      return 0.;
+    const auto             f    = [&](const double t) { return rate.value(p, t); };
+    constexpr unsigned int most = 40, // halvings: enough for a jump
+      n_pieces                  = 4;  // so that what lasts shortly is seen
+    double sum                  = 0.;
+    for (unsigned int k = 0; k < n_pieces; ++k)
+      {
+        const double a = from + (to - from) * k / n_pieces,
+                     b = from + (to - from) * (k + 1) / n_pieces;
+        sum += simpson(f, a, b, f(a), f(0.5 * (a + b)), f(b), most);
+      }
+    return sum;
   }
 
 
   template <int dim>
-  std::vector<VectorCondition> BoundaryConditions<dim>::parse_vectors(const std::string &entry,
-                                                                      const bool         box_sides,
-                                                                      const bool         hole) const
+  std::vector<VectorCondition> BoundaryConditions<dim>::parse_vectors(const std::string &entry)
   {
     std::vector<VectorCondition> list;
     for (const std::string &piece : split_list(text(entry), ';'))
       {
         const auto      name_value = name_and_value(piece, where(entry));
         VectorCondition condition;
-        condition.name = name_value.first;
-        condition.id   = side_id(condition.name, entry, box_sides, hole);
+        condition.id   = side_id(name_value.first, entry);
+        condition.name = name_of(condition.id);
+        condition.rate = entry == "Velocity";
         if (find_condition(list, condition.id) != nullptr)
           error(entry, "the side '" + condition.name + "' is named twice.");
-        condition.values = parse_components(name_value.second,
-                                            dim,
-                                            entry == "Displacement",
-                                            where(entry) + ", side '" + condition.name + "'");
+        parse_components(name_value.second,
+                         dim,
+                         entry != "Traction",
+                         where(entry) + ", side '" + condition.name + "'",
+                         condition);
         list.push_back(condition);
       }
     return list;
@@ -128,6 +256,7 @@ namespace PeriDeal
         return;
       }
     refuse("Displacement", "'Dirichlet'");
+    refuse("Velocity", "'Dirichlet'");
     refuse("Traction", "'Flux'");
     refuse("Displacement layer", "'Boundary treatment' in section 'Peridynamics'");
     refuse("Traction layer", "'Flux treatment' in section 'Peridynamics'");
@@ -143,37 +272,48 @@ namespace PeriDeal
       error("Traction layer", "has no effect: no side is named in 'Traction'.");
     for (const VectorCondition &load : traction)
       {
-        const VectorCondition *const grip = find_condition(displacement, load.id);
-        for (unsigned int c = 0; grip != nullptr && c < dim; ++c)
-          if (grip->values[c] && !is_zero(*load.values[c]))
-            error(
-              "Traction",
-              "the side '" + load.name + "' has a displacement in " + component_name(c) +
-                " by 'Displacement'; a traction in the same direction contradicts it. Give 0 for that component, or make the "
-                "displacement 'free' there.");
-        if (std::find(symmetry.begin(), symmetry.end(), load.id) != symmetry.end() &&
+        for (const VectorCondition &grip : displacement)
+          for (unsigned int c = 0; grip.id == load.id && c < dim; ++c)
+            if (grip.values[c] && !grip.held[c] && !is_zero(*load.values[c]))
+              error(
+                "Traction",
+                "the side '" + load.name + "' has a displacement in " + component_name(c) +
+                  " by '" + (grip.rate ? "Velocity" : "Displacement") +
+                  "'; a traction in the same direction contradicts it. Give 0 for that component, or make the "
+                  "displacement 'free' there.");
+        if (std::find(symmetry.begin(), symmetry.end(), side_of(load.id)) != symmetry.end() &&
             !std::all_of(load.values.begin(), load.values.end(), [](const auto &value) {
               return is_zero(*value);
             }))
           error(
             "Traction",
-            "the side '" + load.name +
+            "the side '" + name_of(side_of(load.id)) +
               "' is also named in 'Symmetry', which contradicts it: a symmetry plane carries no load of its own.");
       }
+    for (const VectorCondition &rate : displacement)
+      for (const VectorCondition &grip : displacement)
+        for (unsigned int c = 0; rate.rate && !grip.rate && grip.id == rate.id && c < dim; ++c)
+          if (rate.values[c] && grip.values[c] && !rate.held[c] && !grip.held[c])
+            error("Velocity",
+                  "the side '" + rate.name + "' has a displacement in " + component_name(c) +
+                    " by 'Displacement', which contradicts it. Make one of the two 'free' there.");
     for (const VectorCondition &grip : displacement)
-      if (std::find(symmetry.begin(), symmetry.end(), grip.id) != symmetry.end())
+      if (std::find(symmetry.begin(), symmetry.end(), side_of(grip.id)) != symmetry.end())
         error(
           "Displacement",
-          "the side '" + grip.name +
+          "the side '" + name_of(side_of(grip.id)) +
             "' is also named in 'Symmetry', which holds its normal displacement and leaves the others free. Name it in one of the two.");
   }
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                               \
+  template bool   VectorCondition::holds(const unsigned int, const dealii::Point<dim> &) const; \
+  template double integral_over_time(const Expression &,                                        \
+                                     const dealii::Point<dim> &,                                \
+                                     const double,                                              \
+                                     const double);                                             \
   template std::vector<VectorCondition> BoundaryConditions<dim>::parse_vectors(                 \
-    const std::string &,                                                                        \
-    const bool,                                                                                 \
-    const bool) const;                                                                          \
+    const std::string &);                                                                       \
   template void BoundaryConditions<dim>::refuse_other_physics(const Physics, const bool) const; \
   template void BoundaryConditions<dim>::check_vector_conditions() const;
   PERIDEAL_INSTANTIATE(1)

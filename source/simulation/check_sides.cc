@@ -40,8 +40,7 @@ namespace PeriDeal
 
     /** The boundary ids of the body on all processes, without those of cracks. Collective. */
     template <int dim>
-    std::set<types::boundary_id> sides_of(const Scene<dim>         &scene,
-                                          const Triangulation<dim> &mesh)
+    std::set<types::boundary_id> sides_of(const Scene<dim> &scene, const Triangulation<dim> &mesh)
     {
       std::set<types::boundary_id> present;
       std::string                  message;
@@ -69,22 +68,24 @@ namespace PeriDeal
   void check_sides(const Scene<dim> &scene, const Triangulation<dim> &mesh)
   {
     const std::set<types::boundary_id> present = sides_of(scene, mesh);
+    check_overlaps(scene, mesh);
     if (scene.domain.shape == Shape::box)
       return;
     const bool               from_file = scene.domain.shape == Shape::mesh_file;
     std::vector<std::string> known;
     for (const auto id : present)
-      known.push_back(name_of_side(id, !from_file));
+      known.push_back(scene.boundary_conditions.name_of(id));
     const auto check =
       [&](const std::string &entry, const types::boundary_id id, const std::string &name) {
         AssertThrow(
-          present.count(id) > 0,
-          UserError("'" + entry + "' in section 'Boundary conditions' names the side '" + name +
-                    (from_file ?
-                       "', which the mesh '" + scene.domain.mesh_file +
-                         "' does not have. Its boundary ids are: " :
-                       "', but the hole in section 'Domain' leaves nothing of it. Sides that there are: ") +
-                    join_names(known) + "."));
+          id >= first_part_id || present.count(id) > 0,
+          UserError(
+            "'" + entry + "' in section 'Boundary conditions' names the side '" + name +
+            (from_file ?
+               "', which the mesh '" + scene.domain.mesh_file +
+                 "' does not have. Its boundary ids and names are: " :
+               "', but the hole in section 'Domain' leaves nothing of it. Sides that there are: ") +
+            join_names(known) + "."));
       };
     const auto check_all = [&](const std::string &entry, const auto &list) {
       for (const auto &condition : list)
@@ -97,7 +98,10 @@ namespace PeriDeal
     check_all("Displacement", conditions.displacement);
     check_all("Traction", conditions.traction);
     for (const auto id : conditions.symmetry)
-      check("Symmetry", id, name_of_side(id, !from_file));
+      check("Symmetry", id, conditions.name_of(id));
+    for (const Part &part : conditions.parts)
+      if (part.kind == Part::of_side)
+        check("Parts", part.side, conditions.name_of(part.side));
   }
 
 

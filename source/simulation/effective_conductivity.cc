@@ -23,7 +23,8 @@ namespace PeriDeal
         }))
       return {};
     const SideCondition &a = bc.dirichlet[0], &b = bc.dirichlet[1];
-    if (a.id / 2 != b.id / 2 || a.id == b.id || !a.value.is_constant() || !b.value.is_constant())
+    if (a.id >= 2 * dim || a.id / 2 != b.id / 2 || a.id == b.id || !a.value.is_constant() ||
+        !b.value.is_constant())
       return {};
     const double difference = a.value.value(Point<dim>()) - b.value.value(Point<dim>());
     if (difference == 0.)

@@ -156,7 +156,7 @@ namespace PeriDeal
                Utilities::MPI::sum(volume, handler.get_communicator());
       }
 
-      std::vector<StressIntensity> stress_intensities() const override
+      std::vector<StressIntensity> stress_intensities(const double time) const override
       {
         std::vector<StressIntensity> list;
         if constexpr (dim == 2)
@@ -177,8 +177,12 @@ namespace PeriDeal
                             for (unsigned int a = 0; a < 2; ++a)
                               for (unsigned int b = a; b < 2; ++b)
                                 in_plane[a][b] = s[a][b];
+                            const auto  &given = scene.initial_and_source.body_force;
+                            Tensor<1, 2> force;
+                            for (unsigned int a = 0; a < 2 && !given.empty(); ++a)
+                              force[a] = given[a].value(p, time);
                             for (CrackEndIntegral &end : ends)
-                              end.add(p, values.JxW(q), gradient, in_plane);
+                              end.add(p, values.JxW(q), gradient, in_plane, force);
                           });
             for (const CrackEndIntegral &end : ends)
               list.push_back(end.result(handler.get_communicator()));

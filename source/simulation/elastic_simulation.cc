@@ -194,17 +194,18 @@ namespace PeriDeal
       record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
                         full_precision(value) + "\n";
     };
-    const ForceBalance balance = model.op().forces(model.displacement, t);
-    const double       energy  = model.op().energy(model.displacement);
-    const SymmetricTensor<2, 3> mean = model.mean_stress();
-    require_finite({{"largest displacement", model.displacement.linfty_norm()},
-                    {"strain energy", energy},
-                    {"sum of the forces", balance.throughput()},
-                    {"mean stress", von_mises(mean)}},
-                   model.name(),
-                   t,
-                   "Numbers beyond 1e308 came up. Check the sizes and units of loads and displacements (sections 'Boundary conditions' and 'Initial and source') and of the "
-                   "moduli (section 'Material').");
+    const ForceBalance          balance = model.op().forces(model.displacement, t);
+    const double                energy  = model.op().energy(model.displacement);
+    const SymmetricTensor<2, 3> mean    = model.mean_stress();
+    require_finite(
+      {{"largest displacement", model.displacement.linfty_norm()},
+       {"strain energy", energy},
+       {"sum of the forces", balance.throughput()},
+       {"mean stress", von_mises(mean)}},
+      model.name(),
+      t,
+      "Numbers beyond 1e308 came up. Check the sizes and units of loads and displacements (sections 'Boundary conditions' and 'Initial and source') and of the "
+      "moduli (section 'Material').");
     row("strain energy", energy);
     for (const auto &[side, force] : balance.sides)
       for (unsigned int d = 0; d < dim; ++d)
@@ -225,7 +226,7 @@ namespace PeriDeal
           }
     stress["von mises"]         = von_mises(mean);
     nlohmann::ordered_json ends = nlohmann::ordered_json::object();
-    for (const StressIntensity &end : model.stress_intensities())
+    for (const StressIntensity &end : model.stress_intensities(t))
       {
         row("J-integral at " + end.name, end.j);
         row("stress intensity I at " + end.name, end.mode_1);
@@ -240,8 +241,8 @@ namespace PeriDeal
       record->balances[model.name()]["energy balance"] = add_energies(model, t);
     if (!model.stepper)
       {
-        model.force_scale = std::max(model.force_scale,
-                                     find_force_scale(model, scene, balance.throughput()));
+        model.force_scale =
+          std::max(model.force_scale, find_force_scale(model, scene, balance.throughput()));
         record->balances[model.name()]["force balance"] = {{"throughput", balance.throughput()},
                                                            {"imbalance", balance.imbalance()},
                                                            {"scale", model.force_scale}};

@@ -23,8 +23,8 @@ namespace PeriDeal
     std::string text_of(const VectorCondition &condition)
     {
       std::string text;
-      for (const auto &value : condition.values)
-        text += (text.empty() ? "" : ", ") + (value ? value->text() : std::string("free"));
+      for (const std::string &component : condition.texts)
+        text += (text.empty() ? "" : ", ") + component;
       return text;
     }
 
@@ -62,7 +62,9 @@ namespace PeriDeal
       for (const auto &value : condition.values)
         try
           {
-            values.push_back(value ? json(value->value(p, t)) : json());
+            values.push_back(!value         ? json() :
+                             condition.rate ? json(integral_over_time(*value, p, 0., t)) :
+                                              json(value->value(p, t)));
           }
         catch (const UserError &) // no number at this point, which the run need not use
           {
@@ -103,9 +105,9 @@ namespace PeriDeal
         sides[name] = text;
     };
     for (const auto side : conditions.symmetry)
-      add(name_of_side(side, box_sides), "symmetry");
+      add(conditions.name_of(side), "symmetry");
     for (const VectorCondition &c : conditions.displacement)
-      add(c.name, "displacement " + text_of(c));
+      add(c.name, (c.rate ? "velocity " : "displacement ") + text_of(c));
     for (const VectorCondition &c : conditions.traction)
       add(c.name, "traction " + text_of(c));
     for (const SideCondition &c : conditions.dirichlet)
@@ -240,19 +242,17 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                            \
-  template json describe_elastic_sides(const Scene<dim> &);                                  \
-  template json values_on_sides(const Scene<dim> &,                                          \
-                                const Point<dim> &,                                          \
-                                const Point<dim> &,                                          \
-                                const double);                                               \
-  template double find_force_scale(const ElasticRun<dim> &,                                  \
-                                   const Scene<dim> &,                                       \
-                                   const double);                                            \
-  template void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &, \
-                                      const Domain<dim> &,                                   \
-                                      const double,                                          \
-                                      json &);
+#define PERIDEAL_INSTANTIATE(dim)                                                              \
+  template json   describe_elastic_sides(const Scene<dim> &);                                  \
+  template json   values_on_sides(const Scene<dim> &,                                          \
+                                  const Point<dim> &,                                          \
+                                  const Point<dim> &,                                          \
+                                  const double);                                               \
+  template double find_force_scale(const ElasticRun<dim> &, const Scene<dim> &, const double); \
+  template void   compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &, \
+                                        const Domain<dim> &,                                   \
+                                        const double,                                          \
+                                        json &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

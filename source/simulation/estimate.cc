@@ -47,14 +47,17 @@ namespace PeriDeal
     }
 
 
-    /** What a round or square hole, turned or not, leaves of a plate at least. */
+    /** What holes leave of a plate at least; a round or square one may be turned. */
     template <int dim>
     double share_of_body(const Domain<dim> &domain)
     {
       double whole = 1.;
       for (int d = 0; d < std::min(dim, 2); ++d)
         whole *= domain.upper[d] - domain.lower[d];
-      return std::max(0., 1. - 4. * domain.hole_radius * domain.hole_radius / whole);
+      double holes = domain.has_one_hole ? 4. * domain.hole_radius * domain.hole_radius : 0.;
+      for (const Hole &hole : domain.holes)
+        holes += hole.area();
+      return std::max(0., 1. - holes / whole);
     }
 
 

@@ -46,7 +46,7 @@ namespace PeriDeal
       for (const SideCondition &c : conditions.convection)
         add(c.name, "convection " + c.coefficient.text() + ", " + c.value.text());
       for (const auto side : conditions.symmetry)
-        add(name_of_side(side, scene.domain.shape != Shape::mesh_file), "symmetry");
+        add(conditions.name_of(side), "symmetry");
       return sides;
     }
 

@@ -40,6 +40,9 @@ STEADY = {"Time/Steady": "true"}
 CRACK = {"Cracks/Segments": "0.25,0.5 ; 0.75,0.5"}
 ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "200", "Material/Poisson ratio": "0.3", "Boundary conditions/Dirichlet": "",
            "Boundary conditions/Displacement": "left: 0, 0"}
+PARTS, DIRICHLET = "Boundary conditions/Parts", "Boundary conditions/Dirichlet"
+HOT = {DIRICHLET: "bottom: 0; a: 1"}
+BLOCK = {"Dimension": "3", "Domain/Lower corner": "0, 0, 0", "Domain/Upper corner": "1, 1, 1", "Domain/Cells": "4, 4, 4", "Output/Probes": ""}
 MOTION = {**ELASTIC, "Elasticity/Solver": "dynamics"}
 
 QUADS = """$MeshFormat
@@ -223,6 +226,36 @@ def scene_mistakes(folder):
         ("extrapolated flux with convection", {"Boundary conditions/Flux": "left: 1", "Boundary conditions/Convection": "left: 4, 20",
                                                "Peridynamics/Flux treatment": "extrapolation"},
          ["'Convection'", "'left'", "'Flux treatment'", "'natural'"]),
+        # parts
+        ("part of no form", {PARTS: "a: top", **HOT}, ["'Parts'", "part 'a'", "found 'top'", "'SIDE if FORMULA'"]),
+        ("part of an unknown side", {PARTS: "a: topp if x > 0.5", **HOT}, ["'Parts'", "'topp'", "Did you mean 'top'?"]),
+        ("part with a wrong formula", {PARTS: "a: top if x > ", **HOT}, ["'Parts'", "part 'a'", "column", "ends too early"]),
+        ("part that moves", {PARTS: "a: top if x > t", **HOT}, ["'Parts'", "part 'a'", "depends on t"]),
+        ("part that holds nowhere", {PARTS: "a: region 0", **HOT}, ["'Parts'", "part 'a'", "is empty"]),
+        ("part with the name of a side", {PARTS: "left: top if x > 0.5"}, ["'Parts'", "'left'", "name of a side"]),
+        ("part twice", {PARTS: "a: top if x > 0.5 ; a: point 0, 0", **HOT}, ["'Parts'", "'a' is named twice"]),
+        ("point of three coordinates", {PARTS: "a: point 0, 0, 0", **HOT}, ["'Parts'", "part 'a'", "2 coordinates"]),
+        ("unknown part", {PARTS: "load: top if x > 0.5", DIRICHLET: "bottom: 0; laod: 1"}, ["'Dirichlet'", "'laod'", "Parts: load", "Did you mean 'load'?"]),
+        ("convection of a region", {PARTS: "a: region x > 0.5", "Boundary conditions/Convection": "a: 1, 2"}, ["'Convection'", "'a'", "no area", "'Flux'"]),
+        ("symmetry of a part", {PARTS: "a: left if y > 0.5", "Boundary conditions/Symmetry": "a"}, ["'Symmetry'", "'a'", "whole sides"]),
+        ("values on a part of a plane of symmetry", {PARTS: "a: left if y > 0.5", **HOT, "Boundary conditions/Symmetry": "left"}, ["'Dirichlet'", "'a'", "'left'", "'Symmetry'"]),
+        ("extrapolated flux of a region", {PARTS: "a: region x > 0.5", "Boundary conditions/Flux": "a: 1", "Peridynamics/Flux treatment": "extrapolation"},
+         ["'Flux'", "'a'", "'natural'"]),
+        ("free in a sum", {**ELASTIC, "Boundary conditions/Displacement": "left: 0, 0 ; top: 1 + if(x > 0.5, 0, free), 0"}, ["'Displacement'", "'top'", "component in x", "if(condition, formula, free)"]),
+        ("free at some times", {**ELASTIC, "Boundary conditions/Displacement": "left: 0, 0 ; top: if(t > 0.5, 0, free), 0"}, ["'Displacement'", "'top'", "at some times"]),
+        ("free in a traction", {**ELASTIC, "Boundary conditions/Traction": "right: if(y > 0.5, 0, free), 0"}, ["'Traction'", "'right'", "'free'"]),
+        ("velocity at rest", {**ELASTIC, "Boundary conditions/Velocity": "right: 1, free"}, ["'Velocity'", "'Solver'", "'dynamics'"]),
+        ("velocity of heat", {"Boundary conditions/Velocity": "right: 1, free"}, ["'Velocity'", "'Physics = elasticity'"]),
+        ("velocity and displacement", {**MOTION, "Boundary conditions/Velocity": "left: 1, free"}, ["'Velocity'", "'left'", "displacement in x"]),
+        # holes
+        ("hole of an unknown form", {"Domain/Holes": "circl: 0.5, 0.5, 0.2"}, ["'Holes'", "Did you mean 'circle'?"]),
+        ("circle without a radius among holes", {"Domain/Holes": "circle: 0.5, 0.5"}, ["'Holes'", "circle", "x, y, radius"]),
+        ("rectangle inside out", {"Domain/Holes": "rectangle: 0.5, 0.5, 0.2, 0.7"}, ["'Holes'", "rectangle", "second corner"]),
+        ("hole smaller than a cell", {"Domain/Holes": "circle: 0.5, 0.5, 0.01"}, ["'Holes'", "no centre of a cell", "'Cells'"]),
+        ("holes in a mesh file", mesh_scene(folder, "m12.msh", whole, {"Domain/Holes": "circle: 0.5, 0.5, 0.2"}.items()), ["'Holes'", "mesh file"]),
+        ("two centres of a hole", {"Domain/Shape": "plate with hole", "Domain/Hole center": "0.3,0.3 ; 0.7,0.7"}, ["'Hole center'", "'Holes'"]),
+        ("disc without a normal", {**BLOCK, "Cracks/Polygons": "disc: 0.5,0.5,0.5, 0,0,0, 0.2"}, ["'Polygons'", "disc", "normal"]),
+        ("disc without a radius", {**BLOCK, "Cracks/Polygons": "disc: 0.5,0.5,0.5, 0,0,1"}, ["'Polygons'", "disc", "7 numbers"]),
         ("3D side in 2D", {"Boundary conditions/Flux": "front: 3"}, ["'Flux'", "'front'", "left, right, bottom, top"]),
         # cracks and points
         ("crack outside", {"Cracks/Segments": "2,2 ; 3,3"}, ["'Segments'", "outside the body"]),
@@ -256,6 +289,22 @@ def scene_mistakes(folder):
          ["'Boundary treatment'", "sides of a box"]),
     ]
     late = [
+        ("part that is empty", {PARTS: "a: top if x > 3", **HOT}, ["'Parts'", "part 'a'", "nowhere on the side 'top'"]),
+        ("region without a node", {PARTS: "a: region (x - 0.54)^2 + (y - 0.54)^2 < 1e-4", **HOT}, ["'Parts'", "part 'a'", "no node", "'point X, Y'"]),
+        ("part between nodes", {PARTS: "a: left if abs(y - 0.54) < 0.02", **HOT}, ["'Dirichlet'", "'a'", "holds no node", "'point X, Y'"]),
+        ("elastic part between nodes", {**ELASTIC, "Boundary conditions/Dirichlet": "", PARTS: "a: right if abs(y - 0.54) < 0.02",
+                                        "Boundary conditions/Displacement": "left: 0, 0 ; a: 1, 0"}, ["'Displacement'", "'a'", "holds no node"]),
+        ("part behind its side", {PARTS: "a: top if x > 0.5", DIRICHLET: "top: 0 ; bottom: 0 ; a: 1"}, ["'Dirichlet'", "'a'", "named before", "Name the part first"]),
+        ("formula of a part that is no number", {PARTS: "a: top if sqrt(x - 0.5)", **HOT}, ["'Parts'", "part 'a'", "is not finite"]),
+        ("parts with two values", {PARTS: "a: left if y < 0.6 ; b: left if y > 0.4", DIRICHLET: "bottom: 0 ; a: 1 ; b: 2"},
+         ["'Dirichlet'", "'b' overlaps 'a'", "different values"]),
+        ("regions with two values", {PARTS: "a: region x < 0.6 ; b: region x > 0.4", DIRICHLET: "bottom: 0 ; a: 1 ; b: 2"}, ["'b' overlaps 'a'", "different values"]),
+        ("parts with two fluxes", {PARTS: "a: left if y < 0.6 ; b: left if y > 0.4", "Boundary conditions/Flux": "a: 1 ; b: 2"},
+         ["'Flux'", "'b' overlaps 'a'", "not added"]),
+        ("value on a part of a side with a flux", {PARTS: "a: left if y < 0.6", DIRICHLET: "bottom: 0 ; a: 1", "Boundary conditions/Flux": "left: 1"},
+         ["'Flux'", "'left' overlaps 'a'", "takes no load"]),
+        ("traction on a held part", {**ELASTIC, "Boundary conditions/Dirichlet": "", PARTS: "a: left if y < 0.6", "Boundary conditions/Traction": "a: 0, 1"},
+         ["'Traction'", "'a' overlaps 'left'", "takes no load"]),
         ("overlapping phases", {"Material/Phases/Regions": "a: x > 0.4 ; b: y > 0.7", "Material/Phases/Conductivity": "a: 2 ; b: 3"},
          ["'Regions'", "'a'", "'b'", "overlap at"]),
         ("not a directory", {"Output directory": file_of_directory + "/results"}, ["'Output directory'", "a_file"]),

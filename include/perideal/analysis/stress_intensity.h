@@ -29,7 +29,7 @@ namespace PeriDeal
    *   K_m = E'/2 int (sigma_ij u^m_i,1 + sigma^m_ij u_i,1 - sigma^m_kl u_k,l delta_1j) q,j dA     (interaction integral, Yau, Wang and Corten 1980)
    *
    * with the near-tip fields u^m of unit intensity in mode m, E' = E in plane stress, E/(1 - nu^2) in plane strain, and q falling from 1 at the inner radius to 0 at the
-   * outer one. They hold for one elastic material in the ring, without thermal strain, body forces, and forces on the lips; W = sigma : grad u/2.
+   * outer one. They hold for one elastic material in the ring, without thermal strain and forces on the lips; W = sigma : grad u/2.
    *
    * Give add() all quadrature points of this process; result() is collective.
    */
@@ -48,11 +48,12 @@ namespace PeriDeal
                      const Moduli               &moduli,
                      const PlaneState            plane);
 
-    /** @param weight the share of the area; gradient[i][j] = du_i/dx_j */
+    /** @param weight the share of the area; gradient[i][j] = du_i/dx_j; force: b, per volume */
     void add(const dealii::Point<2>              &p,
              const double                         weight,
              const dealii::Tensor<2, 2>          &gradient,
-             const dealii::SymmetricTensor<2, 2> &stress);
+             const dealii::SymmetricTensor<2, 2> &stress,
+             const dealii::Tensor<1, 2>          &force = dealii::Tensor<1, 2>());
 
     /** The sums of all processes. Collective. */
     StressIntensity result(const MPI_Comm communicator) const;
@@ -73,7 +74,8 @@ namespace PeriDeal
 
   /**
    * The ends of the cracks of a scene that lie in the body, away from its sides and from other cracks, with rings as wide as these and the crack allow; those without
-   * room for a ring of a few cells have none. Empty unless the body is at rest and has two dimensions, no holes, and one material without thermal strain and body force.
+   * room for a ring of a few cells have none; holes, and regions and points that are held or loaded, stay outside the rings. Empty unless the body is at rest, is no mesh file or image, and has two dimensions and one material
+   * without thermal strain.
    */
   std::vector<CrackEndIntegral> crack_end_integrals(const Scene<2> &scene);
 } // namespace PeriDeal

@@ -7,10 +7,12 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <perideal/mesh/lattice.h>
+#include <perideal/scene/boundary_conditions.h>
 #include <perideal/scene/choices.h>
 #include <perideal/scene/cracks.h>
 #include <perideal/scene/domain.h>
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -29,12 +31,17 @@ namespace PeriDeal
   };
 
 
-  /** A node's share of the boundary: its part of the area (3D), length (2D) or 1 (1D) of the faces of one boundary id. */
+  /**
+   * A node's share of the boundary: its part of the area (3D), length (2D) or 1 (1D) of the faces of one boundary id, or of a Part.
+   * Of regions and points, which have no area, the shares of all nodes have the sum 1.
+   */
   struct BoundaryShare
   {
     unsigned int               node;
     dealii::types::boundary_id id;
     double                     area;
+    bool                  inside = true; // the node lies in the part, not only some of its area
+    std::array<double, 3> place{};       // of parts: where formulas are taken
   };
 
 
@@ -76,6 +83,20 @@ namespace PeriDeal
     /** Shares of owned nodes in boundary faces (both faces of a crack cut into the mesh are not listed). */
     const std::vector<BoundaryShare> &boundary_shares() const;
 
+    /**
+     * Find the shares of parts: a node on a part of a side has what of the area that it stands for lies in the part (with vertices the integral of
+     * its shape function, so that sums are those of the part), a node of a region its share of the region's volume.
+     *
+     * Throws UserError for parts without area, regions without nodes. Returns *this. Collective.
+     */
+    Nodes &find_parts(const BoundaryConditions<dim> &conditions);
+
+    /** Those of boundary_shares() and behind them those of parts. */
+    const std::vector<BoundaryShare> &condition_shares() const;
+
+    /** Where formulas of a condition are taken for a share: at the node, or in the middle of the share's area if a part cuts it. */
+    dealii::Point<dim> place_of(const BoundaryShare &share) const;
+
     /** The lattice of a box or a plate with a hole. Empty on mesh files. */
     const std::optional<Lattice<dim>> &lattice() const;
 
@@ -115,17 +136,17 @@ namespace PeriDeal
     void find_boundary_shares();
     void find_crack_points(const Cracks<dim> &cracks);
 
-    const dealii::DoFHandler<dim>                             *dofs;
-    dealii::types::global_dof_index                            first;
-    unsigned int                                               owned_count = 0;
-    std::vector<dealii::Point<dim>>                            positions;
-    std::vector<double>                                        volumes;
-    std::unordered_map<unsigned int, dealii::Point<dim>>       crack_points;
-    std::vector<BoundaryShare>                                 shares;
-    std::optional<Lattice<dim>>                                regular;
-    bool                                                       doubled = false, graded = false;
-    std::vector<bool>                                          hanging; // empty: none
-    double                                                     shortest_edge = 0.;
+    const dealii::DoFHandler<dim>                       *dofs;
+    dealii::types::global_dof_index                      first;
+    unsigned int                                         owned_count = 0;
+    std::vector<dealii::Point<dim>>                      positions;
+    std::vector<double>                                  volumes;
+    std::unordered_map<unsigned int, dealii::Point<dim>> crack_points;
+    std::vector<BoundaryShare>  shares, with_parts; // the latter empty without parts
+    std::optional<Lattice<dim>> regular;
+    bool                        doubled = false, graded = false;
+    std::vector<bool>           hanging; // empty: none
+    double                      shortest_edge = 0.;
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout;
   };
 

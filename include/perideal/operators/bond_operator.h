@@ -69,6 +69,7 @@ namespace PeriDeal
       unsigned int         node;
       double               area;
       const SideCondition *condition;
+      dealii::Point<dim>   place; // where the condition's formulas are taken
     };
 
     void                      choose_form(const OperatorForm wanted);

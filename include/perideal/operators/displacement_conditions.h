@@ -13,7 +13,7 @@
 
 namespace PeriDeal
 {
-  /** A node of this process on a side of the body. A node on an edge is on two. */
+  /** A node of this process on a side or in a part of the body. A node on an edge is on two. */
   template <int dim>
   struct NodeOnSide
   {
@@ -66,7 +66,12 @@ namespace PeriDeal
       dealii::types::boundary_id side;
       const Expression          *value; // null: 0
       dealii::Point<dim>         position;
+      bool                       rate = false;        // the value is a velocity
+      mutable double             time = 0., way = 0.; // its integral up to the time
     };
+
+    /** The integral of a velocity from time 0 on. Steps forward add to that of the last call. */
+    double moved(const Prescribed &entry, const double t) const;
 
     std::vector<Prescribed> prescribed; // first by conditions, then pinned ones
     bool                    varies = false;

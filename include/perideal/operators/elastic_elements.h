@@ -7,6 +7,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <perideal/laws/elasticity.h>
+#include <perideal/operators/condition_faces.h>
 #include <perideal/operators/displacement_conditions.h>
 #include <perideal/operators/elastic_coupling.h>
 #include <perideal/operators/elastic_operator.h>
@@ -138,6 +139,8 @@ namespace PeriDeal
     const dealii::DoFHandler<dim>        &dofs;
     const Scene<dim>                     &scene;
     std::unique_ptr<ElasticCoupling<dim>> coupling; // null: finite elements alone
+    ConditionFaces<dim>                   condition_faces;
+    std::vector<PartUnknown<dim>>         part_unknowns; // of regions and points
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> nodes, unknowns;
     std::vector<dealii::Point<dim>>                            positions;
     std::unique_ptr<DisplacementConditions<dim>>               conditions;

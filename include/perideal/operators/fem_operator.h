@@ -9,6 +9,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <perideal/mesh/cell_search.h>
+#include <perideal/operators/condition_faces.h>
 #include <perideal/operators/coupling.h>
 #include <perideal/operators/operator.h>
 #include <perideal/scene/crack_geometry.h>
@@ -205,8 +206,10 @@ namespace PeriDeal
                               const unsigned int end) const;
     double through_convection(const Vector &x) const;
     double sum_of_free_loads(const Vector &loads) const;
-    void add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
-    void find_crack_factors();
+    void   add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
+    void   find_crack_factors();
+    template <typename Visit>
+    void for_each_part_flux(const Visit &visit) const;
     void find_crack_factors(const std::vector<Cell>         &cells,
                             const std::vector<unsigned int> &nodes,
                             FactorData                      &factors);
@@ -229,16 +232,18 @@ namespace PeriDeal
     mutable Vector                         scratch;
     Vector temperatures;        // that K and C are those of, with ghosts; empty: initial values
     bool   bonds_apart = false; // in the form; else in the matrix
-    std::unique_ptr<BondForm>         form;
-    RemainderRows                     remainder;
-    std::vector<double>               bond_sums; // of each owned node, from the form
-    mutable unsigned long long        n_bonds       = 0;
-    mutable bool                      recount_bonds = true;
-    std::shared_ptr<CellData>         cell_data;           // memory of the cell loops
-    std::shared_ptr<EventData>        event;               // of update(), made for the first event
-    std::vector<Prescribed>           prescribed;          // in the order of unknowns
+    std::unique_ptr<BondForm>     form;
+    RemainderRows                 remainder;
+    std::vector<double>           bond_sums; // of each owned node, from the form
+    mutable unsigned long long    n_bonds       = 0;
+    mutable bool                  recount_bonds = true;
+    std::shared_ptr<CellData>     cell_data; // memory of the cell loops
+    ConditionFaces<dim>           condition_faces;
+    std::vector<PartUnknown<dim>> part_unknowns; // of regions and points
+    std::shared_ptr<EventData>    event;         // of update(), made for the first event
+    std::vector<Prescribed>       prescribed;    // in the order of unknowns
     std::vector<std::pair<unsigned int, double>>
-      convection_sums; // coefficient times area of each unknown that has some
+           convection_sums; // coefficient times area of each unknown that has some
     double free_loads = 0.; // the sum of constant_loads that are not prescribed unknowns'
     std::vector<HangingNode>          hanging;             // likewise
     std::vector<unsigned int>         held;                // both: unknowns that are not free

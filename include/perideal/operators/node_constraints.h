@@ -60,12 +60,19 @@ namespace PeriDeal
     void mask(Vector &y, const double value = 0.) const;
 
   private:
+    struct SlaveFlux
+    {
+      const SideCondition *condition;
+      double               coefficient; // multiplies the flux into the body
+      dealii::Point<dim>   place;
+    };
+
     struct Slave
     {
-      unsigned int         node;
-      const SideCondition *condition;        // the flux
-      double               flux_coefficient; // multiplies the flux into the body
-      int                  coupled = -1;     // number in the coupled system
+      unsigned int           node;
+      double                 flux_coefficient; // of a flux into the body through all of its side
+      int                    coupled = -1;     // number in the coupled system
+      std::vector<SlaveFlux> fluxes;
       std::vector<std::pair<unsigned int, double>>
         masters; // local nodes that are not coupled slaves
     };
@@ -73,10 +80,18 @@ namespace PeriDeal
     void find_prescribed(const Scene<dim> &scene);
     void find_slaves(const Families<dim> &families, const Scene<dim> &scene);
 
+    void check_parts(const Families<dim> &families, const Scene<dim> &scene) const;
+
     // These two return what is wrong, or nothing: only some processes may see it.
     std::string extrapolate(const Families<dim> &families,
                             const unsigned int   side,
+                            const std::string   &name,
                             Slave               &slave) const;
+
+    /** The fluxes of the side and of its parts at a slave. */
+    void        add_fluxes(const BoundaryConditions<dim> &conditions,
+                           const unsigned int             side,
+                           Slave                         &slave) const;
     std::string extrapolate_layer(const Families<dim> &families,
                                   const unsigned int   side,
                                   const Scene<dim>    &scene);

@@ -6,10 +6,12 @@
 #include <deal.II/base/types.h>
 
 #include <perideal/scene/expression.h>
+#include <perideal/scene/parts.h>
 #include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 #include <perideal/scene/vector_conditions.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,8 +24,8 @@ namespace PeriDeal
   std::string name_of_side(const dealii::types::boundary_id id, const bool box_sides);
 
   /**
-   * One condition on one side: `name` as the user wrote it, `id` the deal.II boundary id (box: 0
-   * left, 1 right, 2 bottom, 3 top, 4 back, 5 front).
+   * One condition on one side or part: `name` as the user wrote it, `id` the deal.II boundary id
+   * (box: 0 left, 1 right, 2 bottom, 3 top, 4 back, 5 front) or that of the part.
    */
   struct SideCondition
   {
@@ -47,19 +49,40 @@ namespace PeriDeal
     std::vector<dealii::types::boundary_id>
       symmetry; // elasticity: no displacement normal to the side
 
-    std::vector<VectorCondition> displacement, traction;   // elasticity only
+    /** Elasticity only. Velocities stand behind the displacements, as rates of one. */
+    std::vector<VectorCondition> displacement, traction;
     double displacement_layer = -1., traction_layer = -1.; // lengths; negative: not given
+    std::vector<Part> parts;
+    /** Names of a mesh file for its boundary ids. To be set before parse(). */
+    std::map<std::string, dealii::types::boundary_id> physical_names;
 
-    /** The condition of the given list on a side, or nullptr. */
+    /** The condition of the given list on a side or part, by its own id, or nullptr. */
     static const SideCondition *find(const std::vector<SideCondition> &list,
                                      const dealii::types::boundary_id  id);
+
+    /** The first condition of the list that holds at a place on a side, on the whole side or on a part of it; or nullptr. */
+    const SideCondition *first_at(const std::vector<SideCondition> &list,
+                                  const dealii::types::boundary_id  side,
+                                  const dealii::Point<dim>         &p) const;
+
+    /** The part with this id, nullptr for a side. */
+    const Part *part(const dealii::types::boundary_id id) const;
+
+    /** The side that a condition of this id is on; invalid_boundary_id for regions and points. */
+    dealii::types::boundary_id side_of(const dealii::types::boundary_id id) const;
+
+    /** Whether a condition of this id holds at a place (of its side, for a part of one): true for sides, false for points. */
+    bool holds_at(const dealii::types::boundary_id id, const dealii::Point<dim> &p) const;
+
+    /** How messages and results name a side or part: as the user did, else by its name in the mesh file, or its number. */
+    std::string name_of(const dealii::types::boundary_id id) const;
 
     /** Some value, flux, ambient value, displacement or traction changes with time. */
     bool depends_on_time() const;
 
     /**
-     * @param box_sides whether sides have the names of a box; else numbers (mesh boundary ids)
-     * only.
+     * @param box_sides whether sides have the names of a box; else they are numbers (mesh boundary ids) and
+     * `physical_names`.
      * @param hole      whether there is a side `hole` (boundary id 6).
      * @param physics   elasticity has displacements and tractions, all others have values and fluxes.
      * @param with_heat elasticity with a computed temperature, which has both.
@@ -72,22 +95,25 @@ namespace PeriDeal
                const bool    with_heat = false);
 
   private:
+    /** The names of sides that there are, without those of parts and numbers. */
+    std::vector<std::string> side_names() const;
+
     dealii::types::boundary_id side_id(const std::string &name,
                                        const std::string &entry,
-                                       const bool         box_sides,
-                                       const bool         hole) const;
+                                       const bool         or_part = true);
 
-    std::vector<SideCondition> parse_list(const std::string &entry,
-                                          const bool         box_sides,
-                                          const bool         hole) const;
+    void parse_parts();
 
-    void parse_symmetry(const bool box_sides, const bool hole);
+    /** What parts cannot carry. */
+    void check_parts() const;
+
+    std::vector<SideCondition> parse_list(const std::string &entry);
+
+    void parse_symmetry();
 
     double parse_layer(const std::string &entry) const;
 
-    std::vector<VectorCondition> parse_vectors(const std::string &entry,
-                                               const bool         box_sides,
-                                               const bool         hole) const;
+    std::vector<VectorCondition> parse_vectors(const std::string &entry);
 
     void refuse_other_physics(const Physics physics, const bool with_heat) const;
 
@@ -100,6 +126,10 @@ namespace PeriDeal
                      const std::vector<SideCondition> &list,
                      const std::string                &other_entry,
                      const dealii::types::boundary_id  id) const;
+
+    bool box_sides = true, has_hole = false;
+    std::map<dealii::types::boundary_id, std::string>
+      used_names; // of sides, as the user wrote them first
   };
 
   /**

@@ -6,6 +6,7 @@
 #include <deal.II/base/point.h>
 
 #include <perideal/scene/expression.h>
+#include <perideal/scene/holes.h>
 #include <perideal/scene/phase_map.h>
 #include <perideal/scene/section.h>
 
@@ -74,10 +75,12 @@ namespace PeriDeal
     double                        hole_radius = 0.25;
     HoleShape                     hole_shape  = HoleShape::circle;
     double                        hole_angle  = 0.; // degrees
-    std::string                   mesh_file;
-    unsigned int coarsening = 0; // times that cells are merged away from where they stay fine
-    Expression   fine;           // they stay fine where greater than 0
-    bool         fine_by_formula = false; // else in the zone of section `Coupling`
+    bool has_one_hole = true; // plate with a hole: that of the four entries above counts
+    std::vector<Hole> holes;  // more of them
+    std::string       mesh_file;
+    unsigned int      coarsening = 0; // times that cells are merged away from where they stay fine
+    Expression        fine;           // they stay fine where greater than 0
+    bool              fine_by_formula = false; // else in the zone of section `Coupling`
 
     /** Rows of cells beyond each side (left, right, bottom, ...), which are in no result, and the body between them. */
     std::array<unsigned int, 2 * dim> extra_layers{};
@@ -116,7 +119,10 @@ namespace PeriDeal
      */
     bool contains(const dealii::Point<dim> &p) const;
 
-    /** Plate with a hole: whether the point lies in the hole. A cell whose centre does so does not exist. */
+    /** From a point to the nearest hole, or less (of a square one the distance to the circle around it); the largest number without holes. */
+    double distance_to_holes(const dealii::Point<dim> &p) const;
+
+    /** Plate with holes: whether the point lies in one. A cell whose centre does so does not exist. */
     bool in_hole(const dealii::Point<dim> &p) const;
 
     /** Whether a cell of the lattice with this centre exists: not in a hole, nor an empty one of an image. */
@@ -144,6 +150,7 @@ namespace PeriDeal
     void parse_fine_part();
 
     void parse_hole();
+    void parse_holes_of_list();
 
     void declare_extra_layers();
     void parse_extra_layers();

@@ -14,16 +14,23 @@
 namespace PeriDeal
 {
   /**
-   * A displacement or a traction on one side, one formula of x, y, z, t per component. A component without one is free: nothing holds the
-   * displacement in that direction. Tractions have them all.
+   * A displacement, a velocity or a traction on one side or part, one formula of x, y, z, t per component. A component without one is free: nothing holds the
+   * displacement in that direction. With `if(condition, formula, free)` it is free where `held` is 0. Tractions have all components.
    */
   struct VectorCondition
   {
-    std::string                            name; // as the user wrote it
+    std::string                            name;
     dealii::types::boundary_id             id = 0;
     std::vector<std::optional<Expression>> values;
+    std::vector<std::optional<Expression>> held;  // of x, y, z; empty: wherever there is a value
+    std::vector<std::string>               texts; // of the components, as the user wrote them
+    bool rate = false; // values are velocities, which displacements are the integrals of
 
     bool depends_on_time() const;
+
+    /** Whether a component is prescribed at a place. */
+    template <int dim>
+    bool holds(const unsigned int component, const dealii::Point<dim> &p) const;
   };
 
   /** The condition of the given list on a side, or nullptr. */
@@ -31,15 +38,38 @@ namespace PeriDeal
                                         const dealii::types::boundary_id    id);
 
   /**
-   * `formula, free`: one formula of x, y, z, t for each of @p dim components.
+   * `formula, free`: one formula of x, y, z, t for each of @p dim components, into values, held and texts of @p condition.
    *
    * @param may_be_free whether `free` may stand for a formula; not for all of them
    * @param where       entry, section and side for messages. Throws UserError.
    */
-  std::vector<std::optional<Expression>> parse_components(const std::string &text,
-                                                          const unsigned int dim,
-                                                          const bool         may_be_free,
-                                                          const std::string &where);
+  void parse_components(const std::string &text,
+                        const unsigned int dim,
+                        const bool         may_be_free,
+                        const std::string &where,
+                        VectorCondition   &condition);
+
+  /** One formula of x, y, z, t for each of @p dim components. Throws UserError. */
+  std::vector<Expression> parse_vector(const std::string &text,
+                                       const unsigned int dim,
+                                       const std::string &where);
+
+  /** The two formulas that `if(y < 1, 0, free)` stands for. */
+  struct FreeBranch
+  {
+    std::string value; // `free` is 0 in it
+    std::string held;  // 1 where there is a value, 0 where `free`; empty: no `free` in the text
+  };
+
+  /** `free` alone or as a whole branch of `if(condition, a, b)`; UserError elsewhere. */
+  FreeBranch split_free(const std::string &text, const std::string &where);
+
+  /** The integral of a rate over time, from @p from to @p to at a place: adaptive Simpson rule, exact for constants. */
+  template <int dim>
+  double integral_over_time(const Expression         &rate,
+                            const dealii::Point<dim> &p,
+                            const double              from,
+                            const double              to);
 
   /** A formula that is 0 everywhere and at all times. */
   bool is_zero(const Expression &formula);

@@ -61,7 +61,7 @@ namespace PeriDeal
     virtual dealii::SymmetricTensor<2, 3> mean_stress() const = 0;
 
     /** At the ends of cracks, where the model has a local stress (crack_end_integrals()). */
-    virtual std::vector<StressIntensity> stress_intensities() const
+    virtual std::vector<StressIntensity> stress_intensities(const double /*time*/) const
     {
       return {};
     }

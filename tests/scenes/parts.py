@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Conditions on parts of sides, regions and points: areas and totals, parts that are whole sides, meshes with names, velocities, holes, round cracks.
+
+    parts.py loads | whole | heat | meshes | motion | holes | ranks | scenes
+"""
+
+import math
+import os
+import sys
+import tempfile
+
+from scene_test import check, check_close, finish, run_scene
+
+FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
+BC = "Boundary conditions/"
+
+HEAT = """
+set Title     = Parts of a plate
+set Dimension = 2
+subsection Domain
+  set Cells = 12, 11
+end
+subsection Boundary conditions
+  set Dirichlet = bottom: 0
+end
+subsection Time
+  set Steady = true
+end
+subsection Output
+  set Fields = none
+  set Probes = 0.3,0.4 ; 0.71,0.93
+end
+"""
+ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "200", "Material/Poisson ratio": "0.3", BC + "Dirichlet": "",
+           BC + "Displacement": "bottom: 0, 0", "Time/Steady": "false"}
+CUBE = {"Dimension": "3", "Domain/Lower corner": "0, 0, 0", "Domain/Upper corner": "1, 1, 1", "Domain/Cells": "8, 7, 8", "Output/Probes": ""}
+
+
+def force(run, model, side, direction="y"):
+    return next(r["value"] for r in reversed(run.totals) if r["model"] == model and r["quantity"] == f"force on {side} in {direction}")
+
+
+def flux(run, model, side):
+    return run.model(model)["boundary flux"][side]
+
+
+def loads():
+    """The force on a part of a side is its area times the traction, on a region or point what is given; the other side carries it."""
+    area = {BC + "Parts": "load: top if abs(x - 0.47) < 0.237", BC + "Traction": "load: 0, -1"}
+    total = {BC + "Parts": "spot: region (x - 0.6)^2 + (y - 0.6)^2 < 0.04 ; tip: point 0.93, 1", BC + "Traction": "spot: 2, 0 ; tip: 0, 3"}
+    both = f"{FE}, {PD}"
+    for what, more in (("vertices", {"Models": both}), ("cell centres", {"Models": both, "Domain/Nodes": "cell centers"}),
+                       ("m = 6", {"Models": PD, "Domain/Cells": "25, 24", "Peridynamics/Horizon ratio": "6"}),
+                       ("degree 2", {"Models": FE, "Finite elements/Degree": "2"}),
+                       ("coupled", {"Models": COUPLED, "Coupling/Zone": "y - 0.4"}),
+                       ("a traction layer", {"Models": PD, BC + "Traction layer": "0.3"})):
+        run = run_scene(HEAT, {**ELASTIC, **more, **area})
+        for model in run.summary["models"]:
+            check_close(force(run, model, "load"), -0.474, relative=1e-12, what=f"{model}, {what}: force on 0.474 of a side")
+            check_close(force(run, model, "bottom"), 0.474, relative=1e-7, what=f"{model}, {what}: carried by the other side")
+        if "layer" in what:
+            continue
+        run = run_scene(HEAT, {**ELASTIC, **more, **total})
+        for model in run.summary["models"]:
+            for side, axis, value in (("spot", "x", 2), ("tip", "y", 3), ("bottom", "x", -2), ("bottom", "y", -3)):
+                check_close(force(run, model, side, axis), value, relative=1e-7, what=f"{model}, {what}: {axis} of {side}")
+    # Half a disc on a side of a cube, a formula that is no number beyond the part.
+    run = run_scene(HEAT, {**ELASTIC, **CUBE, BC + "Displacement": "bottom: 0, 0, 0", "Models": both, "Peridynamics/Horizon ratio": "2",
+                           BC + "Parts": "disc: top if (x - 0.5)^2 + z^2 < 0.3^2", BC + "Traction": "disc: 0, -1, 0"})
+    for model in (FE, PD):
+        check_close(force(run, model, "disc"), -math.pi * 0.045, relative=6e-4, what=f"{model}: half a disc")  # measured: 3.7e-4
+    run = run_scene(HEAT, {**ELASTIC, "Models": both, **area, BC + "Traction": "load: 0, -sqrt(0.237^2 - (x - 0.47)^2)"})
+    for model in (FE, PD):
+        check_close(force(run, model, "load"), -math.pi * 0.237 ** 2 / 2, relative=0.01, what=f"{model}: a pressure that ends at the rim of the part")  # measured: 9e-4 and 5.5e-3
+
+
+def same(what, one, other, tolerance=1e-11):
+    """All probes and what passes through sides."""
+    for a, b in zip(one.probes, other.probes):
+        for key in a:
+            if isinstance(a[key], float):
+                check_close(b[key], a[key], absolute=tolerance * max(1, abs(a[key])), what=f"{what}: {a['model']}, {key}")
+
+
+def whole():
+    """A part that is a whole side is that side, and parts that make one up are it, too."""
+    three = f"{FE}, {PD}, {COUPLED}"
+    for treatment, more in (("exchange", {}), ("none", {}), ("layer", {}), ("fictitious mirror", {}), ("fictitious constant", {}),
+                            ("fictitious mirror", {"Domain/Nodes": "cell centers"}), ("fictitious constant", {"Domain/Nodes": "cell centers"}),
+                            ("none", {"Domain/Nodes": "cell centers", "Peridynamics/Horizon ratio": "6", "Domain/Cells": "24, 25"}),
+                            ("none", {"Peridynamics/Flux treatment": "extrapolation"})):
+        name = f"{treatment} {more}"
+        base = {"Peridynamics/Boundary treatment": treatment, "Models": three if treatment == "exchange" else PD, "Coupling/Zone": "0.5 - y", **more}
+        sides = run_scene(HEAT, {**base, BC + "Dirichlet": "bottom: x", BC + "Flux": "top: 1 + x"})
+        parts = run_scene(HEAT, {**base, BC + "Parts": "floor: bottom if x > -1 ; a: top if x < 0.43 ; b: top if x >= 0.43",
+                                 BC + "Dirichlet": "floor: x", BC + "Flux": "a: 1 + x ; b: 1 + x"})
+        # A node on the border takes the values in the middle of its two pieces: formulas that are straight lines are the same there.
+        same(name, sides, parts, 1e-9)
+        for model in parts.summary["models"]:
+            check_close(flux(parts, model, "a") + flux(parts, model, "b"), flux(sides, model, "top"), relative=1e-9, what=f"{model}, {name}: flux through both parts")
+    for nodes in ("vertices", "cell centers"):
+        base = {**ELASTIC, "Domain/Nodes": nodes, "Models": f"{FE}, {PD}"}
+        sides = run_scene(HEAT, {**base, BC + "Displacement": "bottom: 0, 0 ; top: 0.01*x, free", BC + "Traction": "right: 1, y"})
+        parts = run_scene(HEAT, {**base, BC + "Parts": "floor: bottom if x > -1 ; lid: top if 1 ; wall: right if y < 7", BC + "Traction": "wall: 1, y",
+                                 BC + "Displacement": "floor: 0, 0 ; lid: 0.01*x, free"})
+        same(f"elastic, {nodes}", sides, parts)
+        branch = run_scene(HEAT, {**base, BC + "Displacement": "bottom: 0, 0 ; top: if(x < 0.5, 0.01, free), free"})
+        part = run_scene(HEAT, {**base, BC + "Parts": "half: top if x < 0.5", BC + "Displacement": "bottom: 0, 0 ; half: 0.01, free"})
+        same(f"free beyond the half, {nodes}", branch, part)
+
+
+def heat():
+    """Power on parts is area times flux, on regions and points what is given; what is held gives it away. A part named before its side holds."""
+    conditions = {BC + "Parts": "warm: top if x > 0.5 && x < 0.83 ; spot: region x^2 + (y-0.5)^2 < 0.09 ; tip: point 1, 0.7 ; gap: left if y > 0.4",
+                  BC + "Flux": "warm: 2 ; spot: 3 ; tip: -1", BC + "Convection": "gap: 4, 1"}
+    for more in ({}, {"Domain/Nodes": "cell centers", "Models": PD}, {"Models": PD, "Peridynamics/Boundary treatment": "fictitious mirror"},
+                 {"Models": COUPLED, "Coupling/Zone": "y - 0.3"}):
+        run = run_scene(HEAT, {**conditions, **more})
+        for model in run.summary["models"]:
+            for side, power in (("warm", 0.66), ("spot", 3), ("tip", -1)):
+                check_close(flux(run, model, side), power, relative=1e-11, what=f"{model} {more}: power of {side}")
+            check_close(sum(run.model(model)["boundary flux"].values()), 0, absolute=1e-7, what=f"{model} {more}: all of it leaves")
+    # Half a side held, the rest insulated: both models against each other.
+    half = {BC + "Parts": "cold: bottom if x < 0.5", BC + "Dirichlet": "cold: 0", BC + "Flux": "top: 1", "Models": f"{FE}, {PD}",
+            "Peridynamics/Boundary treatment": "fictitious mirror", "Domain/Nodes": "cell centers"}
+    gaps = []
+    for cells in ("21, 20", "41, 40"):
+        run = run_scene(HEAT, {**half, "Domain/Cells": cells})
+        fe, pd = (run.probe(model, (0.71, 0.93)) for model in (FE, PD))
+        gaps.append(pd / fe - 1)
+    check(0 < gaps[1] < gaps[0] and gaps[1] < 0.04, f"half a side held by a fictitious layer: {gaps} above finite elements")  # measured: 4.3, 3.3, at 81 cells 1.5 %
+    run = run_scene(HEAT, {BC + "Parts": "hot: top if x > 0.5", BC + "Dirichlet": "hot: 100 ; top: 0 ; bottom: 0", "Output/Probes": "0.25,1 ; 0.75,1"})
+    for model in run.summary["models"]:
+        check_close(run.probe(model, (0.25, 1)), 0, absolute=1e-12, what=f"{model}: the side beyond the part")
+        check_close(run.probe(model, (0.75, 1)), 100, absolute=1e-9, what=f"{model}: the part named first")
+
+
+NAMED = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+1 3 "cold wall"
+1 4 "lid"
+2 7 "body"
+$EndPhysicalNames
+$Nodes
+9
+1 0 0 0
+2 0.5 0 0
+3 1 0 0
+4 0 0.5 0
+5 0.5 0.5 0
+6 1 0.5 0
+7 0 1 0
+8 0.5 1 0
+9 1 1 0
+$EndNodes
+$Elements
+8
+1 1 2 3 3 1 2
+2 1 2 3 3 2 3
+3 1 2 4 4 7 8
+4 1 2 4 4 8 9
+5 3 2 7 7 1 2 5 4
+6 3 2 7 7 2 3 6 5
+7 3 2 7 7 4 5 8 7
+8 3 2 7 7 5 6 9 8
+$EndElements
+"""
+
+
+def meshes():
+    """Physical names of a mesh file and its numbers are the same sides; parts of both."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "named.msh")
+        with open(path, "w") as file:
+            file.write(NAMED)
+        mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": path, "Peridynamics/Horizon": "1.1", "Output/Probes": "0.3,0.4"}
+        numbers = run_scene(HEAT, {**mesh, BC + "Dirichlet": "3: 0; 4: x"})
+        names = run_scene(HEAT, {**mesh, BC + "Dirichlet": "cold wall: 0; lid: x"})
+        same("names for numbers", numbers, names)
+        for model in names.summary["models"]:
+            check_close(flux(names, model, "lid"), flux(numbers, model, "4"), relative=1e-10, what=f"{model}: flux through 'lid'")
+        run = run_scene(HEAT, {**mesh, BC + "Dirichlet": "cold wall: 0", BC + "Parts": "warm: lid if x < 0.3 ; also: 4 if x > 0.8", BC + "Flux": "warm: 1 ; also: 2"})
+        for model in run.summary["models"]:
+            check_close(flux(run, model, "warm"), 0.3, relative=1e-11, what=f"{model}: part of a named side")
+            check_close(flux(run, model, "also"), 0.4, relative=1e-11, what=f"{model}: part of a numbered side")
+
+
+def motion():
+    """A velocity is the rate of what is held: the end of a strip moves by its integral, and the strip like a rod."""
+    coarse = {"Domain/Cells": "160, 8", "Output/Fields": "none", BC + "Parts": "blow: left if abs(y) < 0.13", "Output/Probes": "0,0 ; 4,0"}
+    run = run_scene("prm/elasticity/impact_on_strip.prm", coarse)
+    for model in (FE, PD):
+        for t in (2, 4, 6, 8):
+            check_close(run.probe(model, (0, 0), time=t, column="ux"), t - 0.5, absolute=1e-8, what=f"{model}: the end at t = {t}")
+        now, before = (run.probe(model, (4, 0), time=t, column="ux") for t in (8, 6))
+        check_close(now - before, 2, relative=0.02, what=f"{model}: a section at x = 4 moves as the end did 4 earlier")
+        check_close(run.probe(model, (4, 0), time=8, column="sxx"), -1, relative=0.05, what=f"{model}: stress -E v/c")
+
+
+def holes():
+    """Lists of holes are the same body as single ones; a disc has the area of its circle."""
+    plate = {"Domain/Cells": "20, 20", "Output/Probes": "0.1,0.4 ; 0.9,0.95"}
+    one = run_scene(HEAT, {**plate, "Domain/Shape": "plate with hole", "Domain/Hole center": "0.4, 0.6", "Domain/Hole radius": "0.17", BC + "Flux": "hole: 1"})
+    for more in ({"Domain/Holes": "circle: 0.4, 0.6, 0.17"}, {"Domain/Holes": "circle: 0.4, 0.6, 0.17", "Domain/Shape": "plate with hole"}):
+        same(f"{more}", one, run_scene(HEAT, {**plate, **more, BC + "Flux": "hole: 1"}))
+    rectangle = run_scene(HEAT, {**plate, "Domain/Holes": "rectangle: 0.2, 0.3, 0.5, 0.6", BC + "Flux": "hole: 1"})
+    polygon = run_scene(HEAT, {**plate, "Domain/Holes": "polygon: 0.2,0.3, 0.5,0.3, 0.5,0.6, 0.2,0.6", BC + "Flux": "hole: 1"})
+    same("a rectangle and its corners", rectangle, polygon)
+    for model in rectangle.summary["models"]:
+        check_close(flux(rectangle, model, "hole"), 1.2, relative=1e-9, what=f"{model}: flux through the rim of a rectangle")
+    several = run_scene(HEAT, {**plate, "Domain/Holes": "circle: 0.3, 0.7, 0.1 ; rectangle: 0.6, 0.2, 0.8, 0.4",
+                               BC + "Parts": "rim: hole if x < 0.5", BC + "Flux": "rim: 1"}, ranks=2)
+    for model in several.summary["models"]:
+        check_close(flux(several, model, "rim"), 0.8, relative=1e-9, what=f"{model}: flux through the rim of one of two holes, a staircase")
+    disc = run_scene(HEAT, {**CUBE, "Models": FE, "Cracks/Polygons": "disc: 0.5,0.5,0.5, 1,2,2, 0.3"})
+    corners = disc.summary["cracks"][0]
+    check(len(corners) == 96, "a disc has 96 corners")
+    size, middle = len(corners), [0.5, 0.5, 0.5]
+    twice = [0, 0, 0]
+    for k in range(size):
+        a, b = ([c - m for c, m in zip(corners[j % size], middle)] for j in (k, k + 1))
+        for d in range(3):
+            twice[d] += a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3]
+    check_close(math.sqrt(sum(c * c for c in twice)) / 2, math.pi * 0.09, relative=1e-10, what="area of a disc")
+    check_close(twice[1] / twice[0], 2, relative=1e-9, what="normal of a disc")
+
+
+def ranks():
+    """One, two and four processes."""
+    heat = {BC + "Parts": "warm: top if x > 0.47 ; spot: region x^2 + (y-0.5)^2 < 0.09 ; tip: point 0.5, 0.55", BC + "Flux": "warm: 2 ; spot: 3",
+            BC + "Dirichlet": "bottom: 0 ; tip: 1", "Models": f"{FE}, {PD}, {COUPLED}", "Coupling/Zone": "y - 0.5"}
+    solid = {**ELASTIC, BC + "Parts": "load: top if abs(x - 0.4) < 0.21 ; tip: point 0.5, 0.55", BC + "Traction": "load: 0, -1", "Models": f"{FE}, {PD}",
+             BC + "Displacement": "bottom: 0, 0 ; tip: 1e-3, free"}
+    struck = {**ELASTIC, "Elasticity/Solver": "dynamics", BC + "Displacement": "", BC + "Parts": "blow: left if y < 0.47", BC + "Velocity": "blow: sin(3*t) + y, free",
+              "Models": f"{FE}, {PD}", "Time/End time": "0.3"}
+    for what, overrides in (("heat", heat), ("elasticity", solid), ("motion", struck)):
+        one = run_scene(HEAT, overrides)
+        for n in (2, 4):
+            same(f"{what} on {n} processes", one, run_scene(HEAT, overrides, ranks=n), 1e-9)
+
+
+def intensity(run, model):
+    ends = run.model(model)["stress intensity"]
+    return next(iter(ends.values()))["I"]
+
+
+def scenes():
+    """Three-point bend and compact tension against ASTM E399; the cracks of Kalthoff and Winkler."""
+    quiet = {"Output/Fields": "none"}
+    run = run_scene("prm/fracture/three_point_bend.prm", {**quiet, "Domain/Cells": "177, 41"})
+    # Measured: 7.9 % (finite elements lose the whole cell that the end cuts) and 4.4 %; on the scene's own lattice 2.9 and 1.2 %.
+    for model, bound in ((FE, 0.1), (COUPLED, 0.06)):
+        check_close(intensity(run, model), 10.65, relative=bound, what=f"{model}: K of the three-point bend")
+        for foot in ("left foot", "right foot"):
+            check_close(force(run, model, foot), 0.5, relative=1e-2, what=f"{model}: the {foot} carries half")
+    faces = run_scene("prm/fracture/three_point_bend.prm", {**quiet, "Domain/Cells": "176, 40", "Cracks/Mesh": "faces", "Models": FE})
+    check_close(intensity(faces, FE), 10.65, relative=0.06, what="on faces: K of the three-point bend")  # measured: 3.8 %, on 352 x 80 cells 2.2 %
+    run = run_scene("prm/fracture/compact_tension.prm", {**quiet, "Domain/Cells": "42, 41"})
+    # Measured: 13 and 1.5 %; on the scene's own lattice 5.4 and 1.2 %.
+    for model, bound in ((FE, 0.16), (COUPLED, 0.024)):
+        check_close(intensity(run, model), 9.659, relative=bound, what=f"{model}: K of the compact tension specimen")
+        check_close(force(run, model, "back"), 0, absolute=1e-6, what=f"{model}: nothing left for the back")
+    body_force()
+    kalthoff(quiet)
+
+
+def body_force():
+    """A strip that hangs with a crack in its middle: the stress there is that of the weight below, and K that of a traction of that size."""
+    base = {**ELASTIC, "Domain/Lower corner": "-1, -2", "Domain/Upper corner": "1, 2", "Domain/Cells": "81, 161", "Cracks/Segments": "-0.3,0 ; 0.3,0", "Models": FE,
+            BC + "Displacement": "top: free, 0 ; corner: 0, free", BC + "Parts": "corner: point -1, 2", "Output/Probes": "", "Material/Poisson ratio": "0"}
+    hung = run_scene(HEAT, {**base, "Initial and source/Body force": "0, -0.5"})
+    pulled = run_scene(HEAT, {**base, BC + "Traction": "bottom: 0, -1"})
+    check_close(intensity(hung, FE), intensity(pulled, FE), relative=0.01, what="K under the own weight and under a traction")
+
+
+def kalthoff(quiet):
+    """Both cracks run outward, mirrored, at the angle of experiment and published computations, 65 to 70 degrees."""
+    import h5py
+    import numpy as np
+
+    run = run_scene("prm/fracture/kalthoff_winkler.prm", {"Output/Fields": "hdf5", "Domain/Cells": "50, 101", "Output/Write every": ""})
+    with h5py.File(os.path.join(run.folder, run.summary["fields"][-1]["files"][PD])) as file:
+        nodes, damage = file["nodes"][:], file["damage"][:].ravel()
+    angles = []
+    for side in (1, -1):
+        broken = nodes[(damage > 0.35) & (side * nodes[:, 1] > 0.027)]
+        tip = broken[np.argmax(side * broken[:, 1])]
+        angles.append(math.degrees(math.atan2(side * tip[1] - 0.025, tip[0] - 0.05)))
+    check_close(angles[0], angles[1], absolute=1e-6, what="the cracks are mirrored")
+    check_close(angles[0], 67, absolute=8, what="angle of the cracks")  # measured: 61 here, 68 on the scene's own lattice
+
+
+PARTS = {"loads": loads, "whole": whole, "heat": heat, "meshes": meshes, "motion": motion, "holes": holes, "ranks": ranks, "scenes": scenes}
+
+for wanted in sys.argv[1:] or PARTS:
+    PARTS[wanted]()
+finish()
