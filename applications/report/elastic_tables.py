@@ -6,10 +6,12 @@ from html import escape
 
 import numpy as np
 
+import fragments
 import loading
 from curves import probe_name, probe_points
 from style import minus, name
 from tables import cell, entry, table
+from words import with_unit
 
 FEM, PD = "finite elements", "peridynamics"
 MODULI = ("Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio")
@@ -112,11 +114,14 @@ def place(point):
     return probe_name(np.where(np.abs(point) < 1e-12, 0.0, point))
 
 
-def extreme(run, index, model, field, which):
-    """(value, node) of the largest or smallest value of a field, or None."""
+def extreme(run, index, model, field, which, of_body=False):
+    """(value, node) of the largest or smallest value of a field, or None; of_body: without fragments."""
     if run.field_file(index, model) is None:
         return None
     values = run.field(index, model, field.name, required=False)
+    flying = fragments.find(run, index, model) if of_body else None
+    if flying is not None and values is not None:
+        values = np.where(flying.mask, np.nan, values)
     if values is None or not np.isfinite(values).any():
         return None
     at = int((np.nanargmax if which == "largest" else np.nanargmin)(values))
@@ -198,8 +203,8 @@ def force_table(run):
                 for m in run.models]
         rows.append([f"<strong>Sum in {axis}</strong>", ""]
                     + [f"<strong>{cell(v, 6)}</strong>" for v in sums])
-    return table(["Side", "Condition"] + [name(m) for m in run.models], rows,
-                 "numbers second-text")
+    return table([with_unit("Side", run.words.units.force), "Condition"]
+                 + [name(m) for m in run.models], rows, "numbers second-text")
 
 
 def last_totals(run, quantity):
@@ -207,7 +212,7 @@ def last_totals(run, quantity):
     return {m: max(series)[1] for m, series in run.totals.get(quantity, {}).items()}
 
 
-ELSEWHERE = ("force on ", "body force in ", "throughput", "imbalance")
+ELSEWHERE = ("force on ", "body force in ", "throughput", "imbalance", "displacement of ")
 
 
 def energy_table(run):
@@ -218,10 +223,11 @@ def energy_table(run):
     for quantity in order:
         if not quantity.startswith(ELSEWHERE):
             values = last_totals(run, quantity)
-            rows.append([escape(name(quantity))] + [cell(values.get(m), 6) for m in run.models])
+            rows.append([escape(run.words.total(quantity))]
+                        + [cell(values.get(m), 6) for m in run.models])
     stress = [entry("mean stress", "von mises")(run.summary["models"][m]) for m in run.models]
     if any(s is not None for s in stress):
-        rows.append(["Von Mises stress of the mean stress"] + [cell(s, 6) for s in stress])
+        rows.append([escape(with_unit("Von Mises stress of the mean stress", run.words.units.stress))] + [cell(s, 6) for s in stress])
     if not rows:
         return ""
     first = "" if run.get("steady", default=False) else "At the end"
