@@ -431,7 +431,8 @@ namespace PeriDeal
           1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
         if (record->balances.contains(model->name()))
           entry.update(record->balances.at(model->name()));
-        if (record->extremes.contains(model->name()))
+        if (record->extremes.contains(model->name()) &&
+            record->extremes.at(model->name()).is_object()) // null without any force
           entry.update(record->extremes.at(model->name()));
         if (at_the_end)
           if (const json phases = describe_phases(*model, scene, record->totals, communicator);
