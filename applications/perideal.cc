@@ -242,6 +242,7 @@ namespace
       "  perideal study prm/studies/delta_convergence.json\n"
       "  perideal study prm/quick_start.prm --vary \"Domain/Cells=30, 30 | 60, 60\" --vary \"Peridynamics/Horizon ratio=2 | 3\"\n"
       "  perideal study work_precision prm/coupling/oblique_crack.prm\n"
+      "  perideal parameters \"Horizon ratio\"\n"
       "  perideal parameters markdown\n"
       "Scenes to start from are in prm/; the format is explained in doc/scene_format.md, that of studies in doc/study.md.");
 
@@ -269,8 +270,12 @@ namespace
     describe_study(app, request);
     CLI::App *parameters = app.add_subcommand(
       "parameters",
-      "Print every entry of a scene file with type, default, unit and explanation");
-    parameters->add_option("format", request.format, "prm, markdown, JSON or XML")
+      "Print every entry of a scene file with type, default, unit and explanation, or explain one entry or section");
+    parameters
+      ->add_option(
+        "what",
+        request.format,
+        "the name of an entry (Cells), of a section (Domain), both (\"Domain/Cells\"), or a format of the whole manual: prm, markdown, JSON or XML")
       ->capture_default_str();
   }
 

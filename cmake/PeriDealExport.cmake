@@ -21,4 +21,11 @@ install(FILES ${PROJECT_BINARY_DIR}/PeriDealConfig.cmake ${PROJECT_BINARY_DIR}/P
   ${PROJECT_BINARY_DIR}/PeriDealDealII.cmake DESTINATION ${perideal_package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
+# The scripts that draw reports, and the scenes to start from with their meshes and pictures.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/applications/report DESTINATION ${CMAKE_INSTALL_DATADIR}/perideal
+  FILES_MATCHING PATTERN "*.py" PATTERN "*.css" PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/prm DESTINATION ${CMAKE_INSTALL_DATADIR}/perideal)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/doc/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg"
+  PATTERN "reproduce" EXCLUDE)
+
 export(EXPORT PeriDealTargets NAMESPACE PeriDeal:: FILE ${PROJECT_BINARY_DIR}/PeriDealTargets.cmake)

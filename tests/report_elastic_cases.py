@@ -164,3 +164,62 @@ def make_elastic(directory, dimension=2, cells=12, times=(0.0,), models=(FEM, PD
                        f"{time},{model},force on left in x,{entry['boundary force']['left'][0]}",
                        f"{time},{model},mean stress xx,0.2"]
     (directory / "totals.csv").write_text("\n".join(totals) + "\n")
+
+
+COUPLED = "coupled"
+OPENING, FLIGHT = 0.02, 5.0
+
+
+def broken_fields(points, time, kind):
+    """(displacement, damage) of a body that has opened along y = 0 up to x = 0.3 and has lost a corner.
+
+    kind: 1.0 of finite elements, which do not break; slightly other numbers of each other model.
+    """
+    u = np.zeros((len(points), 3))
+    u[:, 0] = 1e-3 * time * kind * points[:, 0]
+    damage = np.zeros(len(points))
+    if kind == 1.0:
+        return u, damage
+    x, y = points.T
+    lips = (x < 0.3) & (np.abs(y) < 0.2)
+    damage[lips] = 0.4
+    u[:, 1] += 0.5 * OPENING * time * np.sign(y + 1e-9) * np.clip(0.3 - x, 0, 1)
+    corner = (x > 0.7) & (y > 0.7)
+    damage[corner | ((x > 0.5) & (y > 0.5))] = 0.5
+    u[corner] += FLIGHT * time
+    return u, damage
+
+
+def make_broken(directory, centers=False, models=(FEM, PD, COUPLED), cells=25):
+    """An elastic run with a crack that has opened through a row of cells, and a fragment.
+
+    centers: nodes at cell centres, else at vertices; 25 cells: none of them on y = 0.
+    """
+    times = (0.0, 0.5, 1.0)
+    make_elastic(directory, times=times, models=models, cells=cells)
+    summary = json.loads((directory / "summary.json").read_text())
+    summary["units"]["force"] = "N"
+    summary["comparisons"] = {"coupled minus finite elements": {"relative l2": [[1.0, 0.1]],
+                                                                "maximum": [[1.0, 0.01]]}}
+    for model, k in zip(models, (1.25, 1.26, 1.27)):
+        summary["models"][model]["stress intensity"] = {
+            "crack 1 end 2": {"J-integral": 0.01, "I": k, "II": 0.5 * k if model == PD else 0.0}}
+    (directory / "summary.json").write_text(json.dumps(summary))
+    for name in ("line.csv", "probes.csv"):  # those of a body in tension
+        (directory / name).unlink()
+    nodes, quads = box_mesh([-1.0, -1.0], [1.0, 1.0], [cells, cells])
+    inside = np.repeat(nodes[quads].mean(axis=1), 4, axis=0)
+    totals = ["time,model,quantity,value"]
+    for i, time in enumerate(times):
+        for k, model in enumerate(models):
+            at_centers = centers and model == PD
+            u, damage = broken_fields(inside if at_centers else nodes, time, 1.0 + 0.1 * k)
+            fields = {"displacement": u, "von_mises": 200 * time + 0 * damage}
+            if model != FEM:
+                fields["damage"] = damage
+            write_fields(directory / f"fields/{model.replace(' ', '_')}_{i:04d}.h5", nodes, quads, fields)
+            totals += [f"{time},{model},strain energy,{0.5 * time ** 2}",
+                       f"{time},{model},force on right in x,{2 * time - time ** 2}",
+                       f"{time},{model},displacement of right in x,{0.01 * time}"]
+            totals += [f"{time},{model},broken bonds,{100 * time}"] if model != FEM else []
+    (directory / "totals.csv").write_text("\n".join(totals) + "\n")

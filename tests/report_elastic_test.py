@@ -20,12 +20,13 @@ import contours
 import deformed
 import difference
 import elastic_tables
+import fragments
 import sketch
 import style
 import supports
 from raster import View
 from read_run import Mesh, Run
-from report_elastic_cases import column_values, make_elastic
+from report_elastic_cases import COUPLED, FLIGHT, OPENING, column_values, make_broken, make_elastic
 
 
 def rows_of(html):
@@ -293,6 +294,103 @@ class Parts(ReportCase):
         scale = style.value_scale([values])
         self.assertGreaterEqual(scale.levels[-1], 40)
 
+
+class Broken(ReportCase):
+    """A body that has broken: a crack that has opened, a corner that has flown off."""
+
+    def test_fragments(self):
+        for centers in (False, True):
+            make_broken(self.directory, centers=centers)
+            run = Run(self.directory)
+            self.assertIsNone(fragments.find(run, 1, FEM))
+            self.assertIsNone(fragments.find(run, 0, PD))  # at the start all is whole
+            for model in (PD, COUPLED):
+                found = fragments.find(run, 2, model)
+                self.assertEqual(found.count, 1)
+                at = run.mesh(2, model).nodes[found.mask]
+                self.assertGreater(at.min(), 0.6)
+                self.assertAlmostEqual(found.farthest, np.sqrt(2) * FLIGHT, delta=0.01)
+                self.assertAlmostEqual(found.share, 16 / 676, delta=0.01)
+
+    def test_scale_and_view_leave_them_out(self):
+        make_broken(self.directory)
+        run = Run(self.directory)
+        factor = deformed.magnification(run, [1, 2])
+        self.assertEqual(factor, deformed.round_factor(0.1 / (0.5 * OPENING)))
+        scale = contours.scale_at(run, 2, run.words.solution)
+        self.assertLess(scale.levels[-1], 2 * OPENING)
+        self.assertEqual(scale.extend, "max")
+        shapes = deformed.Shapes(contours.Maps(run, 200), [2], [PD], factor, n_pixels=200)
+        left, right, bottom, top = shapes.view.extent
+        self.assertLess(max(-left, right, -bottom, top), 1.3)
+
+    def test_a_crack_opens(self):
+        """Along y = 0, in nodes at vertices and at centres, and nowhere where the body is whole."""
+        for centers in (False, True):
+            make_broken(self.directory, centers=centers)
+            run = Run(self.directory)
+            shapes = deformed.Shapes(contours.Maps(run, 300), [2], [PD], deformed.magnification(run, [2]),
+                                     n_pixels=300)
+            inside = np.isfinite(shapes.shapes[2, PD].picture(run.solution(2, PD)))
+            x, y = shapes.view.centers()
+            row = int(np.argmin(np.abs(y)))
+            self.assertFalse(inside[row, (x > -0.9) & (x < -0.3)].any())
+            self.assertTrue(inside[row, (x > 0.5) & (x < 0.9)].all())
+
+    def test_page(self):
+        make_broken(self.directory)
+        figures = self.directory.parent / "figures"
+        text = "".join(self.page("", "--figures", figures).text)
+        for part in ("Left out of largest values and of the scales of pictures: a fragment (2.",
+                     "The stress intensity factor K_I at crack 1 end 2 in MPa √mm is 1.25 (finite elements) "
+                     "and 1.26 (peridynamics) and 1.27 (coupled).",
+                     "The stress intensity factor K_II at crack 1 end 2 in MPa √mm is 0.63 (peridynamics).",
+                     "The coupled model differs", "Largest von Mises stress (MPa)", "Strain energy (N mm/mm)"):
+            self.assertIn(part, text.replace("At the end the coupled", "The coupled"))
+        self.assertIn("force_over_displacement", {p.stem for p in figures.iterdir()})
+        self.assertNotIn("damage_0000", {p.stem for p in figures.iterdir()})  # the start is for films
+
+    def test_film(self):
+        make_broken(self.directory)
+        run = Run(self.directory)
+        film = animate.Film(run, PD)
+        self.assertEqual(film.field.name, "damage")
+        self.assertEqual(film.times[film.indices[0]], 0)
+        make_elastic(self.directory, times=(0.5, 1.0))
+        self.assertEqual(animate.Film(Run(self.directory), PD).field.name, "displacement_magnitude")
+
+    def test_coupled_minus_elements(self):
+        make_broken(self.directory)
+        run = Run(self.directory)
+        pairs = difference.compared(run, 2, run.words.solution.name)
+        self.assertEqual([m for m, _ in pairs], [PD, COUPLED])
+        self.assertLess(max(abs(size.value) for _, size in pairs), 2 * OPENING)  # no fragment among them
+
+
+class Slender(ReportCase):
+    """Titles and labels of bodies of any shape lie inside their figures."""
+
+    def test_nothing_is_clipped(self):
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        for width, height in ((20.0, 1.0), (1.0, 20.0), (1.0, 5.0), (2.0, 2.0)):
+            for n in (1, 2, 3, 5):
+                layout = contours.Layout(n, (0.0, width, 0.0, height), min(n, 3))
+                scale = style.value_scale([np.array([0.0, 1.0])])
+                for i in range(n):
+                    layout.title(layout.panel(i), "Peridynamics − finite elements")
+                layout.bar(0, min(n, 3) - 1, scale, "Magnitude of the displacement (mm)")
+                canvas = FigureCanvasAgg(layout.figure)
+                canvas.draw()  # which places the labels
+                renderer = canvas.get_renderer()
+                box = layout.figure.bbox
+                for axes in layout.figure.axes:
+                    for text in (axes.title, axes._left_title, axes.xaxis.label, axes.yaxis.label):
+                        if text.get_text():
+                            extent = text.get_window_extent(renderer)
+                            self.assertGreaterEqual(extent.x0, box.x0 - 1, (width, height, n, text.get_text()))
+                            self.assertLessEqual(extent.x1, box.x1 + 1, (width, height, n, text.get_text()))
+                            self.assertGreaterEqual(extent.y0, box.y0 - 1, (width, height, n, text.get_text()))
+                            self.assertLessEqual(extent.y1, box.y1 + 1, (width, height, n, text.get_text()))
 
 if __name__ == "__main__":
     unittest.main()

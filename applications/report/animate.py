@@ -21,7 +21,9 @@ from pathlib import Path
 try:
     import numpy as np
 
+    import contours
     import deformed
+    import fragments
     import style
     from contours import Maps, color_bar, draw_cells, draw_picture, segments_of, sparse_ticks
     from read_run import MODEL_ORDER, ReportError, Run
@@ -36,14 +38,17 @@ class Film:
     """The pictures of one model of a run at all written times, and their common scale."""
 
     def __init__(self, run, model, field=None, n_pixels=480):
-        self.run, self.model, self.field = run, model, field or run.words.solution
+        self.run, self.model = run, model
         self.times = run.written_times()
         self.indices = [i for i in range(len(self.times)) if run.field_file(i, model) is not None]
+        self.field = field or self.usual_field()
         self.segments = {i: segments_of(run.cracks(i)) for i in self.indices}
         self.shapes = self.deformed_shapes(n_pixels)
         if self.shapes is not None:
             self.view = self.shapes.view
-            self.scale = self.scale_of([self.values(i) for i in self.indices])
+            share = contours.outliers_of(run, self.indices, self.field)
+            self.scale = self.scale_of([fragments.of_body(run, i, model, self.values(i))
+                                        for i in self.indices], share)
             return
         self.view = Maps(run, n_pixels).view()
         self.pictures, self.isolines = {}, {}
@@ -53,6 +58,14 @@ class Film:
             self.pictures[i] = maps.picture(i, model, values, self.segments[i])
             self.isolines[i] = maps.isoline_picture(i, model, values, self.segments[i])
         self.scale = self.scale_of(list(self.pictures.values()), 0.0)
+
+    def usual_field(self):
+        """The damage where bonds break, else the solution."""
+        words = self.run.words
+        if words.elastic and fragments.broke(self.run, self.indices[-1]) \
+                and self.run.field(self.indices[-1], self.model, "damage", required=False) is not None:
+            return words.fields["damage"]
+        return words.solution
 
     def scale_of(self, values, outliers=None):
         """The scale of all frames: that of the field, where it has one, else what the values need."""
@@ -89,6 +102,9 @@ class Film:
             draw_cells(axes, self.run, index, self.model)
         if self.run.get("steady", default=False) and len(self.indices) < 2:
             return
+        if is_narrow(self):  # beside the picture, which it would cover
+            axes.set_title(self.time_text(index), loc="left", fontsize=8.5, fontweight="normal", pad=3)
+            return
         axes.text(0.02, 0.98, self.time_text(index), transform=axes.transAxes, va="top", ha="left",
                   fontsize=8.5, zorder=9, color=style.INK,
                   bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 2})
@@ -109,6 +125,11 @@ def chosen_model(run, model):
     return model
 
 
+def is_narrow(film):
+    """Whether the body is so flat or slender that a text would cover much of it."""
+    return min(shape_of(film)) < 2.0
+
+
 def shape_of(film):
     """Width and height of one panel in inches, 3.6 at most."""
     left, right, bottom, top = film.view.extent
@@ -119,15 +140,17 @@ def shape_of(film):
 def frame_figure(film, index):
     """One frame: the field, the axes, the bar of the scale."""
     width, height = shape_of(film)
-    total = (width + 1.75, height + 0.75)
+    above = 0.2 if is_narrow(film) else 0.0  # room for the time
+    low = max(0.45, 0.5 * (1.9 - height))  # and for the label of the bar beside a flat body
+    total = (width + 1.95, height + 2 * low - 0.15 + above)
     figure = style.figure(*total)
-    axes = figure.add_axes([0.6 / total[0], 0.45 / total[1], width / total[0], height / total[1]])
+    axes = figure.add_axes([0.6 / total[0], low / total[1], width / total[0], height / total[1]])
     film.draw(axes, index)
     sparse_ticks(axes, width, height)
     words = film.run.words
     axes.set_xlabel(words.axis("x"), labelpad=1)
     axes.set_ylabel(words.axis("y"), labelpad=2)
-    color_bar(figure, [(width + 0.78) / total[0], 0.45 / total[1], 0.13 / total[0],
+    color_bar(figure, [(width + 0.78) / total[0], low / total[1], 0.13 / total[0],
                        height / total[1]], film.scale, film.field.label(), vertical=True)
     return figure
 
@@ -139,17 +162,18 @@ def contact_sheet(film, at_most=12):
     columns = min(len(chosen), 4)
     rows = -(-len(chosen) // columns)
     width, height = (0.72 * size for size in shape_of(film))
-    total = (columns * (width + 0.12) + 0.3, rows * (height + 0.12) + 0.75)
+    across, up = max(0.12, 1.0 - width), 0.32 if is_narrow(film) else 0.12
+    total = (max(columns * (width + across) + 0.3, 3.0), rows * (height + up) + 0.85)
     figure = style.figure(*total)
     for k, index in enumerate(chosen):
-        left = 0.15 + (k % columns) * (width + 0.12)
-        bottom = total[1] - 0.1 - (k // columns + 1) * (height + 0.12) + 0.12
+        left = 0.15 + (k % columns) * (width + across)
+        bottom = total[1] - 0.1 - (k // columns + 1) * (height + up) + 0.12
         axes = figure.add_axes([left / total[0], bottom / total[1], width / total[0], height / total[1]])
         film.draw(axes, index)
         axes.set_xticks([])
         axes.set_yticks([])
     length = min(total[0] - 0.6, 5.0)
-    color_bar(figure, [(total[0] - length) / 2 / total[0], 0.45 / total[1], length / total[0], 0.12 / total[1]],
+    color_bar(figure, [(total[0] - length) / 2 / total[0], 0.55 / total[1], length / total[0], 0.12 / total[1]],
               film.scale, film.field.label())
     return figure
 
@@ -186,7 +210,8 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(description="Draws the field of a 2D run at every written time.")
     parser.add_argument("directory", metavar="RUN_DIRECTORY")
     parser.add_argument("--model", choices=MODEL_ORDER)
-    parser.add_argument("--field", metavar="NAME", help="a scalar field of the files, for example von_mises")
+    parser.add_argument("--field", metavar="NAME", help="a scalar field of the files, for example von_mises; "
+                        "else the damage where bonds break, and the solution")
     parser.add_argument("--output", metavar="DIRECTORY")
     options = parser.parse_args(arguments)
     try:

@@ -7,9 +7,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.ticker import MaxNLocator
 
+import fragments
 import style
 from raster import PixelMap, View, dual_mesh, is_constant_per_cell
-from difference import difference_field
+from difference import compared, difference_field
 from read_run import Mesh
 
 FEM, PD = "finite elements", "peridynamics"
@@ -124,7 +125,8 @@ def color_bar(figure, box, scale, label, vertical=False):
     bar.outline.set_linewidth(0.5)
     bar.outline.set_edgecolor("#9aa5b1")
     bar.ax.tick_params(length=2.5, labelsize=8)
-    bar.set_label(label, fontsize=8.5)
+    length = box[3] * figure.get_figheight() if vertical else box[2] * figure.get_figwidth()
+    bar.set_label(style.wrapped(label, max(length, 1.0)), fontsize=8.5)
     return bar
 
 
@@ -137,9 +139,13 @@ def sparse_ticks(axes, width, height):
 
 
 class Layout:
-    """Places panels of one aspect ratio: side by side, or below each other when they are flat."""
+    """Places panels of one aspect ratio: side by side, or below each other when they are flat.
+
+    More than three stand in two rows, the differences below the models.
+    """
 
     WIDTH = 10.0
+    SLOT = 1.6  # room for a title and a label
 
     def __init__(self, n_panels, extent, n_values):
         aspect = (extent[3] - extent[2]) / (extent[1] - extent[0])
@@ -150,26 +156,36 @@ class Layout:
             self.panel_width = 7.9
             self.panel_height = max(0.5, self.panel_width * aspect)
             self.width = self.WIDTH
-            self.height = n_panels * (self.panel_height + 0.62) + 0.1
+            self.top = 0.32 + max(0.0, 0.5 * (0.9 - self.panel_height))  # the bar's label is taller
+            self.height = n_panels * (self.panel_height + 0.62) + 0.1 + 2 * (self.top - 0.32)
         else:
-            room = (self.WIDTH - 0.75 - 0.4 * (n_panels - 1)) / n_panels
+            self.columns = n_panels if n_panels < 4 else max(n_values, n_panels - n_values)
+            room = (self.WIDTH - 0.75 - 0.4 * (self.columns - 1)) / self.columns
             self.panel_width = min(room, 4.6, 5.6 / aspect)
             self.panel_height = self.panel_width * aspect
-            self.gap = 0.4
-            used = n_panels * self.panel_width + (n_panels - 1) * self.gap
-            self.width = max(used + 0.9, 3.6)
-            self.left = 0.75 + max(0.0, (self.width - 0.9 - used) / 2)
-            self.height = self.panel_height + 1.5
+            self.gap = max(0.4, self.SLOT - self.panel_width)
+            used = self.columns * (self.panel_width + self.gap)
+            self.width = max(used + 0.5, 3.6)
+            self.left = 0.75 + max(0.0, (self.width - 0.5 - used) / 2)
+            self.row_height = self.panel_height + 1.68
+            self.height = self.row_height * (1 if n_panels < 4 else 2)
         self.figure = style.figure(self.width, self.height)
+
+    def place(self, i):
+        """(column, row from below) of panel i."""
+        if self.n < 4:
+            return i, 0
+        return (i, 1) if i < self.n_values else (i - self.n_values, 0)
 
     def panel(self, i):
         """Axes of panel i."""
         if self.stacked:
-            bottom = self.height - 0.32 - self.panel_height - i * (self.panel_height + 0.62)
+            bottom = self.height - self.top - self.panel_height - i * (self.panel_height + 0.62)
             box = (0.7, bottom, self.panel_width, self.panel_height)
         else:
-            box = (self.left + i * (self.panel_width + self.gap), 1.18, self.panel_width,
-                   self.panel_height)
+            column, row = self.place(i)
+            box = (self.left + column * (self.panel_width + self.gap), 1.3 + row * self.row_height,
+                   self.panel_width, self.panel_height)
         axes = self.figure.add_axes([box[0] / self.width, box[1] / self.height,
                                      box[2] / self.width, box[3] / self.height])
         sparse_ticks(axes, self.panel_width, self.panel_height)
@@ -178,17 +194,24 @@ class Layout:
     def bar(self, first, last, scale, label):
         """The colour bar of the panels first..last."""
         if self.stacked:
-            top = self.height - 0.32 - first * (self.panel_height + 0.62)
-            bottom = self.height - 0.32 - self.panel_height - last * (self.panel_height + 0.62)
+            top = self.height - self.top - first * (self.panel_height + 0.62)
+            bottom = self.height - self.top - self.panel_height - last * (self.panel_height + 0.62)
             box = [8.8 / self.width, bottom / self.height, 0.14 / self.width,
                    (top - bottom) / self.height]
             return color_bar(self.figure, box, scale, label, vertical=True)
-        left = self.left + first * (self.panel_width + self.gap)
-        right = self.left + last * (self.panel_width + self.gap) + self.panel_width
+        (from_column, row), (to_column, _) = self.place(first), self.place(last)
+        left = self.left + from_column * (self.panel_width + self.gap)
+        right = self.left + to_column * (self.panel_width + self.gap) \
+            + max(self.panel_width, self.SLOT - 0.3)
         length = min(right - left, 6.0)
         left += (right - left - length) / 2
-        box = [left / self.width, 0.52 / self.height, length / self.width, 0.13 / self.height]
+        box = [left / self.width, (0.64 + row * self.row_height) / self.height,
+               length / self.width, 0.13 / self.height]
         return color_bar(self.figure, box, scale, label)
+
+    def title(self, axes, text):
+        """The title of a panel."""
+        style.set_title(axes, text, 9.0 if self.stacked else self.panel_width + self.gap - 0.1)
 
 
 def label_axes(axes, words, view, i, layout):
@@ -198,28 +221,62 @@ def label_axes(axes, words, view, i, layout):
         axes.set_xlabel(words.axis(names[view.axes[0]]), labelpad=1)
     else:
         axes.tick_params(labelbottom=False)
-    if layout.stacked or i == 0:
+    if layout.stacked or layout.place(i)[0] == 0:
         axes.set_ylabel(words.axis(names[view.axes[1]]), labelpad=2)
     else:
         axes.tick_params(labelleft=False)
 
 
-def difference_picture(maps, index, field, segments, pictures):
-    """PD minus FEM of a field: at the nodes, else (two meshes) the difference of the pictures."""
-    if FEM not in pictures or PD not in pictures:
+def difference_picture(maps, index, field, segments, pictures, model=PD):
+    """A model minus FEM of a field: at the nodes, else (two meshes) the difference of the pictures."""
+    if FEM not in pictures or model not in pictures:
         return None
-    values = difference_field(maps.run, index, field.name)
+    values = difference_field(maps.run, index, field.name, model)
     if values is None:
-        return pictures[PD] - pictures[FEM]
-    return maps.picture(index, PD, values, segments)
+        return pictures[model] - pictures[FEM]
+    return maps.picture(index, model, values, segments)
+
+
+BROKEN_OFF = 0.002  # share of the nodes of a broken body that colours may leave out at either end
+
+
+def outliers_of(run, indices, field):
+    """The share of the values that colours may leave out: of a broken body always some."""
+    some = run.words.elastic and not field.span and any(fragments.broke(run, i) for i in indices)
+    return max(field.outliers, BROKEN_OFF if some else 0.0)
+
+
+def body_values(run, index, field):
+    """(finite values of all models at one written time without fragments, lowest and highest of all)."""
+    found, ends = [], []
+    for model in run.models:
+        values = run.field(index, model, field.name, not run.words.elastic)
+        if values is None or not np.isfinite(values).any():
+            continue
+        ends += [np.nanmin(values), np.nanmax(values)]
+        if run.words.elastic:
+            values = fragments.of_body(run, index, model, values)
+        found.append(values[np.isfinite(values)])
+    return (np.concatenate(found), min(ends), max(ends)) if found else (np.zeros(0), 0.0, 0.0)
+
+
+def scale_at(run, index, field):
+    """The scale of an elastic body's field at one written time: by its values without fragments."""
+    if field.span:
+        return style.fixed_scale(*field.span)
+    values, *reach = body_values(run, index, field)
+    return style.value_scale([values], outliers=outliers_of(run, [index], field), reach=reach)
 
 
 def value_range(run, index, field):
-    """Lowest and highest value of a field of all models at one written time, or None."""
-    found = [v[np.isfinite(v)] for v in (run.field(index, m, field.name, not run.words.elastic)
-                                         for m in run.models) if v is not None]
-    found = [v for v in found if len(v)]
-    return (min(v.min() for v in found), max(v.max() for v in found)) if found else None
+    """(lowest, highest value that the scale shows, lowest, highest of all) of all models at one
+    written time, or None."""
+    values, *reach = body_values(run, index, field)
+    if not len(values):
+        return None
+    share = outliers_of(run, [index], field) if run.words.elastic and fragments.broke(run, index) else 0.0
+    low, high, _ = style.without_outliers(values, share)
+    return low, high, *reach
 
 
 def common_scale(run, indices, field, least=0.3):
@@ -232,7 +289,8 @@ def common_scale(run, indices, field, least=0.3):
     low, high = min(r[0] for r in ranges), max(r[1] for r in ranges)
     if min(r[1] - r[0] for r in ranges) < least * (high - low) or not high > low:
         return None
-    return style.value_scale([np.array([low, high])])
+    return style.value_scale([np.array([low, high])],
+                             reach=(min(r[2] for r in ranges), max(r[3] for r in ranges)))
 
 
 def models_with(run, index, name):
@@ -254,29 +312,30 @@ def field_figure(maps, index, words, field, largest=None, scale=None):
         values = run.field(index, model, field.name)
         pictures[model] = maps.picture(index, model, values, segments)
         smooth[model] = maps.isoline_picture(index, model, values, segments)
-    difference = None if largest is not None and largest.zero else \
-        difference_picture(maps, index, field, segments, pictures)
-    layout = Layout(len(models) + (difference is not None), view.extent, len(models))
-    scale = scale or style.value_scale(list(pictures.values()), outliers=field.outliers)
+    gaps = [(m, size, difference_picture(maps, index, field, segments, pictures, m))
+            for m, size in compared(run, index, field.name, largest)]
+    gaps = [entry for entry in gaps if entry[2] is not None]
+    layout = Layout(len(models) + len(gaps), view.extent, len(models))
+    scale = scale or (scale_at(run, index, field) if run.words.elastic and fragments.broke(run, index) else
+                      style.value_scale(list(pictures.values()), outliers=field.outliers))
     for i, model in enumerate(models):
         axes = layout.panel(i)
         draw_picture(axes, view, pictures[model], scale, segments, smooth[model])
         draw_cells(axes, run, index, model)
-        axes.set_title(style.name(model), loc="left", pad=5)
+        layout.title(axes, style.name(model))
         label_axes(axes, words, view, i, layout)
     layout.bar(0, len(models) - 1, scale, field.label())
-    if difference is not None:
-        draw_difference(layout, len(models), view, difference, segments, words, field, largest)
+    for i, (model, size, gap) in enumerate(gaps, len(models)):
+        draw_difference(layout, i, view, gap, segments, words, field, size, model)
     return layout.figure
 
 
-def draw_difference(layout, i, view, difference, segments, words, field, largest):
-    """The panel PD - FEM with a circle at its largest value."""
+def draw_difference(layout, i, view, difference, segments, words, field, largest, model):
+    """The panel of a model minus FEM with a circle at its largest value."""
     axes = layout.panel(i)
     scale = style.difference_scale([difference])
     draw_picture(axes, view, difference, scale, segments)
-    axes.set_title("Peridynamics − finite elements", loc="left", pad=5,
-                   fontsize=10 if layout.panel_width > 2.6 else 8.5)
+    layout.title(axes, f"{style.name(model)} − finite elements")
     label_axes(axes, words, view, i, layout)
     layout.bar(i, i, scale, field.label("Difference"))
     if largest is not None:

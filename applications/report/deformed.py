@@ -7,24 +7,25 @@ import math
 import numpy as np
 
 import contours
+import fragments
 import style
-from difference import difference_field
+from difference import compared, difference_field
 from raster import PixelMap, View, crosses, is_constant_per_cell
 from read_run import Mesh
 
 SHARE = 0.05  # of the body's extent: how large the largest displacement is drawn
-DAMAGED = 0.2  # share of broken bonds from which the body may be torn
+DAMAGED = fragments.DAMAGED  # share of broken bonds from which the body may be torn
 TORN = 0.25  # share of a cell that its vertex moves off at a tear
 
 
 def magnification(run, indices):
     """One round factor for all models and times, or None without a displacement.
 
-    The largest displacement is drawn about as long as 5 % of the body, and as it is (1) where it
-    is up to five times as large as that.
+    The largest displacement, but for that of fragments, is drawn about as long as 5 % of the body,
+    and as it is (1) where it is up to five times as large as that.
     """
-    sizes = [np.linalg.norm(u, axis=1) for i in indices
-             for u in (run.displacement(i, m) for m in run.models) if u is not None]
+    sizes = [np.linalg.norm(fragments.of_body(run, i, m, u), axis=1) for i in indices
+             for m, u in ((m, run.displacement(i, m)) for m in run.models) if u is not None]
     largest = max((float(np.nanmax(s, initial=0)) for s in sizes if np.isfinite(s).any()),
                   default=0.0)
     lower, upper = run.domain
@@ -59,11 +60,13 @@ class Shape:
 
     A cell that a crack divides is there twice, each copy moving with the vertices on its own side
     and drawn on that side only: so a crack opens wherever it lies in the cell. Where bonds have
-    broken, cells around nodes at their centres part as soon as they would be drawn out of shape.
+    broken, cells around nodes at their centres part as soon as they would be drawn out of shape, and
+    cells between nodes at their vertices come apart into the quarters around these.
     """
 
-    def __init__(self, mesh, displacement, factor, segments=(), on_faces=False, damage=None):
-        self.mesh, self.factor = mesh, factor
+    def __init__(self, mesh, displacement, factor, segments=(), on_faces=False, damage=None,
+                 flying=None):
+        self.mesh, self.factor, self.flying = mesh, factor, flying
         self.segments = segments
         corners = mesh.nodes[mesh.cells]
         shift = 1e-6 * np.ptp(corners, axis=1).max(axis=1)[:, None, None]
@@ -71,20 +74,27 @@ class Shape:
         if displacement.ndim == 2 and any(is_constant_per_cell(mesh, u) for u in displacement.T):
             smooth = np.stack([self.smooth(u) for u in displacement.T], axis=1)
             displacement = self.torn(displacement, smooth, damage)
-            hidden = np.zeros(mesh.cells.shape, bool)  # its parts move as their centres do
+            hidden, parts = np.zeros(mesh.cells.shape, bool), None  # they move as their centres do
         else:
             hidden = self.hidden_from_first(corners, shift, on_faces)
+            parts = self.parts(displacement, damage, hidden)
         moves = factor * displacement[mesh.cells]
         cut = np.flatnonzero(hidden.any(axis=1))
-        self.source = np.concatenate([np.arange(len(mesh.cells)), cut])
-        visible = np.concatenate([~hidden, hidden[cut]])
+        source, visible = [np.arange(len(mesh.cells)), cut], [~hidden, hidden[cut]]
+        self.in_quarters = np.zeros(0, int)
+        if parts is not None:
+            source, visible = self.with_parts(parts, source, visible)
+        self.source = np.concatenate(source)
+        visible = np.concatenate(visible)
         visible[~visible.any(axis=1)] = True
         self.visible = visible
         self.rest = corners[self.source]
         self.anchor = self.mean_of_visible(self.rest)
         self.slack = shift[self.source, 0]
         self.divided = np.zeros(len(self.source), bool)
-        self.divided[cut] = self.divided[len(mesh.cells):] = True
+        self.divided[cut] = self.divided[len(mesh.cells):len(mesh.cells) + len(cut)] = True
+        quarters, self.in_quarters = self.in_quarters, np.zeros(len(self.source), bool)
+        self.in_quarters[quarters] = True
         moved = self.rest + self.completed(moves[self.source])
         cells = np.arange(4 * len(self.source)).reshape(-1, 4)
         self.deformed = Mesh(moved.reshape(-1, 2), cells)
@@ -98,6 +108,39 @@ class Shape:
             for v in range(1, 4):
                 hidden[:, v] |= crosses(moved[:, v], moved[:, 0], segment)
         return hidden
+
+    def parts(self, displacement, damage, hidden):
+        """(M x 4): the part of its cell that each vertex is in, 0 where the cell is whole; or None."""
+        if damage is None or not (damage > DAMAGED).any() or not np.isfinite(displacement).all():
+            return None
+        cells = self.mesh.cells
+        gap = np.stack([np.linalg.norm(displacement[cells[:, a]] - displacement[cells[:, b]], axis=1)
+                        for a, b in fragments.EDGES[4]], axis=1)
+        ends = np.stack([damage[cells[:, list(e)]] for e in fragments.EDGES[4]], axis=1)
+        torn = fragments.torn(gap, ends[:, :, 0], ends[:, :, 1])
+        torn[hidden.any(axis=1)] = False
+        part = np.broadcast_to(np.arange(4), cells.shape).copy()
+        for _ in range(3):
+            for e, (a, b) in enumerate(fragments.EDGES[4]):
+                low = np.minimum(part[:, a], part[:, b])
+                for v in (a, b):
+                    part[:, v] = np.where(torn[:, e], part[:, v], low)
+        return part if part.any() else None
+
+    def with_parts(self, parts, source, visible):
+        """Sources and visible vertices with a copy of each cell that comes apart for all its parts."""
+        apart = np.flatnonzero(parts.any(axis=1))
+        visible[0][apart] = parts[apart] == 0
+        at = sum(map(len, source))
+        quarters = [apart]
+        for part in (1, 2, 3):
+            some = apart[(parts[apart] == part).any(axis=1)]
+            source.append(some)
+            visible.append(parts[some] == part)
+            quarters.append(at + np.arange(len(some)))
+            at += len(some)
+        self.in_quarters = np.concatenate(quarters)
+        return source, visible
 
     def torn(self, own, smooth, damage):
         """Displacements of the vertices: smooth, but those of a damaged cell its own at a tear."""
@@ -139,8 +182,11 @@ class Shape:
         return result
 
     def bounds(self):
-        """Lower and upper corner of the deformed shape."""
+        """Lower and upper corner of the deformed shape, without fragments."""
         nodes = self.deformed.nodes
+        if self.flying is not None:
+            inside = ~self.flying[self.mesh.cells][self.source].any(axis=1)
+            nodes = nodes.reshape(len(self.source), -1, 2)[inside].reshape(-1, 2)
         return np.nanmin(nodes, axis=0), np.nanmax(nodes, axis=0)
 
     def draw_on(self, view):
@@ -155,6 +201,9 @@ class Shape:
             wrong |= crosses(points, anchor[cell[checked]], segment)
         kept = np.ones(len(cell), bool)
         kept[checked[wrong]] = False
+        apart = np.flatnonzero(self.in_quarters[cell])
+        nearest = self.map.weights[apart].argmax(axis=1)
+        kept[apart] &= self.visible[cell[apart], nearest]
         self.map.pixels, self.map.nodes, self.map.weights = (
             part[kept] for part in (self.map.pixels, self.map.nodes, self.map.weights))
 
@@ -181,8 +230,10 @@ class Shapes:
                 u = self.run.displacement(index, model)
                 if u is not None and np.isfinite(u).all():
                     damage = self.run.field(index, model, "damage", required=False)
+                    flying = fragments.find(self.run, index, model)
                     self.shapes[index, model] = Shape(self.run.mesh(index, model), u, factor,
-                                                      segments, maps.on_faces, damage)
+                                                      segments, maps.on_faces, damage,
+                                                      None if flying is None else flying.mask)
         ends = [self.run.domain] + [s.bounds() for s in self.shapes.values()]
         lower = np.min([e[0] for e in ends], axis=0)
         upper = np.max([e[1] for e in ends], axis=0)
@@ -258,18 +309,20 @@ def deformed_figure(maps, index, words, field, factor, largest=None, scale=None)
     if not models:
         return None
     values = {m: run.field(index, m, field.name) for m in models}
-    gap = difference_field(run, index, field.name) if largest is None or not largest.zero else None
-    layout = contours.Layout(len(models) + (gap is not None), shapes.view.extent, len(models))
-    scale = scale or style.value_scale(list(values.values()), outliers=field.outliers)
+    gaps = [(m, size, difference_field(run, index, field.name, m))
+            for m, size in compared(run, index, field.name, largest)]
+    gaps = [entry for entry in gaps if entry[2] is not None]
+    layout = contours.Layout(len(models) + len(gaps), shapes.view.extent, len(models))
+    scale = scale or (contours.scale_at(run, index, field) if fragments.broke(run, index) else
+                      style.value_scale(list(values.values()), outliers=field.outliers))
     for i, model in enumerate(models):
         axes = layout.panel(i)
         shapes.draw(axes, index, model, values[model], scale)
-        axes.set_title(style.name(model), loc="left", pad=5)
+        layout.title(axes, style.name(model))
         contours.label_axes(axes, words, shapes.view, i, layout)
     layout.bar(0, len(models) - 1, scale, field.label())
-    if gap is not None:
-        segments = contours.segments_of(run.cracks(index))
-        picture = maps.picture(index, contours.PD, gap, segments, ("wide", index), shapes.view)
-        contours.draw_difference(layout, len(models), shapes.view, picture, segments, words, field,
-                                 largest)
+    segments = contours.segments_of(run.cracks(index))
+    for i, (model, size, gap) in enumerate(gaps, len(models)):
+        picture = maps.picture(index, model, gap, segments, ("wide", index), shapes.view)
+        contours.draw_difference(layout, i, shapes.view, picture, segments, words, field, size, model)
     return layout.figure

@@ -4,11 +4,12 @@
 
 import numpy as np
 
+import fragments
 from raster import is_constant_per_cell
 from read_run import DIFFERENCE
 from style import is_nothing, plain
 
-FEM, PD = "finite elements", "peridynamics"
+FEM, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 
 
 class Largest:
@@ -24,18 +25,36 @@ class Largest:
         return f"at {point}" + ("" if self.alone else " among others")
 
 
-def difference_field(run, index, name):
-    """Peridynamics minus finite elements of a field at the vertices of the cells, or None."""
-    if any(m not in run.models or run.field_file(index, m) is None for m in (FEM, PD)):
+def difference_field(run, index, name, model=PD):
+    """A model minus finite elements of a field at the vertices of the cells, or None."""
+    if any(m not in run.models or run.field_file(index, m) is None for m in (FEM, model)):
         return None
     values = None
-    if name == run.words.solution.name:
+    if name == run.words.solution.name and model == PD:
         values = run.field(index, PD, DIFFERENCE, required=False)
-    if values is None and run.mesh(index, PD) is run.mesh(index, FEM):
-        pair = [run.field(index, m, name, required=False) for m in (PD, FEM)]
+    if values is None and run.mesh(index, model) is run.mesh(index, FEM):
+        pair = [run.field(index, m, name, required=False) for m in (model, FEM)]
         if all(v is not None for v in pair):
-            values = pair[0] - at_nodes_of(run.mesh(index, PD), *pair)
-    return values
+            values = pair[0] - at_nodes_of(run.mesh(index, model), *pair)
+    return without_fragments(run, index, model, values)
+
+
+def without_fragments(run, index, model, values):
+    """NaN at the fragments of an elastic body: how far they have flown is no difference of models."""
+    flying = fragments.find(run, index, model) if run.words.elastic and values is not None else None
+    return values if flying is None else np.where(flying.mask, np.nan, values)
+
+
+def compared(run, index, name, of_pd=None):
+    """[(model, its largest difference or None)] of the models to be drawn minus finite elements.
+
+    of_pd: that of peridynamics, where it is known. What agrees to round-off is not drawn.
+    """
+    if FEM not in run.models:
+        return []
+    found = [(m, of_pd if m == PD and of_pd is not None else largest(run, index, name, m))
+             for m in (PD, COUPLED) if m in run.models]
+    return [(m, size) for m, size in found if size is None or not size.zero]
 
 
 def at_nodes_of(mesh, nodal, values):
@@ -63,7 +82,7 @@ def displacement_gap(run, index):
             smooth[mesh.cells] = of_fem[mesh.cells].mean(axis=1, keepdims=True)
             of_fem = smooth
         gap += (of_pd - of_fem) ** 2
-    return np.sqrt(gap)
+    return without_fragments(run, index, PD, np.sqrt(gap))
 
 
 def is_multiple(run, indices, name):
@@ -89,16 +108,16 @@ def is_multiple(run, indices, name):
     return True
 
 
-def largest(run, index, name):
+def largest(run, index, name, model=PD):
     """The largest difference of a field at a written time, or None where there is none to tell."""
-    return largest_of(run, index, difference_field(run, index, name), name)
+    return largest_of(run, index, difference_field(run, index, name, model), name, model)
 
 
-def largest_of(run, index, values, name):
+def largest_of(run, index, values, name, model=PD):
     """The largest of the values at the vertices, which are differences of a field of that name."""
     if values is None or not np.isfinite(values).any():
         return None
-    mesh = run.mesh(index, PD)
+    mesh = run.mesh(index, model)
     points = mesh.nodes
     if is_constant_per_cell(mesh, values):  # nodes at cell centres
         points, values = mesh.nodes[mesh.cells].mean(axis=1), values[mesh.cells[:, 0]]

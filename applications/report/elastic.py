@@ -12,9 +12,11 @@ import difference
 import elastic_curves
 import elastic_findings
 import elastic_tables
+import fragments
 import loading
 import series
 import solids
+import style
 from style import is_nothing
 
 STRESSES = {1: ("stress_xx",), 2: ("stress_xx", "stress_yy", "stress_xy"),
@@ -199,7 +201,27 @@ class ElasticSections:
         when = "" if self.steady else self.words.at_time(run.written_times()[index])
         heading = ", ".join(part for part in (field.title, when) if part)
         mark = f"{field.name}_{index:04d}" if of_several or not self.steady else field.name
-        self.page.figure(figure, mark, self.picture_caption(largest, field), False, heading)
+        caption = [self.picture_caption(largest, field), self.beyond(field, index)]
+        self.page.figure(figure, mark, " ".join(filter(None, caption)), False, heading)
+
+    def beyond(self, field, index):
+        """What lies outside the scale of a picture that leaves out fragments or extremes of a broken body."""
+        run = self.run
+        if field.span or not fragments.broke(run, index):
+            return ""
+        found = {m: fragments.find(run, index, m) for m in run.models}
+        parts = [f"{f.text(self.words.solution.amount)} ({m})" for m, f in found.items()
+                 if f is not None and field is self.words.solution]
+        text = f"Outside the scale and, where it has gone far, the picture: {'; '.join(parts)}. " \
+            if parts else ""
+        values, lowest, highest = contours.body_values(run, index, field)
+        low, high, extend = style.without_outliers(values, contours.outliers_of(run, [index], field))
+        if extend != "neither" or parts:
+            text += f"All values lie between {field.amount(lowest)} and {field.amount(highest)}"
+            share = float(((values < low) | (values > high)).mean()) if len(values) else 0.0
+            text += f"; {style.plain(100 * share, 2)} % of the body's are beyond the scale's ends." \
+                if share > 0 else "."
+        return text
 
     def loading(self):
         """Forces and energies of a slowly loaded body; those of a motion are among its energies."""
@@ -215,6 +237,11 @@ class ElasticSections:
         if figure is not None:
             self.page.figure(figure, "forces",
                              loading.force_caption(self.run, shown, opposite), True)
+        figure, drawn = loading.travel_figure(self.run, self.words, shown)
+        if figure is not None:
+            listed = " and of ".join(f"{f.side} in {f.axis}" for f in drawn)
+            self.page.figure(figure, "force_over_displacement", "The force over the mean displacement "
+                             f"of its side, of {listed}.", True)
         figure = loading.energy_figure(self.run, self.words)
         if figure is not None:
             self.page.figure(figure, "energies", loading.energy_caption(self.run), True)

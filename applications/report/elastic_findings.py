@@ -3,9 +3,13 @@
 """Sentences that say what a run of an elastic body found."""
 
 import findings
+import fragments
 import loading
 from elastic_tables import extreme, last_totals, made_by_surfaces, place
 from style import name, plain
+
+
+AT_MOST = 4  # ends of cracks
 
 
 def what_ran(run, words):
@@ -27,7 +31,7 @@ def what_ran(run, words):
 
 def largest_values(run, index, field, when=""):
     """The largest value of a field by each model, or None."""
-    found = {m: extreme(run, index, m, field, "largest", False) for m in run.models}
+    found = {m: extreme(run, index, m, field, "largest", with_surfaces=False, of_body=True) for m in run.models}
     found = {m: f for m, f in found.items() if f is not None}
     if not found:
         return None
@@ -40,10 +44,38 @@ def largest_values(run, index, field, when=""):
     return f"The largest {field.text}{when}{where} is {listed}."
 
 
+def what_flies(run, index, words):
+    """The fragments, which the largest values above leave out."""
+    found = {m: fragments.find(run, index, m) for m in run.models}
+    listed = " and ".join(f.text(words.solution.amount) + end_of(m if len(run.models) > 1 else "")
+                          for m, f in found.items() if f is not None)
+    return f"Left out of largest values and of the scales of pictures: {listed}." if listed else None
+
+
+def intensities(run, words):
+    """K_I, and K_II where it is more than an error of the method, at the ends of cracks; a few at most."""
+    of_models = {m: run.summary["models"][m].get("stress intensity") or {} for m in run.models}
+    ends = list(dict.fromkeys(e for found in of_models.values() for e in found))
+    lines = []
+    for end in ends[:AT_MOST]:
+        for mode in ("I", "II"):
+            values = {m: found[end] for m, found in of_models.items() if end in found}
+            listed = [f"{plain(v[mode], 4)} ({m})" for m, v in values.items()
+                      if mode == "I" or abs(v["II"]) > 0.01 * abs(v["I"])]
+            if listed:
+                unit = f" in {words.units.intensity}" if words.units.intensity else ""
+                lines.append(f"The stress intensity factor K_{mode} at {end}{unit} is "
+                             f"{' and '.join(listed)}.")
+    if len(ends) > AT_MOST:
+        lines.append(f"Those at {len(ends) - AT_MOST} more ends are in totals.csv.")
+    return lines
+
+
 def what_is_stored(run):
     """The strain energies."""
     energies = last_totals(run, "strain energy")
-    listed = " and ".join(f"{plain(v, 4)} ({m})" for m, v in energies.items() if m in run.models)
+    listed = " and ".join(f"{run.words.total_amount('strain energy', v)} ({m})"
+                          for m, v in energies.items() if m in run.models)
     when = "At the end the" if loading.is_slow(run) else "The"
     return f"{when} strain energy is {listed}." if listed else None
 
@@ -68,7 +100,7 @@ def what_bonds_did(run, words):
             f" of {plain(int(whole + broken))} ({findings.percent(broken / (whole + broken))})"
         when = "at" if loading.is_slow(run) else "by"  # a motion is only seen at times of output
         lost = last_totals(run, loading.DISSIPATED).get(model)
-        cost = "" if lost is None else f", and an energy of {plain(lost, 4)} was dissipated"
+        cost = "" if lost is None else f", and an energy of {words.total_amount(loading.DISSIPATED, lost)} was dissipated"
         found.append(f"The first bonds broke {when} {words.at_time(first[model])}{of}; in the end "
                      f"{plain(int(broken))} bonds{share} were broken{cost}.")
     return found
@@ -82,7 +114,7 @@ def largest_forces(run, words):
     for force in loading.forces(run)[0]:
         models = [m for m in force.of_models if not force.is_constant(m)]
         listed = " and ".join(
-            f"{plain(value, 4)} at {words.at_time(time)}{end_of(m if len(run.models) > 1 else '')}"
+            f"{words.total_amount(force.quantity, value)} at {words.at_time(time)}{end_of(m if len(run.models) > 1 else '')}"
             for m, (time, value) in ((m, force.peak(m)) for m in models))
         if listed:
             found.append(f"The largest force on {force.side}, in {force.axis}, was {listed}.")
@@ -116,11 +148,11 @@ def sentences(run, words, difference, index, stressed):
     stressed: of those that the stress is told of."""
     found = [what_ran(run, words), findings.what_broke(run, words)]
     if index is not None:
-        found += [largest_values(run, index, words.solution),
+        found += [what_flies(run, index, words), largest_values(run, index, words.solution),
                   largest_values(run, stressed, words.fields["von_mises"],
                                  f", at {words.at_time(run.written_times()[stressed])},"
                                  if loading.is_slow(run) else "")]
-    found += what_bonds_did(run, words) + largest_forces(run, words)
+    found += intensities(run, words) + what_bonds_did(run, words) + largest_forces(run, words)
     found += [findings.how_far_apart(run, words, difference), findings.how_far_coupled(run),
               findings.how_wrong(run), what_is_stored(run), findings.what_it_cost(run),
               are_balanced(run)]

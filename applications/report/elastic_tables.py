@@ -6,10 +6,12 @@ from html import escape
 
 import numpy as np
 
+import fragments
 import loading
 from curves import probe_name, probe_points
 from style import minus, name
 from tables import cell, entry, table
+from words import with_unit
 
 FEM, PD = "finite elements", "peridynamics"
 MODULI = ("Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio")
@@ -126,12 +128,15 @@ def made_by_surfaces(run, model, field, nodes):
     return ((nodes < low + horizon) | (nodes > high - horizon))[:, high > low].any(axis=1)
 
 
-def extreme(run, index, model, field, which, with_surfaces=True):
+def extreme(run, index, model, field, which, with_surfaces=True, of_body=False):
     """(value, node) of the largest or smallest value of a field, or None; with or without what a
-    surface alone makes of stresses."""
+    surface alone makes of stresses; of_body: without fragments."""
     if run.field_file(index, model) is None:
         return None
     values = run.field(index, model, field.name, required=False)
+    flying = fragments.find(run, index, model) if of_body else None
+    if flying is not None and values is not None:
+        values = np.where(flying.mask, np.nan, values)
     if values is None or not np.isfinite(values).any():
         return None
     mesh = run.mesh(index, model)
@@ -216,8 +221,8 @@ def force_table(run):
                 for m in run.models]
         rows.append([f"<strong>Sum in {axis}</strong>", ""]
                     + [f"<strong>{cell(v, 6)}</strong>" for v in sums])
-    return table(["Side", "Condition"] + [name(m) for m in run.models], rows,
-                 "numbers second-text")
+    return table([with_unit("Side", run.words.units.force), "Condition"]
+                 + [name(m) for m in run.models], rows, "numbers second-text")
 
 
 def last_totals(run, quantity):
@@ -225,7 +230,7 @@ def last_totals(run, quantity):
     return {m: max(series)[1] for m, series in run.totals.get(quantity, {}).items()}
 
 
-ELSEWHERE = ("force on ", "body force in ", "throughput", "imbalance")
+ELSEWHERE = ("force on ", "body force in ", "throughput", "imbalance", "displacement of ")
 
 
 def energy_table(run):
@@ -236,10 +241,11 @@ def energy_table(run):
     for quantity in order:
         if not quantity.startswith(ELSEWHERE):
             values = last_totals(run, quantity)
-            rows.append([escape(name(quantity))] + [cell(values.get(m), 6) for m in run.models])
+            rows.append([escape(run.words.total(quantity))]
+                        + [cell(values.get(m), 6) for m in run.models])
     stress = [entry("mean stress", "von mises")(run.summary["models"][m]) for m in run.models]
     if any(s is not None for s in stress):
-        rows.append(["Von Mises stress of the mean stress"] + [cell(s, 6) for s in stress])
+        rows.append([escape(with_unit("Von Mises stress of the mean stress", run.words.units.stress))] + [cell(s, 6) for s in stress])
     if not rows:
         return ""
     first = "" if run.get("steady", default=False) else "At the end"

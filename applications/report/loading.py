@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 import style
+from words import with_unit
 
 BROKEN, DISSIPATED, RELEASED = "broken bonds", "energy dissipated", "energy released by broken bonds"
 WORK = "work of loads and supports"
@@ -181,8 +182,13 @@ def draw_forces(axes, run, shown):
             draw(axes, series, color, **model_look(model, run))
     axes.margins(y=0.08)
     axes.axhline(0, color="#9aa5b1", linewidth=0.8, zorder=1)
-    axes.set_title(style.name(shown[0].quantity) if len(shown) == 1 else "Forces on the sides",
-                   loc="left", fontsize=8.5)
+    axes.set_title(force_title(run, shown), loc="left", fontsize=8.5)
+
+
+def force_title(run, shown):
+    """What the axis of forces is."""
+    return run.words.total(shown[0].quantity) if len(shown) == 1 else \
+        with_unit("Forces on the sides", run.words.units.force)
 
 
 def draw_broken(axes, run):
@@ -223,6 +229,49 @@ def from_zero(axes):
     axes.set_xlim(min(low, -0.02 * high), high)
 
 
+def travel(run, force):
+    """{model: [(displacement, force)]} of a side in the direction of its force, in the order of time.
+
+    Empty where the displacement is not known at the same times or hardly changes.
+    """
+    moved = run.totals.get(f"displacement of {force.side} in {force.axis}", {})
+    found = {}
+    for model, series in force.of_models.items():
+        at = dict(moved.get(model, []))
+        pairs = [(at[t], v) for t, v in series if t in at]
+        if len(pairs) == len(series) >= 3 and np.ptp([u for u, _ in pairs]) > 0:
+            found[model] = pairs
+    return found
+
+
+def travel_figure(run, words, shown):
+    """Forces over the displacements of their sides: (figure or None, the forces drawn)."""
+    drawn = [(force, travel(run, force)) for force in shown]
+    drawn = [(force, of_models) for force, of_models in drawn if of_models]
+    if not drawn:
+        return None, []
+    figure = style.figure(10, 3.75)
+    axes = panel(figure, 0.95, 0.8, 8.7, 2.45)
+    for k, (force, of_models) in enumerate(drawn):
+        for model, pairs in of_models.items():
+            color = style.MODEL_COLOR.get(model, "#7b3294") if len(drawn) == 1 else SIDE_COLORS[k % 6]
+            look = model_look(model, run)
+            u, value = np.array(pairs).T
+            axes.plot(u, value, color=color, linestyle=look["dashes"], linewidth=1.5, zorder=3,
+                      marker=look["marker"] if len(u) <= FEW else None, markersize=3.2,
+                      markerfacecolor="white", markeredgewidth=0.9)
+    axes.margins(y=0.08)
+    axes.axhline(0, color="#9aa5b1", linewidth=0.8, zorder=1)
+    forces_drawn = [force for force, _ in drawn]
+    axes.set_title(force_title(run, forces_drawn), loc="left", fontsize=8.5)
+    only = forces_drawn[0]
+    text = f"Displacement of {only.side} in {only.axis}" if len(drawn) == 1 else \
+        "Displacement of the side in the direction of its force"
+    axes.set_xlabel(with_unit(text, words.length), labelpad=1)
+    legend_below(figure, force_legend(run, forces_drawn))
+    return figure, forces_drawn
+
+
 def energies(run):
     """{model: {energy: series}} of the energies that are drawn and not all zero."""
     found = {m: {q: run.totals[q][m] for q in ENERGIES if m in run.totals.get(q, {})}
@@ -251,7 +300,7 @@ def energy_figure(run, words):
         for quantity in reversed(ENERGIES):  # the work last, above the others
             if quantity in of_model:
                 draw(axes, of_model[quantity], *ENERGIES[quantity])
-        axes.set_title(style.name(model), loc="left", fontsize=8.5)
+        axes.set_title(with_unit(style.name(model), words.units.amount), loc="left", fontsize=8.5)
         from_zero(axes)
         axes.set_xlabel(words.time_axis(), labelpad=1)
     drawn = [q for q in ENERGIES if any(q in of_model for of_model in found.values())]
@@ -265,7 +314,8 @@ def drawn_quantities(run):
     if n_times(run) < 3:
         return set()
     shown, opposite = forces(run)
-    return {f.quantity for f in shown + opposite} | {BROKEN} | {
+    moved = {q for q in run.totals if q.startswith("displacement of ")}
+    return {f.quantity for f in shown + opposite} | {BROKEN} | moved | {
         q for of_model in energies(run).values() for q in of_model}
 
 

@@ -115,6 +115,7 @@ class Run:
         self.totals = self._read_totals("totals.csv")
         self.not_finite = {}  # model: first shown time with values that are no numbers
         self._meshes = {}
+        self.found = {}  # what others looked for in its fields, by keys of theirs
         self._domain = None
         self._scene = None
 
@@ -352,9 +353,10 @@ class Run:
     def shown_indices(self, at_most):
         """Indices of up to so many written times, spread evenly, the last one included."""
         n = len(self.summary["fields"])
-        if n <= at_most:
-            return list(range(n))
-        return sorted({int(round(i)) for i in np.linspace(0, n - 1, at_most)})
+        first = 1 if n > 1 and self.written_times()[0] == 0 else 0  # the start is for films
+        if n - first <= at_most:
+            return list(range(first, n))
+        return sorted({int(round(i)) for i in np.linspace(first, n - 1, at_most)})
 
     # ---- tables ------------------------------------------------------------------------
 

@@ -118,7 +118,7 @@ def apart_figure(totals, words, quantity):
         return None
     panels = Panels(1)
     axes = panels.axes(0, "", words)
-    axes.set_ylabel(style.name(quantity))
+    axes.set_ylabel(words.total(quantity))
     for model, values in of_model.items():
         panels.draw(axes, model, values)
     return panels.finish()
@@ -136,7 +136,7 @@ def totals_figure(totals, words, at_most=6):
         return None, silent
     panels = Panels(len(shown))
     for k, quantity in enumerate(shown):
-        axes = panels.axes(k, style.name(quantity), words)
+        axes = panels.axes(k, words.total(quantity), words)
         for model, values in totals[quantity].items():
             panels.draw(axes, model, values)
     return panels.finish(), silent

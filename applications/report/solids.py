@@ -5,9 +5,10 @@
 import numpy as np
 
 import contours
+import fragments
 import style
 from crossings import crack_normal
-from difference import difference_field
+from difference import compared, difference_field
 from raster import PAPER_AXES, View
 
 # Directions of x, y, z on paper, y upwards: the sides right, top and front are seen.
@@ -280,7 +281,7 @@ def draw_column(grid, column, slices, pictures, scale, words, title, moves=None)
     draw_hidden_cracks(axes, slices.cracks)
     label_body(axes, slices.lower, slices.upper, words, 7.5)
     frame_body(axes, slices.lower, slices.upper, moves)
-    axes.set_title(title, loc="left", pad=4, fontsize=9.5)
+    style.set_title(axes, title, grid.column + 0.3, 9.5, 4)
     for row, ((view, segments), picture) in enumerate(zip(slices.slices, sections), 1):
         axes = grid.panel(row, column)
         contours.draw_picture(axes, view, picture, scale, segments)
@@ -297,13 +298,13 @@ def draw_column(grid, column, slices, pictures, scale, words, title, moves=None)
             axes.tick_params(labelleft=False)
 
 
-def difference_pictures(maps, index, field, slices, pictures):
-    """PD minus FEM of a field in all views: of the nodes, else (two meshes) of the pictures."""
-    values = difference_field(maps.run, index, field.name)
+def difference_pictures(maps, index, field, slices, pictures, model):
+    """A model minus FEM of a field in all views: of the nodes, else (two meshes) of the pictures."""
+    values = difference_field(maps.run, index, field.name, model)
     if values is not None:
-        return slices.pictures(contours.PD, values)
+        return slices.pictures(model, values)
     return [[p - f for p, f in zip(*groups)]
-            for groups in zip(pictures[contours.PD], pictures[contours.FEM])]
+            for groups in zip(pictures[model], pictures[contours.FEM])]
 
 
 def face_moves(maps, index, model, slices, factor):
@@ -311,6 +312,9 @@ def face_moves(maps, index, model, slices, factor):
     displacement = None if factor is None else maps.run.displacement(index, model)
     if displacement is None:
         return None
+    flying = fragments.find(maps.run, index, model)
+    if flying is not None:
+        displacement = np.where(flying.mask[:, None], np.nan, displacement)
     parts = [slices.pictures(model, u)[1] for u in displacement.T]
     return [factor * np.stack(of_face, axis=-1) for of_face in zip(*parts)]
 
@@ -327,21 +331,23 @@ def field_figure(maps, index, words, field, largest=None, scale=None, factor=Non
         slices.slices = []
     models = contours.models_with(run, index, field.name)
     pictures = {m: slices.pictures(m, run.field(index, m, field.name)) for m in models}
-    both = contours.FEM in pictures and contours.PD in pictures and \
-        not (largest is not None and largest.zero)
+    gaps = [m for m, _ in compared(run, index, field.name, largest)
+            if m in pictures and contours.FEM in pictures]
     extents = [(1.0, body_height(slices))] + [(v.extent[1] - v.extent[0], v.extent[3] - v.extent[2])
                               for v, _ in slices.slices]
-    grid = Grid(len(models) + both, extents)
-    scale = scale or style.value_scale([p for group in pictures.values() for part in group
-                                        for p in part], outliers=field.outliers)
+    grid = Grid(len(models) + len(gaps), extents)
+    scale = scale or (
+        contours.scale_at(run, index, field) if run.words.elastic and fragments.broke(run, index) else
+        style.value_scale([p for group in pictures.values() for part in group for p in part],
+                          outliers=field.outliers))
     for column, model in enumerate(models):
         draw_column(grid, column, slices, pictures[model], scale, words, style.name(model),
                     face_moves(maps, index, model, slices, factor))
     grid.bar(0, len(models) - 1, scale, field.label())
-    if both:
-        difference = difference_pictures(maps, index, field, slices, pictures)
+    for column, model in enumerate(gaps, len(models)):
+        difference = difference_pictures(maps, index, field, slices, pictures, model)
         shown = style.difference_scale([p for part in difference for p in part])
-        draw_column(grid, len(models), slices, difference, shown, words,
-                    "Peridynamics − finite elements")
-        grid.bar(len(models), len(models), shown, field.label("Difference"))
+        draw_column(grid, column, slices, difference, shown, words,
+                    f"{style.name(model)} − finite elements")
+        grid.bar(column, column, shown, field.label("Difference"))
     return grid.figure

@@ -4,6 +4,7 @@
 
 import math
 import re
+import textwrap
 
 import matplotlib
 
@@ -147,16 +148,21 @@ def without_outliers(values, share, worth=0.7):
     reach = 0.05 * (inner[1] - inner[0])  # no further than this beyond the rest
     ends = [inner[0] if low < inner[0] - reach else low,
             inner[1] if high > inner[1] + reach else high]
-    return float(ends[0]), float(ends[1]), \
-        {(True, True): "both", (True, False): "min", (False, True): "max"}.get(
-            (ends[0] > low, ends[1] < high), "neither")
+    return float(ends[0]), float(ends[1]), beyond(ends[0] > low, ends[1] < high)
 
 
-def value_scale(pictures, colormap=THERMAL, n=20, parts=2, clip=None, outliers=0.0):
+def beyond(below, above):
+    """At which ends of a scale there are values beyond it, as matplotlib says it."""
+    return {(True, True): "both", (True, False): "min", (False, True): "max"}.get(
+        (bool(below), bool(above)), "neither")
+
+
+def value_scale(pictures, colormap=THERMAL, n=20, parts=2, clip=None, outliers=0.0, reach=None):
     """The common scale of several pictures; clip: the share of pixels that sets its upper end.
 
     outliers: the share of pixels at either end that may lie beyond it, such as those of a corner
-    where the stress is infinite.
+    where the stress is infinite; reach: (lowest, highest) of all that is drawn, if the pictures are
+    not all.
     """
     values = np.concatenate([p[np.isfinite(p)] for p in pictures] or [np.zeros(1)])
     if not len(values):
@@ -168,6 +174,9 @@ def value_scale(pictures, colormap=THERMAL, n=20, parts=2, clip=None, outliers=0
         if 0 < top < 0.8 * high:
             high, extend = top, "max"
     levels = nice_levels(low, high, n)
+    if reach is not None:
+        slack = 1e-6 * (levels[-1] - levels[0])
+        extend = beyond(reach[0] < levels[0] - slack, reach[1] > levels[-1] + slack)
     if extend == "neither" and high > levels[-1] + 1e-6 * (levels[-1] - levels[0]):
         extend = "max"
     return Scale(refined(levels, parts), colormap, levels[1:-1], extend)
@@ -195,6 +204,25 @@ def difference_scale(pictures, n=8, clip=0.998):
     if top > bound * (1 + 1e-9):
         extend = "both"
     return Scale(refined(levels, 5), DIFFERENCE, [], extend)
+
+
+INCHES_OF_LETTER = 0.0083  # for each point of its size
+
+
+def set_title(axes, text, width, size=10, pad=5):
+    """A title over axes with so many inches of room: smaller, then on two lines where it has to be."""
+    def fits(words, points):
+        return max(map(len, words.split("\n"))) * INCHES_OF_LETTER * 1.12 * points <= width
+    lines = text.replace(" − ", "\n− ")
+    for words, points in ((text, size), (text, 0.85 * size), (lines, size), (lines, 0.85 * size)):
+        if fits(words, points):
+            break
+    axes.set_title(words, loc="left", pad=pad, fontsize=points)
+
+
+def wrapped(text, inches, size=8.5):
+    """A label on lines of so many inches at most, as far as its words allow that."""
+    return textwrap.fill(text, max(8, int(inches / (INCHES_OF_LETTER * size))), break_long_words=False)
 
 
 def figure(width, height):

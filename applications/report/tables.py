@@ -183,7 +183,9 @@ def boundary_table(run):
         fluxes = entry("boundary flux")(run.summary["models"][model])
         sums.append(f"<strong>{cell(sum(fluxes.values()), 6)}</strong>" if fluxes else "–")
     rows.append(["<strong>Sum</strong>", ""] + sums)
-    return table(["Side", "Condition"] + [name(m) for m in run.models], rows, "numbers second-text")
+    unit = run.words.units.rate
+    return table([with_unit("Side", unit), "Condition"] + [name(m) for m in run.models], rows,
+                 "numbers second-text")
 
 
 def sides_table(run):
@@ -246,7 +248,7 @@ def totals_table(run):
     rows = []
     for quantity, of_model in run.totals.items():
         values = [max(of_model[m])[1] if m in of_model else None for m in run.models]
-        rows.append([escape(name(quantity))] + [cell(v, 6) for v in values])
+        rows.append([escape(run.words.total(quantity))] + [cell(v, 6) for v in values])
     if not rows:
         return ""
     first = "" if run.get("steady", default=False) else "At the end"

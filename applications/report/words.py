@@ -9,6 +9,7 @@ import re
 from dataclasses import dataclass, replace
 
 import style
+from units import Units
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,8 @@ class Words:
         self.time = units.get("time") or ""
         unit = units.get("field", units.get(physics.field)) or ""
         self.solution = Field(physics.field, DEGREES.get(unit, unit), physics.isolines)
-        self.flux = Field(physics.flux)
+        self.units = Units(units, summary.get("dimension", 3), summary.get("physics") or "heat")
+        self.flux = Field(physics.flux, self.units.flux)
         self.content, self.flow, self.quantity = physics.content, physics.flow, physics.quantity
         self.values, self.also = physics.values, physics.also
         self.plotted_apart = [physics.content] if physics.content_apart else []
@@ -109,8 +111,8 @@ class Words:
     MAGNITUDE = "displacement_magnitude"
 
     def _name_elastic_fields(self):
-        """The scalar fields of an elastic body; stresses have no unit of their own in a scene."""
-        vector, unit = self.solution.name, self.solution.unit
+        """The scalar fields of an elastic body."""
+        vector, unit, stress = self.solution.name, self.solution.unit, self.units.stress
         self.quantity = "force"
         self.parts[self.MAGNITUDE] = (vector, None)
         self.solution = Field(self.MAGNITUDE, unit, "contours of equal displacement",
@@ -122,9 +124,9 @@ class Words:
             self.fields[part] = Field(part, unit, called=f"displacement in {axis}")
             for other in "xyz"[component:]:
                 part = f"stress_{axis}{other}"
-                self.fields[part] = Field(part, called=f"stress {axis}{other}", outliers=0.002)
+                self.fields[part] = Field(part, stress, called=f"stress {axis}{other}", outliers=0.002)
         for part, title in (("von_mises", "von Mises stress"), ("pressure", "pressure")):
-            self.fields[part] = Field(part, called=title, outliers=0.002)
+            self.fields[part] = Field(part, stress, called=title, outliers=0.002)
         self.fields["damage"] = Field("damage", isolines="", span=(0.0, 1.0),
                                       about="The share of a node's bonds, by volume, that are "
                                       "broken: 0 where all are whole, 1 where none is left. Bonds "
@@ -144,6 +146,14 @@ class Words:
     def passing(self):
         """What passes a side: 'heat', 'moisture', 'current'."""
         return self.flow.removesuffix(" flow")
+
+    def total(self, quantity):
+        """The title of a quantity of totals.csv, with its unit."""
+        return with_unit(style.name(quantity), self.units.of_total(quantity))
+
+    def total_amount(self, quantity, value, digits=4):
+        """A value of it with few digits and its unit."""
+        return f"{style.plain(value, digits)} {self.units.of_total(quantity)}".strip()
 
     def solution_parts(self):
         """Names in the files of what the solution is computed from."""

@@ -11,11 +11,37 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "duration.h"
+#include "progress_beat.h"
+
 namespace PeriDeal
 {
-  Progress::Progress(const MPI_Comm communicator, const bool quiet)
+  double RemainingTime::update(const double spent, const double done)
+  {
+    constexpr double least_share = 0.005, least_time = 3., factor = 1.5, span = 30.;
+    if (done < least_share || spent < least_time)
+      return -1.;
+    const double found  = spent * std::max(0., 1. - done) / done,
+                 passed = std::max(0., spent - last);
+    if (shown < 0.)
+      shown = found;
+    else
+      {
+        const double expected = std::max(0., shown - passed),
+                     most     = std::pow(factor, passed / span);
+        // Near the end a second more is no factor.
+        shown = std::clamp(found, expected / most, expected * most + (most - 1.));
+      }
+    last = spent;
+    return shown;
+  }
+
+
+  Progress::Progress(const MPI_Comm communicator, const bool quiet, const double interval)
     : active(false)
     , terminal(isatty(STDOUT_FILENO) != 0 && isatty(STDERR_FILENO) != 0)
+    , interval(interval)
+    , start(std::chrono::steady_clock::now())
   {
     int rank = 0;
     MPI_Comm_rank(communicator, &rank);
@@ -27,10 +53,24 @@ namespace PeriDeal
   }
 
 
+  Progress::~Progress() = default;
+
+
+  Progress::Beat *Progress::beat_now() const
+  {
+    if (active && !beat)
+      beat = std::make_unique<Beat>(terminal, interval);
+    return beat.get();
+  }
+
+
   void Progress::line(const std::string &text) const
   {
-    if (active)
-      std::cout << text << std::endl;
+    if (!active)
+      return;
+    std::cout << text << std::endl;
+    if (beat)
+      beat->postpone();
   }
 
 
@@ -42,70 +82,77 @@ namespace PeriDeal
 
   void Progress::begin(const std::string &what)
   {
-    label      = what;
-    last_tenth = 0;
-    start = last_shown = std::chrono::steady_clock::now();
-  }
-
-
-  std::string Progress::remaining(const double done) const
-  {
-    const double spent =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return done > 0. ? readable_duration(spent * (1. - done) / done) + " left" : "";
+    if (Beat *b = beat_now())
+      b->begin(what);
   }
 
 
   void Progress::update(const double done)
   {
-    if (!active)
-      return;
-    const auto now = std::chrono::steady_clock::now();
-    if (terminal)
-      {
-        if (std::chrono::duration<double>(now - last_shown).count() < 0.1 && done < 1.)
-          return;
-        last_shown           = now;
-        constexpr int width  = 30;
-        const int     filled = static_cast<int>(std::lround(width * std::clamp(done, 0., 1.)));
-        std::cout << "\r  " << label << " [" << std::string(filled, '#')
-                  << std::string(width - filled, '.') << "] " << static_cast<int>(100. * done)
-                  << " %  " << remaining(done) << "      " << std::flush;
-      }
-    else if (static_cast<int>(10. * done) > last_tenth && done < 1. &&
-             std::chrono::duration<double>(now - last_shown).count() > 2.)
-      {
-        last_tenth = static_cast<int>(10. * done);
-        last_shown = now;
-        line("  " + label + " " + std::to_string(10 * last_tenth) + " %, " + remaining(done));
-      }
+    if (Beat *b = beat_now())
+      b->update(done);
+  }
+
+
+  void Progress::doing(const std::string &what) const
+  {
+    if (Beat *b = beat_now())
+      b->set_doing(what);
+  }
+
+
+  void Progress::state(const std::string &what) const
+  {
+    if (Beat *b = beat_now())
+      b->set_state(what);
+  }
+
+
+  void Progress::advancing(const double t,
+                           const double t_end,
+                           const double done,
+                           const double done_at_end) const
+  {
+    if (Beat *b = beat_now())
+      b->set_span(t, t_end, done, done_at_end);
   }
 
 
   void Progress::end() const
   {
-    if (active && terminal)
-      std::cout << "\r" << std::string(78, ' ') << "\r" << std::flush;
+    beat.reset();
+  }
+
+
+  double Progress::elapsed() const
+  {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+
+  void format_duration(char *text, const std::size_t size, const double seconds)
+  {
+    if (seconds < 60.)
+      std::snprintf(text, size, seconds < 9.95 ? "%.2g s" : "%.0f s", seconds);
+    else if (seconds < 3600.)
+      std::snprintf(text,
+                    size,
+                    "%d min %d s",
+                    static_cast<int>(seconds / 60.),
+                    static_cast<int>(seconds) % 60);
+    else
+      std::snprintf(text,
+                    size,
+                    "%d h %d min",
+                    static_cast<int>(seconds / 3600.),
+                    static_cast<int>(seconds / 60.) % 60);
   }
 
 
   std::string readable_duration(const double seconds)
   {
     char text[64];
-    if (seconds < 60.)
-      std::snprintf(text, sizeof text, seconds < 9.95 ? "%.2g s" : "%.0f s", seconds);
-    else if (seconds < 3600.)
-      std::snprintf(text,
-                    sizeof text,
-                    "%d min %d s",
-                    static_cast<int>(seconds / 60.),
-                    static_cast<int>(seconds) % 60);
-    else
-      std::snprintf(text,
-                    sizeof text,
-                    "%d h %d min",
-                    static_cast<int>(seconds / 3600.),
-                    static_cast<int>(seconds / 60.) % 60);
+    format_duration(text, sizeof text, seconds);
     return text;
   }
 

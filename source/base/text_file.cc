@@ -9,6 +9,22 @@
 
 namespace PeriDeal
 {
+  std::string places_looked_at(const std::string &file_name, const std::string &folder)
+  {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path  here = fs::absolute(file_name, error).lexically_normal();
+    std::string     text = ". Looked for it at '" + here.string() + "'";
+    if (fs::path(file_name).is_absolute())
+      return text + ".";
+    const fs::path there = fs::absolute(fs::path(folder) / file_name, error).lexically_normal();
+    if (there != here)
+      text += " and, beside the scene file, at '" + there.string() + "'";
+    return text +
+           ". A path is relative to the working directory or to the folder of the scene file.";
+  }
+
+
   std::string read_file(const std::string &file_name,
                         const std::size_t  most_bytes,
                         std::string       &fault)

@@ -145,7 +145,9 @@ namespace PeriDeal
 
     /** The text of a mesh file, once it is known that deal.II can read it. Collective. */
     template <int dim>
-    std::string checked_mesh_file(const std::string &file_name, const MPI_Comm communicator)
+    std::string checked_mesh_file(const std::string &file_name,
+                                  const std::string &scene_folder,
+                                  const MPI_Comm     communicator)
     {
       std::string text, message;
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
@@ -155,8 +157,7 @@ namespace PeriDeal
             text = read_file(file_name, most_bytes_of_data, fault);
             AssertThrow(fault.empty(),
                         UserError("'Mesh file' in section 'Domain': '" + file_name + "' " + fault +
-                                  ". Check its path, relative to the working directory or to the "
-                                  "folder of the scene file."));
+                                  places_looked_at(file_name, scene_folder)));
             check_msh(parse_msh(text, file_name, dim), file_name, dim);
           }
         catch (const UserError &error)
@@ -171,10 +172,11 @@ namespace PeriDeal
 
     template <int dim>
     CoarseMesh<dim> read_mesh_file(const std::string &file_name,
+                                   const std::string &scene_folder,
                                    const MPI_Comm     communicator,
                                    BoundaryIds       &ids)
     {
-      std::istringstream file(checked_mesh_file<dim>(file_name, communicator));
+      std::istringstream file(checked_mesh_file<dim>(file_name, scene_folder, communicator));
       Triangulation<dim> mesh;
       try
         {
@@ -301,7 +303,7 @@ namespace PeriDeal
     unsigned int    n_refinements = 0;
     if (domain.shape == Shape::mesh_file)
       {
-        coarse = read_mesh_file<dim>(domain.mesh_file, communicator, ids);
+        coarse = read_mesh_file<dim>(domain.mesh_file, domain.scene_folder, communicator, ids);
         note_cracks_on_faces(coarse, cracks, notes);
       }
     else if (domain.shape == Shape::plate_with_hole)

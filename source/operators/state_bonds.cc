@@ -11,12 +11,33 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <sstream>
 
 #include "state_lattice.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** What a node that bonds do not hold needs: a longer horizon, if this one spans few cells of its size, else other cracks. */
+    std::string advice_on_horizon(const double horizon, const double volume, const unsigned int dim)
+    {
+      constexpr double few = 2.5, enough = 3.; // cells in a horizon
+      const double     size = std::pow(volume, 1. / dim);
+      if (horizon >= few * size)
+        return "Check the cracks in section 'Cracks': they leave it too few bonds.";
+      std::ostringstream text;
+      text.precision(3);
+      text << "Cells there are as large as " << size
+           << ", and 'Horizon' in section 'Peridynamics' is " << horizon << ": take "
+           << enough * size << " or more, or smaller cells there.";
+      return text.str();
+    }
+  } // namespace
+
 
   template <int dim>
   bool StateOperator<dim>::may_leave_out_bonds() const
@@ -150,13 +171,12 @@ namespace PeriDeal
     if (!message.empty())
       return;
     if (!(q > 0.))
-      message =
-        "The node at " + place_of(dim * i) +
-        " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
+      message = "The node at " + place_of(dim * i) + " is isolated: no bond of it is left. " +
+                advice_on_horizon(scene.horizon(), nodes.volume(i), dim);
     else if (smallest_eigenvalue(shape) < 1e-9 * trace(shape))
-      message =
-        "All bonds of the node at " + place_of(dim * i) +
-        " lie in one line or plane, across which nothing holds it. Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
+      message = "All bonds of the node at " + place_of(dim * i) +
+                " lie in one line or plane, across which nothing holds it. " +
+                advice_on_horizon(scene.horizon(), nodes.volume(i), dim);
   }
 
 

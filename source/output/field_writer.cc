@@ -17,6 +17,7 @@
 
 #include "gather_in_turn.h"
 #include "hdf5_file.h"
+#include "tensor_array.h"
 
 namespace PeriDeal
 {
@@ -189,11 +190,40 @@ namespace PeriDeal
 
 
   template <int dim>
+  std::string FieldWriter<dim>::tensor_text() const
+  {
+    const std::string name = name_of_tensor(names);
+    if (name.empty() || patches.empty())
+      return "";
+    const std::vector<int> places = components_of_tensor(names);
+    std::vector<float>     values;
+    values.reserve(patches.size() * GeometryInfo<dim>::vertices_per_cell * places.size());
+    for (const auto &patch : patches)
+      for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell; ++v)
+        for (const int place : places)
+          values.push_back(place < 0 ? 0.f : static_cast<float>(patch.data(place, v)));
+    return tensor_array(name, values);
+  }
+
+
+  template <int dim>
+  std::string FieldWriter<dim>::vtu_piece() const
+  {
+    std::ostringstream piece;
+    if (patches.empty())
+      return "";
+    DataOutBase::write_vtu_main(patches, names, get_nonscalar_data_ranges(), flags, piece);
+    std::string       text = piece.str();
+    const std::size_t end  = text.rfind("</PointData>");
+    return end == std::string::npos ? text : text.insert(end, tensor_text());
+  }
+
+
+  template <int dim>
   void FieldWriter<dim>::write_vtu_file(const std::string &name) const
   {
-    std::ostringstream head, piece, foot; // deal.II throws where a file cannot be written to
-    if (!patches.empty())
-      DataOutBase::write_vtu_main(patches, names, get_nonscalar_data_ranges(), flags, piece);
+    std::ostringstream head, foot; // deal.II throws where a file cannot be written to
+    const std::string  piece = vtu_piece();
     DataOutBase::write_vtu_header(head, flags);
     DataOutBase::write_vtu_footer(foot);
     std::unique_ptr<UnfinishedFile> target;
@@ -213,7 +243,7 @@ namespace PeriDeal
         problem = out.is_open() ? 0 : errno != 0 ? errno : -1;
         add(head.str());
       }
-    gather_in_turn(piece.str(), dofs.get_communicator(), add);
+    gather_in_turn(piece, dofs.get_communicator(), add);
     if (!target || !target->is_listed())
       return;
     add(foot.str());
@@ -235,7 +265,13 @@ namespace PeriDeal
       return;
     std::ostringstream pvtu, pvd;
     this->write_pvtu_record(pvtu, {piece});
-    folder.write(record, pvtu.str());
+    std::string text = pvtu.str();
+    if (const std::size_t end = text.rfind("</PPointData>");
+        end != std::string::npos && !name_of_tensor(names).empty())
+      text.insert(end,
+                  "    <PDataArray type=\"Float32\" Name=\"" + name_of_tensor(names) +
+                    "\" NumberOfComponents=\"9\" format=\"ascii\"/>\n");
+    folder.write(record, text);
     vtu_records.emplace_back(time, record);
     DataOutBase::write_pvd_record(pvd, vtu_records);
     if (!folder.failed())
@@ -332,23 +368,43 @@ namespace PeriDeal
   {
     const std::uint64_t n_cells =
       Utilities::MPI::sum(static_cast<std::uint64_t>(patches.size()), dofs.get_communicator());
-    XDMFEntry entry(hdf5_name, time, n_cells * GeometryInfo<dim>::vertices_per_cell, n_cells, dim);
-    for (const auto &[table, first_component, n_components] : tables())
-      entry.add_attribute(table, n_components == 1 ? 1 : 3);
+    const std::uint64_t n_points = n_cells * GeometryInfo<dim>::vertices_per_cell;
     if (!folder.writes() || folder.failed())
       return;
-    xdmf_entries += entry.get_xdmf_content(3, ReferenceCells::get_hypercube<dim>());
-    folder.write(
-      series + ".xdmf",
-      "<?xml version=\"1.0\" ?>\n"
-      "<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n"
-      "<Xdmf Version=\"2.0\">\n"
-      "  <Domain>\n"
-      "    <Grid Name=\"CellTime\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
-        xdmf_entries +
-        "    </Grid>\n"
-        "  </Domain>\n"
-        "</Xdmf>\n");
+    const auto item = [&](const std::string  &table,
+                          const std::uint64_t n_rows,
+                          const unsigned int  n_columns,
+                          const std::string  &type) {
+      return "          <DataItem Dimensions=\"" + std::to_string(n_rows) + " " +
+             std::to_string(n_columns) + "\" NumberType=\"" + type + "\" Precision=\"" +
+             (type == "Float" ? "8" : "4") + "\" Format=\"HDF\">" + hdf5_name + ":/" + table +
+             "</DataItem>\n";
+    };
+    std::ostringstream grid;
+    grid.precision(17);
+    grid << "      <Grid Name=\"mesh\" GridType=\"Uniform\">\n        <Time Value=\"" << time
+         << "\"/>\n        <Geometry GeometryType=\"" << (dim == 2 ? "XY" : "XYZ") << "\">\n"
+         << item("nodes", n_points, dim, "Float")
+         << "        </Geometry>\n        <Topology TopologyType=\""
+         << (dim == 2 ? "Quadrilateral" : "Hexahedron") << "\" NumberOfElements=\"" << n_cells
+         << "\">\n"
+         << item("cells", n_cells, GeometryInfo<dim>::vertices_per_cell, "UInt")
+         << "        </Topology>\n";
+    for (const auto &[table, first_component, n_components] : tables())
+      grid << "        <Attribute Name=\"" << table << "\" AttributeType=\""
+           << (n_components == 1 ? "Scalar" : "Vector") << "\" Center=\"Node\">\n"
+           << item(table, n_points, n_components == 1 ? 1 : 3, "Float") << "        </Attribute>\n";
+    grid << "      </Grid>\n";
+    xdmf_entries += grid.str();
+    folder.write(series + ".xdmf",
+                 "<?xml version=\"1.0\"?>\n"
+                 "<Xdmf Version=\"3.0\">\n"
+                 "  <Domain>\n"
+                 "    <Grid Name=\"times\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
+                   xdmf_entries +
+                   "    </Grid>\n"
+                   "  </Domain>\n"
+                   "</Xdmf>\n");
   }
 
 

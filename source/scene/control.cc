@@ -146,11 +146,12 @@ namespace PeriDeal
       "",
       "time",
       "Times of output, separated by commas; steps land on them. The end time is always written.");
-    declare("Write every",
-            EntryType::text,
-            "",
-            "time",
-            "Time between two outputs, instead of Write at.");
+    declare(
+      "Write every",
+      EntryType::text,
+      "",
+      "time",
+      "Time between two outputs, instead of Write at. Fields are written at t = 0, too, for films.");
     declare("Probes",
             EntryType::list,
             "",
@@ -208,6 +209,13 @@ namespace PeriDeal
       }
     std::sort(write_times.begin(), write_times.end());
     write_times.erase(std::unique(write_times.begin(), write_times.end()), write_times.end());
+  }
+
+
+  template <int dim>
+  bool OutputControl<dim>::starts_at_zero() const
+  {
+    return !text("Write every").empty();
   }
 
 
@@ -343,6 +351,23 @@ namespace PeriDeal
             "V",
             "",
             "Name of the unit of the electric potential." + label);
+    declare(
+      "Force",
+      EntryType::text,
+      "N",
+      "",
+      "Name of the unit of force, from which those of stresses, energies and stress intensities follow." +
+        label);
+    declare(
+      "Energy",
+      EntryType::text,
+      "",
+      "",
+      "Name of the unit of energy. Empty: in elasticity the product of force and length; of heat none is shown, "
+      "since diffusivities may have been given in place of conductivities." +
+        label);
+    declare("Mass", EntryType::text, "kg", "", "Name of the unit of the mass of moisture." + label);
+    declare("Current", EntryType::text, "A", "", "Name of the unit of electric current." + label);
   }
 
 
@@ -352,6 +377,10 @@ namespace PeriDeal
     time        = text("Time");
     temperature = text("Temperature");
     potential   = text("Potential");
+    force       = text("Force");
+    energy      = text("Energy");
+    mass        = text("Mass");
+    current     = text("Current");
   }
 
 

@@ -30,7 +30,10 @@ namespace PeriDeal
       };
       add(scene.domain.nodes != NodePlacement::vertices,
           scene.domain.where("Nodes"),
-          "is 'cell centers'; bonds and elements share the nodes on the vertices");
+          std::string(scene.domain.shape == Shape::image ?
+                        "is 'cell centers', which is what 'auto' means with 'Shape = image'" :
+                        "is 'cell centers'") +
+            "; bonds and elements share the nodes on the vertices: set 'Nodes = vertices'");
       add(pd.flux_treatment != FluxTreatment::natural,
           pd.where("Flux treatment"),
           "makes slaves of nodes; use 'natural'");

@@ -308,6 +308,29 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  std::vector<std::string> Cracks<dim>::parts_outside(const Point<dim> &lower,
+                                                      const Point<dim> &upper) const
+  {
+    constexpr double slack = 0.01; // of the body: cracks are drawn across its edge to be sure
+    std::vector<std::string> found;
+    for (unsigned int i = 0; i < cracks.size(); ++i)
+      {
+        double farthest = 0.;
+        for (const Point<dim> &p : cracks[i])
+          for (unsigned int d = 0; d < dim; ++d)
+            farthest = std::max(farthest,
+                                std::max(lower[d] - p[d], p[d] - upper[d]) / (upper[d] - lower[d]));
+        if (farthest > slack)
+          found.push_back(crack_name(i, cracks[i]) + " ('" + (dim == 2 ? "Segments" : "Polygons") +
+                          "' in section 'Cracks') reaches out of the body, by " +
+                          number_text(std::round(1000. * farthest) / 10.) +
+                          " % of its extent. What is outside has no effect; check its corners.");
+      }
+    return found;
+  }
+
+
   template class Cracks<1>;
   template class Cracks<2>;
   template class Cracks<3>;

@@ -267,11 +267,14 @@ namespace PeriDeal
   template <int dim>
   void Domain<dim>::parse_hole()
   {
-    if (split_list(text("Hole center"), ';').size() > 1)
+    const std::size_t n_holes =
+      std::max(split_list(text("Hole center"), ';').size(),
+               (split_list(text("Hole center"), ',').size() + dim - 1) / dim);
+    if (n_holes > 1)
       error(
         "Hole center",
-        "found '" + text("Hole center") +
-          "', which are several points; it is that of one hole. Several go into 'Holes', 'circle: x, y, radius ; circle: ...'.");
+        "found '" + text("Hole center") + "', the centres of " + std::to_string(n_holes) +
+          " holes: it is that of one. Several go into 'Holes', 'circle: x, y, radius ; circle: ...'.");
     hole_center = parse_point<dim>(text("Hole center"), where("Hole center"));
     hole_radius = number("Hole radius");
     hole_shape  = choice<HoleShape>("Hole shape");

@@ -6,6 +6,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/memory.h>
+#include <perideal/base/text_file.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/domain.h>
 #include <perideal/scene/lists.h>
@@ -127,6 +128,10 @@ namespace PeriDeal
     image_file = std::filesystem::exists(text("Image")) || !std::filesystem::exists(beside) ?
                    text("Image") :
                    beside.string();
+    if (!std::filesystem::exists(image_file))
+      error("Image",
+            "there is no file '" + text("Image") + "'" +
+              places_looked_at(text("Image"), scene_folder));
     Picture picture;
     try
       {

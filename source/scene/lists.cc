@@ -127,7 +127,20 @@ namespace PeriDeal
   {
     std::vector<dealii::Point<dim>> points;
     for (const std::string &piece : split_list(text, ';'))
-      points.push_back(parse_point<dim>(piece, where));
+      {
+        const std::vector<std::string> numbers = split_list(piece, ',');
+        if (dim > 1 && numbers.size() > dim && numbers.size() % dim == 0)
+          {
+            std::string several;
+            for (unsigned int k = 0; k < numbers.size(); ++k)
+              several += (k == 0 ? "" : k % dim == 0 ? " ; " : ", ") + trimmed(numbers[k]);
+            entry_error(where,
+                        "'" + trimmed(piece) + "' has " + std::to_string(numbers.size()) +
+                          " coordinates, those of " + std::to_string(numbers.size() / dim) +
+                          " points. A ';' separates points: " + several);
+          }
+        points.push_back(parse_point<dim>(piece, where));
+      }
     return points;
   }
 

@@ -6,6 +6,8 @@
 #include <perideal/scene/lists.h>
 #include <perideal/scene/scene.h>
 
+#include <algorithm>
+#include <cctype>
 #include <sstream>
 
 namespace PeriDeal
@@ -46,6 +48,80 @@ namespace PeriDeal
     }
 
 
+    std::string section_title(const SceneSection &section)
+    {
+      return section.name().empty() ? "outside all sections" : "section '" + section.name() + "'";
+    }
+
+
+    /** An entry as somebody reads it on a terminal. */
+    std::string plain_text(const SceneSection &section, const Entry &entry)
+    {
+      constexpr std::size_t width = 78;
+      std::ostringstream    out;
+      out << entry.name << "  (" << section_title(section) << ")\n"
+          << "  type:     " << type_text(entry) << "\n"
+          << "  default:  " << (entry.default_text.empty() ? "(empty)" : entry.default_text)
+          << "\n";
+      if (!entry.unit.empty())
+        out << "  unit:     " << entry.unit << "\n";
+      std::istringstream words(entry.documentation);
+      std::string        line, word;
+      while (words >> word)
+        {
+          if (line.size() + word.size() + 3 > width && !line.empty())
+            {
+              out << "  " << line << "\n";
+              line.clear();
+            }
+          line += (line.empty() ? "" : " ") + word;
+        }
+      out << "  " << line << "\n";
+      return out.str();
+    }
+
+
+    bool same_letters(const std::string &a, const std::string &b)
+    {
+      return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
+               return std::tolower(static_cast<unsigned char>(x)) ==
+                      std::tolower(static_cast<unsigned char>(y));
+             });
+    }
+
+
+    /** What is known of an entry, of `Section/Entry`, or of all entries of a section; empty if there is no such name. */
+    std::string explanation(const std::vector<SceneSection *> &sections, const std::string &name)
+    {
+      std::string text;
+      for (const SceneSection *const section : sections)
+        for (const Entry &entry : section->entries())
+          if (same_letters(entry.name, name) || same_letters(section->name(), name) ||
+              same_letters(section->name() + "/" + entry.name, name))
+            text += (text.empty() ? "" : "\n") + plain_text(*section, entry);
+      return text;
+    }
+
+
+    [[noreturn]] void unknown_name(const std::vector<SceneSection *> &sections,
+                                   const std::string                 &name,
+                                   const std::vector<std::string>    &formats)
+    {
+      std::vector<std::string> names = formats, titles;
+      for (const SceneSection *const section : sections)
+        {
+          names.push_back(section->name());
+          if (!section->name().empty())
+            titles.push_back(section->name());
+          for (const Entry &entry : section->entries())
+            names.push_back(entry.name);
+        }
+      throw UserError("'" + name + "' is no entry and no section of a scene file." +
+                      did_you_mean(name, names) + " Sections: " + join_names(titles) +
+                      ". The whole manual: " + join_names(formats) + ".");
+    }
+
+
     /** Into a handler of its own: the global one keeps the scene that was parsed last. */
     void declare(const std::vector<SceneSection *> &sections, ParameterHandler &prm)
     {
@@ -75,14 +151,14 @@ namespace PeriDeal
   std::string parameter_manual(const std::string &format)
   {
     const std::vector<std::string> formats = {"prm", "markdown", "JSON", "XML"};
-    unsigned int                   index   = 0;
-    while (index < formats.size() && formats[index] != format)
-      ++index;
-    AssertThrow(index < formats.size(),
-                UserError("Unknown format '" + format + "' of the parameter manual; known: " +
-                          join_names(formats) + "." + did_you_mean(format, formats)));
-
-    Scene<2>           scene;
+    Scene<2>                       scene;
+    if (std::find(formats.begin(), formats.end(), format) == formats.end())
+      {
+        const std::string text = explanation(scene.sections(), format);
+        if (text.empty())
+          unknown_name(scene.sections(), format, formats);
+        return text;
+      }
     ParameterHandler   prm;
     std::ostringstream out;
     if (format == "markdown")

@@ -344,6 +344,8 @@ namespace PeriDeal
       {
         cracks.set_box(domain.lower, domain.upper);
         cracks.check_inside(domain.lower, domain.upper);
+        for (const std::string &note : cracks.parts_outside(domain.lower, domain.upper))
+          domain.notes.push_back(note);
         cracks.check_tips_inside(domain.lower, domain.upper, cracks.end_time);
       }
     if (runs(*this, Model::finite_elements) && finite_elements.degree > 1 &&

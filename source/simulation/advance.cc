@@ -82,6 +82,8 @@ namespace PeriDeal
   {
     for (auto &model : models)
       {
+        if (files)
+          progress.doing("solving " + model->name());
         Timings::Scope scope(model->timings, "solve");
         with_formulas([&] {
           model->steady_iterations += solve_steady(model->op(),
@@ -119,6 +121,23 @@ namespace PeriDeal
 
 
   template <int dim>
+  double Simulation<dim>::share_done(const unsigned int n, const double t) const
+  {
+    double some = 0., all = 0.;
+    for (unsigned int k = 0; k < models.size(); ++k)
+      {
+        const OperatorSize size = models[k]->op().size();
+        const double       cost = std::max(1., models[k]->stepper->expected_applications(t - now)) *
+                            static_cast<double>(size.unknowns + size.nonzeros + size.bonds);
+        all += cost;
+        if (k < n)
+          some += cost;
+      }
+    return (now + some / all * (t - now)) / scene.time.end_time;
+  }
+
+
+  template <int dim>
   void Simulation<dim>::advance_to(const double t)
   {
     if (scene.time.steady)
@@ -140,8 +159,16 @@ namespace PeriDeal
         const double next = grading ? grading->next_adaptation(now) :
                                       std::numeric_limits<double>::infinity();
         const double to   = std::min(t, next);
-        for (auto &model : models)
-          advance_through_events(*model, now, to);
+        for (unsigned int k = 0; k < models.size(); ++k)
+          {
+            if (files)
+              {
+                const double begin = share_done(k, to), end = share_done(k + 1, to);
+                progress.doing(models[k]->name() + ": time stepping");
+                progress.advancing(now, to, begin, end);
+              }
+            advance_through_events(*models[k], now, to);
+          }
         now = to;
         if (to == next)
           adapt(to);

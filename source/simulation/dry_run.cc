@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
 
 #include <algorithm>
@@ -16,6 +17,7 @@ namespace PeriDeal
     build();
     make_steppers();
     make_readers();
+    double computing = 0.; // in seconds, negative if it is not known
     for (const auto &model : models)
       {
         std::ostringstream out;
@@ -24,6 +26,9 @@ namespace PeriDeal
         if (scene.time.steady)
           {
             progress.line("  steady: one linear solve, about 20 iterations");
+            constexpr double of_one =
+              6.; // applications that an iteration with its preconditioner costs
+            computing += 20. * of_one * time_of_application(*model);
             continue;
           }
         const Spectrum spectrum = model->op().spectrum();
@@ -36,17 +41,38 @@ namespace PeriDeal
             << "\n"
             << "  stepper: " << model->stepper->name();
         progress.line(out.str());
-        const double n = expected_applications(*model);
+        const double n    = expected_applications(*model);
+        const double time = n * time_of_application(*model);
+        computing         = n > 0. && computing >= 0. ? computing + time : -1.;
         if (n > 0.)
           progress.line("  estimated: " + readable_count(static_cast<unsigned long long>(n)) +
-                        " operator applications, " +
-                        readable_duration(n * time_of_application(*model)));
+                        " operator applications, " + readable_duration(time));
       }
     if (grading)
       progress.line("With 'Zone = adaptive' all figures are those of the mesh at the start.");
     for (const std::string &note : record->notes)
       progress.note(note);
+    std::vector<double> components;
+    for (unsigned int k = 0; k < models.size(); ++k)
+      components.push_back(components_written(k));
+    for (const std::string &line :
+         describe_costs(scene, computing, mesh->n_global_active_cells(), components, communicator))
+      progress.line(line);
     progress.line("The scene is valid. Nothing was computed.");
+  }
+
+
+  template <int dim>
+  unsigned int Simulation<dim>::components_written(const unsigned int number) const
+  {
+    const Vector &u = models[number]->solution;
+    u.update_ghost_values();
+    unsigned int n = 1;
+    for (const OutputField &field : models[number]->derived_fields(u, 0.))
+      n += field.components.size();
+    u.set_ghost_state(false);
+    return n +
+           (models[number]->name() == to_string(Model::peridynamics) && models.size() > 1 ? 1 : 0);
   }
 
 
@@ -83,7 +109,10 @@ namespace PeriDeal
   }
 
 
-  template void Simulation<1>::dry_run();
-  template void Simulation<2>::dry_run();
-  template void Simulation<3>::dry_run();
+  template void         Simulation<1>::dry_run();
+  template void         Simulation<2>::dry_run();
+  template void         Simulation<3>::dry_run();
+  template unsigned int Simulation<1>::components_written(const unsigned int) const;
+  template unsigned int Simulation<2>::components_written(const unsigned int) const;
+  template unsigned int Simulation<3>::components_written(const unsigned int) const;
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 // Bodies at rest: one equilibrium, or one after the other where loads depend on time.
 
 #include <perideal/base/user_error.h>
+#include <perideal/scene/lists.h>
 #include <perideal/simulation/elastic_simulation.h>
 #include <perideal/solvers/step_tools.h>
 
@@ -40,10 +41,12 @@ namespace PeriDeal
     warm_until(0.);
     for (const auto &model : models)
       {
+        progress.doing("solving " + model->name());
         begin_loading(*model);
         if (scene.time.steady)
           progress.line(model->name() + ": " + std::to_string(model->n_iterations) + " iterations");
       }
+    note_sudden_heat();
     if (scene.time.steady)
       {
         write_output(0.);
@@ -54,6 +57,8 @@ namespace PeriDeal
     progress.begin("time");
     for (const auto &model : models)
       add_totals(*model, 0.);
+    if (scene.output.starts_at_zero())
+      write_fields(0.);
     end_output(0.);
     double now = 0.;
     for (const double t : times_of_output())
@@ -61,6 +66,7 @@ namespace PeriDeal
         if (t > now)
           load_until(now, t);
         now = t;
+        progress.doing("writing results");
         Timings::Scope scope(timings, "output");
         write_state(t);
       }
@@ -72,6 +78,20 @@ namespace PeriDeal
           note_energy(*model);
         note_inversion(*model);
       }
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::note_sudden_heat()
+  {
+    if (!heat || scene.boundary_conditions.dirichlet.empty())
+      return;
+    for (const auto &model : models)
+      if (model->op().brittle() && model->op().n_broken_bonds() > 0)
+        record->notes.push_back(
+          model->name() + ": " + readable_count(model->op().n_broken_bonds()) +
+          " bonds broke at t = 0 already. 'Dirichlet' in section 'Boundary conditions' gives its sides their temperature at once, so that the outermost nodes "
+          "are stretched against the next ones by all of the jump, however fine the lattice. 'Convection', or a 'Dirichlet' value that begins at the initial one, lets the heat in gradually.");
   }
 
 
@@ -111,6 +131,8 @@ namespace PeriDeal
           warm_until(to);
         for (const auto &model : models)
           {
+            progress.doing("solving " + model->name() + ", load step " + std::to_string(k) +
+                           " of " + std::to_string(n) + " until t = " + number_text(t));
             Timings::Scope scope(model->timings, "solving");
             model->loading->step(model->displacement, to);
             model->n_iterations = model->loading->n_iterations();

@@ -66,10 +66,30 @@ namespace PeriDeal
 
 
   template <int dim>
+  double ElasticSimulation<dim>::share_of_models(const unsigned int n, const double span) const
+  {
+    double some = 0., all = 0.;
+    for (unsigned int k = 0; k < models.size(); ++k)
+      {
+        const OperatorSize size = models[k]->op().size();
+        // A step costs about as much as the product with what is stored.
+        const double cost = std::max(1., span / models[k]->stepper->current_step()) *
+                            static_cast<double>(size.unknowns + size.nonzeros + size.bonds);
+        all += cost;
+        if (k < n)
+          some += cost;
+      }
+    return some / all;
+  }
+
+
+  template <int dim>
   void ElasticSimulation<dim>::move()
   {
     constexpr unsigned int n_reports = 50; // of the progress between two times of output
     progress.begin("time");
+    if (scene.output.starts_at_zero())
+      write_fields(0.);
     double now = 0.;
     for (const double t : times_of_output())
       {
@@ -77,7 +97,14 @@ namespace PeriDeal
           for (unsigned int k = 0; k < models.size(); ++k)
             {
               ElasticRun<dim> &model = *models[k];
-              Timings::Scope   scope(model.timings, "time stepping");
+              const double     done  = share_of_models(k, t - now),
+                           more      = share_of_models(k + 1, t - now);
+              const auto share       = [&](const double of_model) {
+                return (now + (done + (more - done) * of_model) * (t - now)) / scene.time.end_time;
+              };
+              progress.doing(model.name() + ": time stepping");
+              progress.advancing(now, t, share(0.), share(1.));
+              Timings::Scope scope(model.timings, "time stepping");
               // Whole steps between two reports, so that these change no step.
               const double       span = t - now, step = model.stepper->current_step();
               const double       n_steps = std::max(1., std::ceil(span / step * (1. - 1e-10)));
@@ -90,9 +117,9 @@ namespace PeriDeal
                                       now + span * std::floor(n_steps * part / n_parts) / n_steps;
                   model.stepper->advance(model.displacement, model.velocity, from, to);
                   from = to;
-                  progress.update(
-                    (now + (k + static_cast<double>(part) / n_parts) / models.size() * span) /
-                    scene.time.end_time);
+                  if (model.op().brittle())
+                    tell_broken_bonds(model.op().n_broken_bonds());
+                  progress.update(share(static_cast<double>(part) / n_parts));
                 }
             }
         now = t;
@@ -180,7 +207,8 @@ namespace PeriDeal
   nlohmann::ordered_json ElasticSimulation<dim>::add_energies(const ElasticRun<dim> &model,
                                                               const double           t)
   {
-    nlohmann::ordered_json balance;
+    using json = nlohmann::ordered_json;
+    json       balance;
     const auto add = [&](const std::string &key, const std::string &quantity, const double value) {
       balance[key] = value;
       record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
@@ -194,7 +222,11 @@ namespace PeriDeal
         {
           add("released", "energy released by broken bonds", model.op().released_energy());
           add("dissipated", "energy dissipated", lost);
-          add("broken bonds", "broken bonds", static_cast<double>(model.op().n_broken_bonds()));
+          const auto n_broken = model.op().n_broken_bonds();
+          add("broken bonds", "broken bonds", static_cast<double>(n_broken));
+          if (json &kept = record->extremes[model.name()];
+              n_broken > 0 && !kept.contains("first broken bonds"))
+            kept["first broken bonds"] = t;
         }
       if (!scene.warms_slowly()) // what warming does to the strain energy is not followed
         add("imbalance", "energy imbalance", energy.imbalance());
@@ -216,10 +248,11 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template void                   ElasticSimulation<dim>::make_steppers();                         \
-  template void                   ElasticSimulation<dim>::move();                                  \
-  template void                   ElasticSimulation<dim>::note_energy(const ElasticRun<dim> &);    \
-  template void                   ElasticSimulation<dim>::note_inversion(const ElasticRun<dim> &); \
+  template void   ElasticSimulation<dim>::make_steppers();                                         \
+  template double ElasticSimulation<dim>::share_of_models(const unsigned int, const double) const; \
+  template void   ElasticSimulation<dim>::move();                                                  \
+  template void   ElasticSimulation<dim>::note_energy(const ElasticRun<dim> &);                    \
+  template void   ElasticSimulation<dim>::note_inversion(const ElasticRun<dim> &);                 \
   template nlohmann::ordered_json ElasticSimulation<dim>::add_energies(const ElasticRun<dim> &,    \
                                                                        const double);
   PERIDEAL_INSTANTIATE(1)

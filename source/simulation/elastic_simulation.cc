@@ -17,7 +17,9 @@
 #include <utility>
 
 #include "check_sides.h"
+#include "closing.h"
 #include "elastic_phases.h"
+#include "elastic_sides.h"
 #include "elastic_summary.h"
 #include "finite_results.h"
 #include "point_readers.h"
@@ -112,6 +114,7 @@ namespace PeriDeal
     progress.line(scene.general.title + "  (" + text.file_name + ", " + std::to_string(n_proc) +
                   (n_proc == 1 ? " process)" : " processes)"));
     {
+      progress.doing("building the mesh");
       Timings::Scope scope(timings, "mesh");
       mesh = build_mesh(scene, communicator, record->notes);
       set_material_ids(*mesh, scene.material.phases.all());
@@ -121,6 +124,7 @@ namespace PeriDeal
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
     for (const Model kind : scene.general.models)
       {
+        progress.doing("building " + to_string(kind));
         models.push_back(make_elastic_run(kind, *mesh, scene));
         const ElasticRun<dim> &model = *models.back();
         const OperatorSize     size  = model.op().size();
@@ -184,6 +188,10 @@ namespace PeriDeal
           names[model.name()] = name;
       }
     record->fields.push_back({{"time", t}, {"files", names}});
+    if (!cracks)
+      cracks = std::make_unique<CrackWriter>(files->folder);
+    if (scene.output.vtu)
+      cracks->write(crack_corners(scene.cracks.pieces(t)), t);
   }
 
 
@@ -210,6 +218,12 @@ namespace PeriDeal
     for (const auto &[side, force] : balance.sides)
       for (unsigned int d = 0; d < dim; ++d)
         row("force on " + side + " in " + "xyz"[d], force[d]);
+    if (!scene.time.steady)
+      for (const auto &[side, moved] : displacements_of_sides(model, scene))
+        for (unsigned int d = 0; d < dim; ++d)
+          row("displacement of " + side + " in " + "xyz"[d], moved[d]);
+    keep_largest_force(balance, t, record->extremes[model.name()]);
+    progress.state(text_of_largest_force(balance));
     for (unsigned int d = 0; d < dim; ++d)
       row(std::string("body force in ") + "xyz"[d], balance.body[d]);
     row("throughput", balance.throughput());
@@ -258,14 +272,16 @@ namespace PeriDeal
     refuse_what_is_not_computed(scene);
     require_memory(scene, communicator);
     files = std::make_unique<RunFiles>(scene, text, communicator);
-    with_orderly_end(*files, progress, [&] { compute(); });
+    nlohmann::ordered_json summary;
+    with_orderly_end(*files, progress, [&] { summary = compute(); });
     files.reset();
-    progress.line("Results: " + scene.general.output_directory);
+    progress.end();
+    say_what_was_found(progress, summary, scene.general.output_directory);
   }
 
 
   template <int dim>
-  void ElasticSimulation<dim>::compute()
+  nlohmann::ordered_json ElasticSimulation<dim>::compute()
   {
     build();
     if (scene.elasticity.is_static())
@@ -280,12 +296,14 @@ namespace PeriDeal
     const auto summary = summary_now(true);
     files->add_totals(std::exchange(record->totals, ""));
     files->complete(summary);
+    return summary;
   }
 
 
   template <int dim>
   void ElasticSimulation<dim>::write_output(const double t)
   {
+    progress.doing("writing results");
     Timings::Scope scope(timings, "output");
     for (const auto &model : models)
       add_totals(*model, t);
@@ -298,7 +316,7 @@ namespace PeriDeal
   {
     write_points(t);
     write_fields(t);
-    compare_displacements(models, scene.domain, t, record->comparison);
+    compare_displacements(models, scene.domain, t, record->comparison, record->comparisons);
     end_output(t);
   }
 
@@ -321,7 +339,42 @@ namespace PeriDeal
       make_steppers();
     for (const std::string &note : record->notes)
       progress.note(note);
+    describe_costs_of_run();
     progress.line("The scene is valid. Nothing was computed.");
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::describe_costs_of_run()
+  {
+    double              computing = 0.;
+    std::vector<double> components;
+    for (const auto &model : models)
+      {
+        if (!model->stepper)
+          model->op().initialize_vector(model->displacement);
+        components.push_back(0.);
+        for (const OutputField &field : model->fields())
+          components.back() += field.components.size();
+        computing = model->stepper && computing >= 0. ? computing + time_of_motion(*model) : -1.;
+      }
+    for (const std::string &line :
+         describe_costs(scene, computing, mesh->n_global_active_cells(), components, communicator))
+      progress.line(line);
+  }
+
+
+  template <int dim>
+  double ElasticSimulation<dim>::time_of_motion(ElasticRun<dim> &model)
+  {
+    const double step = model.stepper->current_step(), end = scene.time.end_time;
+    const double from = std::min(step, end), to = std::min(4. * step, end);
+    model.stepper->advance(model.displacement, model.velocity, 0., from);
+    if (!(to > from))
+      return 0.;
+    const double before = progress.elapsed();
+    model.stepper->advance(model.displacement, model.velocity, from, to);
+    return (progress.elapsed() - before) * end / (to - from);
   }
 
 
@@ -378,6 +431,9 @@ namespace PeriDeal
           1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
         if (record->balances.contains(model->name()))
           entry.update(record->balances.at(model->name()));
+        if (record->extremes.contains(model->name()) &&
+            record->extremes.at(model->name()).is_object()) // null without any force
+          entry.update(record->extremes.at(model->name()));
         if (at_the_end)
           if (const json phases = describe_phases(*model, scene, record->totals, communicator);
               !phases.empty())
@@ -386,6 +442,8 @@ namespace PeriDeal
       }
     if (!record->comparison.empty())
       summary["comparison"] = record->comparison;
+    if (!record->comparisons.empty())
+      summary["comparisons"] = record->comparisons;
     Point<dim> lower = scene.domain.lower, upper = scene.domain.upper;
     for (unsigned int d = 0; d < dim && !scene.domain.has_extra_layers(); ++d)
       {

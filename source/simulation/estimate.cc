@@ -21,7 +21,11 @@ namespace PeriDeal
   {
     // Measured on scenes of all kinds: bytes that a node takes at least in the mesh and in the
     // vectors of a model, and when fields are written.
-    constexpr double bytes_of_node = 400., bytes_of_written_corner = 200.;
+    constexpr double bytes_of_node = 400.;
+
+    // Likewise, for each number that is written, at a corner of a cell: bytes, and seconds.
+    constexpr double bytes_of_hdf5 = 52., bytes_of_vtu = 29., time_of_hdf5 = 0.4e-6,
+                     time_of_vtu = 0.16e-6;
 
     /** Nodes above which a scene is not built in order to be described. */
     constexpr double many_nodes = 500000.;
@@ -162,6 +166,61 @@ namespace PeriDeal
 
 
   template <int dim>
+  OutputEstimate estimate_output(const Scene<dim>          &scene,
+                                 const double               cells,
+                                 const std::vector<double> &components,
+                                 const unsigned int         n_processes)
+  {
+    // The times of output and the end; `Write every` begins at the start.
+    const OutputControl<dim> &output  = scene.output;
+    double                    n_times = 1.;
+    if (!scene.time.steady)
+      n_times =
+        output.write_times.size() + (output.starts_at_zero() ? 1. : 0.) +
+        (output.write_times.empty() || output.write_times.back() < scene.time.end_time ? 1. : 0.);
+    const double   corners = cells * (1u << dim);
+    OutputEstimate result;
+    for (const double n : components)
+      {
+        // Each process makes its own part; one writes, and keeps what it gets from one of the others.
+        result.time +=
+          n_times * corners * n *
+          ((output.hdf5 ? time_of_hdf5 : 0.) + (output.vtu ? time_of_vtu / n_processes : 0.));
+        result.memory = std::max(result.memory,
+                                 corners * n *
+                                   (output.hdf5 ? bytes_of_hdf5 :
+                                    output.vtu  ? bytes_of_vtu :
+                                                  0.));
+      }
+    return result;
+  }
+
+
+  template <int dim>
+  std::vector<std::string> describe_costs(const Scene<dim>          &scene,
+                                          const double               computing,
+                                          const double               cells,
+                                          const std::vector<double> &components,
+                                          const MPI_Comm             communicator)
+  {
+    const OutputEstimate output =
+      estimate_output(scene, cells, components, Utilities::MPI::n_mpi_processes(communicator));
+    std::vector<std::string> lines;
+    lines.push_back(
+      "time: " +
+      (computing >= 0. ?
+         "about " + readable_duration(computing + output.time) + " after building, " +
+           readable_duration(output.time) + " of it for output" :
+         "about " + readable_duration(output.time) + " for output, besides the solution"));
+    const double resident = Utilities::MPI::sum(resident_memory(), communicator),
+                 peak     = Utilities::MPI::sum(peak_memory(), communicator);
+    lines.push_back("memory: about " + readable_bytes(std::max(peak, resident + output.memory)) +
+                    " at its peak, the program's own included");
+    return lines;
+  }
+
+
+  template <int dim>
   RunEstimate estimate_run(const Scene<dim> &scene, const MPI_Comm communicator)
   {
     RunEstimate      result       = least(scene);
@@ -194,11 +253,7 @@ namespace PeriDeal
     result.time_to_build = growth(one.time_to_build, two.time_to_build);
     if (scene.domain.shape == Shape::box)
       result.cells = number_of<dim>(scene.domain.cells, 0);
-    // files of both formats are written one after the other
-    const double written = scene.output.hdf5 ? 2. : scene.output.vtu ? 1. : 0.;
-    result.memory        = std::max(result.memory,
-                             growth(one.memory, two.memory) +
-                               written * bytes_of_written_corner * (1u << dim) * result.cells);
+    std::vector<double> components;
     for (unsigned int k = 0; k < result.models.size(); ++k)
       {
         ModelEstimate       &model = result.models[k];
@@ -208,7 +263,15 @@ namespace PeriDeal
         model.applications        = growth.power(a.applications, b.applications);
         model.time_of_application = growth(a.time_of_application, b.time_of_application);
         model.time_of_solution    = growth(a.time_of_solution, b.time_of_solution);
+        model.components          = b.components;
+        components.push_back(b.components);
       }
+    const OutputEstimate output = estimate_output(scene,
+                                                  result.cells,
+                                                  components,
+                                                  Utilities::MPI::n_mpi_processes(communicator));
+    result.memory         = std::max(result.memory, growth(one.memory, two.memory) + output.memory);
+    result.time_of_output = output.time;
     return result;
   }
 
@@ -253,7 +316,8 @@ namespace PeriDeal
       }
     if (estimate.sampled)
       lines.push_back("time: about " + readable_duration(estimate.time_to_build) + " to build, " +
-                      readable_duration(time) + " with all that is told above, without output");
+                      readable_duration(time) + " with all that is told above, " +
+                      readable_duration(time + estimate.time_of_output) + " with output");
     const double available = available_memory(communicator),
                  taken     = Utilities::MPI::sum(resident_memory(), communicator);
     lines.push_back(
@@ -327,10 +391,19 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                        \
-  template RunEstimate estimate_run(const Scene<dim> &, const MPI_Comm); \
-  template bool        is_large(const Scene<dim> &, const MPI_Comm);     \
-  template void        require_memory(const Scene<dim> &, const MPI_Comm);
+#define PERIDEAL_INSTANTIATE(dim)                                                     \
+  template OutputEstimate           estimate_output(const Scene<dim> &,               \
+                                                    const double,                     \
+                                                    const std::vector<double> &,      \
+                                                    const unsigned int);              \
+  template std::vector<std::string> describe_costs(const Scene<dim> &,                \
+                                                   const double,                      \
+                                                   const double,                      \
+                                                   const std::vector<double> &,       \
+                                                   const MPI_Comm);                   \
+  template RunEstimate              estimate_run(const Scene<dim> &, const MPI_Comm); \
+  template bool                     is_large(const Scene<dim> &, const MPI_Comm);     \
+  template void                     require_memory(const Scene<dim> &, const MPI_Comm);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/output/crack_writer.h>
 #include <perideal/scene/crack_tips.h>
 
 #include <nlohmann/json.hpp>
@@ -33,6 +34,25 @@ namespace PeriDeal
   }
 
 
+  /** The same with three coordinates, for files. */
+  template <int dim>
+  CrackCorners crack_corners(const std::vector<CrackPiece<dim>> &pieces)
+  {
+    CrackCorners list;
+    for (const CrackPiece<dim> &piece : pieces)
+      {
+        list.emplace_back();
+        for (const auto &corner : piece.corners)
+          {
+            list.back().push_back({{0., 0., 0.}});
+            for (unsigned int d = 0; d < dim; ++d)
+              list.back().back()[d] = corner[d];
+          }
+      }
+    return list;
+  }
+
+
   /** What has been collected for summary.json and totals.csv so far. */
   struct ResultRecord
   {
@@ -44,6 +64,7 @@ namespace PeriDeal
     json                     comparison = json::object();
     json comparisons = json::object(); // "coupled minus (other model)" -> norm -> [[t, value], ...]
     json balances    = json::object(); // model -> flux and balance at the last time
-    std::string totals; // rows for totals.csv that are not yet written
+    json extremes    = json::object(); // model -> largest force, first time with broken bonds
+    std::string totals;                // rows for totals.csv that are not yet written
   };
 } // namespace PeriDeal

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include "scene_sample.h"
+
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/memory.h>
@@ -13,8 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-
-#include "scene_sample.h"
 
 namespace PeriDeal
 {
@@ -116,6 +116,28 @@ namespace PeriDeal
     }
 
 
+    /** Components of the fields of a model of what diffuses, with its difference from the others. */
+    template <int dim>
+    double components_of(const Simulation<dim> &simulation, const unsigned int model)
+    {
+      return static_cast<double>(simulation.components_written(model));
+    }
+
+
+    /** About as many as a run takes, whose first step is this one. */
+    template <int dim>
+    double steps_of_motion(const Scene<dim> &scene, ElasticOperator &op)
+    {
+      StepperOptions options;
+      options.time_step        = scene.time.time_step;
+      options.solver_tolerance = scene.solver.tolerance;
+      options.max_iterations   = scene.solver.max_iterations;
+      options.direct_up_to     = scene.solver.direct_up_to;
+      const double step = make_motion_stepper(scene.time.stepper, op, options)->current_step();
+      return step > 0. ? scene.time.end_time / step : 0.;
+    }
+
+
     template <int dim>
     void take_heat(const Scene<dim>                          &scene,
                    const std::shared_ptr<Triangulation<dim>> &mesh,
@@ -138,6 +160,7 @@ namespace PeriDeal
           model.unknowns             = static_cast<double>(size.unknowns);
           model.bonds                = static_cast<double>(size.bonds);
           model.time_of_application  = time_of_application(run.op());
+          model.components           = components_of(simulation, k);
           if (scene.time.steady)
             model.time_of_solution = solving.seconds() / sample.models.size();
           else if (run.stepper)
@@ -163,6 +186,11 @@ namespace PeriDeal
           model.bonds              = static_cast<double>(size.bonds);
           sample.time_to_build += building.seconds();
           model.time_of_application = time_of_application(op);
+          runs.back()->op().initialize_vector(runs.back()->displacement);
+          for (const OutputField &field : runs.back()->fields())
+            model.components += field.components.size();
+          if (!scene.elasticity.is_static())
+            model.applications = steps_of_motion(scene, op);
           if (!scene.elasticity.is_static() || scene.elasticity.solver != ElasticSolver::linear)
             continue;
           const Watch solving;

@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "check_sides.h"
+#include "closing.h"
 #include "effective_conductivity.h"
 #include "finite_results.h"
 #include "point_readers.h"
@@ -91,6 +92,7 @@ namespace PeriDeal
     progress.line(scene.general.title + "  (" + text.file_name + ", " + std::to_string(n_proc) +
                   (n_proc == 1 ? " process)" : " processes)"));
     {
+      progress.doing("building the mesh");
       Timings::Scope scope(timings, "mesh");
       mesh = build_mesh(scene, communicator, record->notes);
       set_material_ids(*mesh, scene.material.phases.all());
@@ -131,6 +133,8 @@ namespace PeriDeal
         "needs 'side: 0' there).");
     for (const Model model : scene.general.models)
       {
+        if (files)
+          progress.doing("building " + to_string(model));
         with_formulas([&] { models.push_back(make_model_run(model, *mesh, scene)); });
         describe(*models.back());
         for (const std::string &note : models.back()->notes())
@@ -258,14 +262,16 @@ namespace PeriDeal
   {
     require_memory(scene, communicator);
     files = std::make_unique<RunFiles>(scene, text, communicator);
-    with_orderly_end(*files, progress, [&] { compute(); });
+    nlohmann::ordered_json summary;
+    with_orderly_end(*files, progress, [&] { summary = compute(); });
     files.reset();
-    progress.line("Results: " + scene.general.output_directory);
+    progress.end();
+    say_what_was_found(progress, summary, scene.general.output_directory);
   }
 
 
   template <int dim>
-  void Simulation<dim>::compute()
+  nlohmann::ordered_json Simulation<dim>::compute()
   {
     build();
     make_steppers();
@@ -279,10 +285,13 @@ namespace PeriDeal
     if (scene.time.steady)
       progress.line("steady state");
     progress.begin("time");
+    if (scene.output.starts_at_zero())
+      with_formulas([&] { write_start(); });
     for (const double t : times)
       {
         advance_to(t);
         progress.update(scene.time.steady ? 1. : t / scene.time.end_time);
+        progress.doing("writing results");
         Timings::Scope scope(timings, "output");
         with_formulas([&] { write_output(t); });
         end_output(t);
@@ -295,7 +304,9 @@ namespace PeriDeal
                               " cells at the end ('Zone = adaptive' in section 'Coupling').");
     for (const std::string &note : record->notes)
       progress.note(note);
-    files->complete(summary_now());
+    const nlohmann::ordered_json summary = summary_now();
+    files->complete(summary);
+    return summary;
   }
 
 
@@ -312,6 +323,23 @@ namespace PeriDeal
     add_errors(t);
     compare_models(t);
     write_fields(t);
+    for (auto &model : models)
+      model->solution.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::write_start()
+  {
+    Timings::Scope scope(timings, "output");
+    for (auto &model : models)
+      model->solution.update_ghost_values();
+    // All times have the same fields; the table of differences begins with the first results.
+    const auto comparison = record->comparison, comparisons = record->comparisons;
+    compare_models(0.);
+    record->comparison  = comparison;
+    record->comparisons = comparisons;
+    write_fields(0.);
     for (auto &model : models)
       model->solution.set_ghost_state(false);
   }
@@ -372,6 +400,10 @@ namespace PeriDeal
     record->fields.push_back({{"time", t}, {"files", names}});
     if (scene.cracks.change())
       record->fields.back()["cracks"] = corners_of(scene.cracks.pieces(t));
+    if (!cracks)
+      cracks = std::make_unique<CrackWriter>(files->folder);
+    if (scene.output.vtu)
+      cracks->write(crack_corners(scene.cracks.pieces(t)), t);
   }
 
 

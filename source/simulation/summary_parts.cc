@@ -107,6 +107,10 @@ namespace PeriDeal
     summary["units"]          = {{"length", scene.units.length},
                                  {"time", scene.units.time},
                                  {"temperature", scene.units.temperature},
+                                 {"force", scene.units.force},
+                                 {"energy", scene.units.energy},
+                                 {"mass", scene.units.mass},
+                                 {"current", scene.units.current},
                                  {"field", scene.units.of_field(scene.general.physics)}};
     const PhysicsNames &names = names_of(scene.general.physics);
     summary["physics"]        = names.physics;

@@ -4,6 +4,7 @@
 #include <deal.II/base/numbers.h>
 
 #include <perideal/base/node_loops.h>
+#include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/heat_steps.h>
 #include <perideal/solvers/step_tools.h>
@@ -117,7 +118,10 @@ namespace PeriDeal
         const unsigned long long n = dt > 0. ? n_equal_steps(t_end - t, dt) :
                                                n_expansions(t_end - t);
         for (unsigned long long k = 0; k < n; ++k)
-          step(u, t, (t_end - t) / static_cast<double>(n));
+          {
+            step(u, t, (t_end - t) / static_cast<double>(n));
+            tell_step(t + (k + 1) * ((t_end - t) / static_cast<double>(n)));
+          }
         op.distribute(u, t_end);
         check_finite(u, name(), t_end);
       }
@@ -156,10 +160,9 @@ namespace PeriDeal
       {
         constexpr double longest = 1e4, resolution = 1e-3;
         const double     shorter = std::min(z, longest);
-        const auto       found   = sizes.try_emplace(std::llround(std::log(shorter) / resolution), 0.);
+        const auto found = sizes.try_emplace(std::llround(std::log(shorter) / resolution), 0.);
         if (found.second)
-          found.first->second =
-            static_cast<double>(expansion(shorter, 1e-2 * tolerance).size());
+          found.first->second = static_cast<double>(expansion(shorter, 1e-2 * tolerance).size());
         return found.first->second * std::sqrt(z / shorter);
       }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/heat_steps.h>
 #include <perideal/solvers/linear_solver.h>
@@ -96,6 +97,7 @@ namespace PeriDeal
             u = next;
             t = t_new;
             ++spent.steps;
+            tell_step(t);
             if (!fixed)
               dt = lands ? std::max(dt, h * growth) : h * growth;
           }
@@ -118,7 +120,11 @@ namespace PeriDeal
        * Solve C (U - w) = s (f(t) - K U): the start of the iteration is in U, w and s > 0 belong to the method. Where C depends on the solution, solve instead for the heat that
        * U has more than u, H(U) - H(u) = known + s (f(t) - K U), so that the steps keep it. Returns what enters per time with U.
        */
-      double solve_stage(const Vector &u, const Vector &w, const double s, const double t, Vector &U)
+      double solve_stage(const Vector &u,
+                         const Vector &w,
+                         const double  s,
+                         const double  t,
+                         Vector       &U)
       {
         // Picard iterations if the material depends on the solution: it is taken at the last iterate.
         constexpr unsigned int most = 30;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/motion_stepper.h>
 #include <perideal/solvers/step_tools.h>
@@ -226,6 +227,7 @@ namespace PeriDeal
         exchanged = std::max(exchanged, start + std::abs(work));
         break_bonds(u, next);
         now = next;
+        tell_step(now);
         // Of linear bodies there is nothing to be found: what their steps keep they keep to round-off.
         if (op.nonlinear() && spent.steps % between_examinations == 0)
           examine(u, v, now);

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/node_loops.h>
+#include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/heat_steps.h>
 #include <perideal/solvers/step_tools.h>
@@ -90,6 +91,7 @@ namespace PeriDeal
                 heat_entered += conservative.correct(u, now);
                 u.swap(now);
                 ++spent.steps;
+                tell_step(t + (k + 1) * h);
               }
             op.distribute(u, t_end);
           }
@@ -175,10 +177,10 @@ namespace PeriDeal
                                                     factors,
                                                     end - begin);
                              });
-            const double heat_now = mu * heat_last + nu * heat_before + mu_rate * op.entering() +
-                                    gamma * entering;
-            heat_before           = heat_last;
-            heat_last             = heat_now;
+            const double heat_now =
+              mu * heat_last + nu * heat_before + mu_rate * op.entering() + gamma * entering;
+            heat_before = heat_last;
+            heat_last   = heat_now;
             if (j < s)
               {
                 before.swap(last);
@@ -202,7 +204,7 @@ namespace PeriDeal
           {
             const bool   lands = t + dt * (1. + 1e-10) >= t_end;
             const double h     = lands ? t_end - t : std::min(dt, 0.5 * (t_end - t) + 0.5 * dt);
-            double       heat = stages(u, t, h, entering);
+            double       heat  = stages(u, t, h, entering);
             heat += conservative.correct(u, now);
             take_material_at(now,
                              t + h); // so that the error estimate sees what has changed in the step
@@ -226,6 +228,7 @@ namespace PeriDeal
                 heat_entered += heat;
                 entering = op.entering();
                 ++spent.steps;
+                tell_step(t);
                 dt = lands ? std::max(dt, h * growth) : h * growth;
               }
             else

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/node_loops.h>
+#include <perideal/base/progress.h>
 #include <perideal/solvers/heat_steps.h>
 #include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
@@ -56,6 +57,7 @@ namespace PeriDeal
             const double size = (k + 1 == n) ? t_end - now : dt;
             step(u, now, size);
             ++spent.steps;
+            tell_step(now + size);
             if (spent.steps % steps_between_checks == 0)
               check_finite(u, method, now + size);
           }
@@ -98,6 +100,7 @@ namespace PeriDeal
             op.distribute(u, t);
             heat_entered += conservative.needed() ? conservative.correct(old, u) : held.taken(u);
             ++spent.steps;
+            tell_step(t);
             check_finite(u, method, t);
           }
         op.distribute(u, t_end);

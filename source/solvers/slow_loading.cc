@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/slow_loading.h>
 #include <perideal/solvers/step_tools.h>
@@ -31,6 +32,7 @@ namespace PeriDeal
   void SlowLoading::solve(Vector &u, const double t)
   {
     const unsigned long long n_broken = op.n_broken_bonds();
+    tell_broken_bonds(n_broken);
     try
       {
         iterations += solver->solve(u, t, size);
@@ -137,6 +139,7 @@ namespace PeriDeal
     last_time  = now;
     now        = t;
     ++steps;
+    tell_step(t);
   }
 
 

@@ -134,7 +134,10 @@ def check_message(status, stderr, expected, *words):
 
 def mixing():
     results = os.path.join(FOLDER, "results")
-    check(run(results)[0] == 0 and status_of(results) == "complete", "a first run")
+    status, stdout, _ = run(results)
+    check(status == 0 and status_of(results) == "complete", "a first run")
+    for words in ("of memory at its peak", f"Results: {results}\n", f"To draw {results}/report.html: python3 ", "report.py "):
+        check(words in stdout, f"the last lines do not say '{words}':\n{stdout}")
     names = set(listing(results))
     check({"peridynamics.pvd", "fields/peridynamics_0002.h5", "probes.csv"} <= names, f"files: {sorted(names)}")
 

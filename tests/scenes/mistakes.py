@@ -109,6 +109,10 @@ def scene_mistakes(folder):
         ("unknown choice", {"Peridynamics/Kernel": "conicle"}, ["'Kernel'", "Peridynamics", "Did you mean 'conical'?"]),
         ("unknown model", {"Models": "peridynamic"}, ["'Models'", "Did you mean 'peridynamics'?"]),
         ("unknown stepper", {"Time/Stepper": "rk5"}, ["'Stepper'", "'Time'", "Did you mean 'rk4'?"]),
+        # points
+        ("points without a semicolon", {"Output/Probes": "0,0.1, 0.5,0.1"}, ["'Probes'", "2 points", "0, 0.1 ; 0.5, 0.1"]),
+        ("crack without a semicolon", {"Cracks/Segments": "-0.5,0, 0.5,0"}, ["'Segments'", "2 points", "-0.5, 0 ; 0.5, 0"]),
+        ("image that is not there", {"Domain/Shape": "image", "Domain/Cells": "20, 20", "Domain/Image": "no_such.png"}, ["'Image'", "no_such.png", "Looked for it at"]),
         # types and ranges
         ("text for a number", {"Time/End time": "soon"}, ["'End time'", "'Time'", "'soon' is not a number"]),
         ("fraction for a count", {"Domain/Cells": "12.5, 12"}, ["'Cells'", "12.5", "whole number"]),

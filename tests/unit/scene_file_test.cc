@@ -244,4 +244,15 @@ namespace PeriDeal
     EXPECT_EQ(xml.compare(0, 5, "<?xml"), 0);
     expect_parts(message_of([] { parameter_manual("json"); }), {"'json'", "'JSON'?"});
   }
+
+
+  TEST(Manual, one_entry)
+  {
+    const std::string cells = parameter_manual("Cells"), same = parameter_manual("domain/cells"),
+                      section = parameter_manual("Units");
+    expect_parts(cells, {"Cells  (section 'Domain')", "type:", "default:  20, 20"});
+    EXPECT_EQ(cells, same);
+    expect_parts(section, {"Length  (section 'Units')", "Force  (section 'Units')"});
+    expect_parts(message_of([] { parameter_manual("Cels"); }), {"'Cels'", "'Cells'?", "Peridynamics"});
+  }
 } // namespace PeriDeal

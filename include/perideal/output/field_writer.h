@@ -24,8 +24,8 @@ namespace PeriDeal
 
 
   /**
-   * Writes fields of one model at one time: VTU with a PVTU record (single precision), and HDF5 (`/nodes`, `/cells`, one table per field, double
-   * precision) with, but for 1D, an XDMF description. Cells are written straight from the dofs (vertex dofs, or cell centres as constants per cell), so that
+   * Writes fields of one model at one time: VTU with a PVTU record (single precision; the stress as a tensor, too), and HDF5 (`/nodes`, `/cells`, one table per field, double
+   * precision) with, but for 1D, an XDMF description (version 3). Cells are written straight from the dofs (vertex dofs, or cell centres as constants per cell), so that
    * vertices doubled by a crack stay apart and vectors need no finite element system.
    *
    * Rank 0 writes, with what it gets from one process after the other, each file under another name until it is whole. (Open MPI 4 writes in parallel
@@ -72,6 +72,11 @@ namespace PeriDeal
 
     void build_patches(const std::vector<OutputField> &fields);
     void write_vtu_series(const double time);
+
+    /** The cells of this process as part of a VTU file, and what deal.II cannot write there: a tensor of nine components in 2D. */
+    std::string vtu_piece() const;
+    std::string tensor_text() const;
+
     void write_vtu_file(const std::string &name) const;
     void write_hdf5_file(const std::string &name) const;
     void write_xdmf_file(const std::string &hdf5_name, const double time);

@@ -69,6 +69,9 @@ namespace PeriDeal
      */
     void parse(const double end_time, const bool steady);
 
+    /** Fields are written at t = 0, too, as the first frame of a film: with `Write every`. */
+    bool starts_at_zero() const;
+
     /**
      * The vertices of the lattices of `Grid` in the box with these corners, one lattice after the other, x fastest. Throws UserError, also
      * if the body is no @p box.
@@ -102,7 +105,8 @@ namespace PeriDeal
   public:
     Units();
 
-    std::string length = "m", time = "s", temperature = "K", potential = "V";
+    std::string length = "m", time = "s", temperature = "K", potential = "V", force = "N", energy,
+                mass = "kg", current = "A";
 
     /** Of the unknown field. */
     std::string of_field(const Physics physics) const;

@@ -90,6 +90,10 @@ namespace PeriDeal
     /** Throws UserError naming the first crack that lies completely outside a box. */
     void check_inside(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper) const;
 
+    /** What the user should know of cracks that are partly outside a box. */
+    std::vector<std::string> parts_outside(const dealii::Point<dim> &lower,
+                                           const dealii::Point<dim> &upper) const;
+
     /** Throws UserError naming the first tip that leaves a box before the end of the run. */
     void check_tips_inside(const dealii::Point<dim> &lower,
                            const dealii::Point<dim> &upper,

@@ -90,7 +90,7 @@ namespace PeriDeal
     std::shared_ptr<PhaseMap> image; // of `Shape = image`, else null
     IslandRule                islands = IslandRule::error;
     std::vector<Pin<dim>>     pins;  // of islands; set by Scene
-    std::vector<std::string>  notes; // on the image, for the user
+    std::vector<std::string>  notes; // on the image and the cracks, for the user
 
     /** Images are looked for here, too, and read by the processes of this communicator together. */
     std::string scene_folder;

@@ -7,6 +7,7 @@
 
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/progress.h>
+#include <perideal/output/crack_writer.h>
 #include <perideal/simulation/elastic_run.h>
 #include <perideal/simulation/run_files.h>
 #include <perideal/simulation/simulation.h>
@@ -44,18 +45,25 @@ namespace PeriDeal
     void dry_run();
 
   private:
-    void                   compute();
+    nlohmann::ordered_json compute(); // the summary at the end
     void                   build();
     void                   build_heat();
+    void                   describe_costs_of_run();
+    double                 time_of_motion(ElasticRun<dim> &model); // by its first steps
     void                   warm_until(const double t);
     void                   load();
     void                   begin_loading(ElasticRun<dim> &model);
+    void                   note_sudden_heat();
     void                   load_until(const double now, const double t);
     double                 load_step() const;
     std::vector<double>    times_of_output() const;
     void                   make_steppers();
     void                   set_start(ElasticRun<dim> &model) const;
     void                   move();
+
+    /** The share of the work of moving all models on by a time span that the first n have, as far as sizes tell it. Collective. */
+    double share_of_models(const unsigned int n, const double span) const;
+
     void                   note_steps(const ElasticRun<dim> &model);
     void                   note_energy(const ElasticRun<dim> &model);
     void                   note_inversion(const ElasticRun<dim> &model);
@@ -79,6 +87,7 @@ namespace PeriDeal
     std::unique_ptr<Simulation<dim>>                  heat;  // null: no temperature is computed
     std::unique_ptr<RunFiles>                         files; // of run() only
     std::unique_ptr<PointTable>                       probes, line;
+    std::unique_ptr<CrackWriter>                      cracks; // from the first fields on
     std::unique_ptr<ResultRecord>                     record;
     std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers; // of the models
     std::vector<std::unique_ptr<FieldWriter<dim>>>    writers;

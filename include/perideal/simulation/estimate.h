@@ -20,14 +20,39 @@ namespace PeriDeal
     double      applications        = 0.; // of the operator until the end time; 0: not known
     double      time_of_application = 0.; // in seconds
     double      time_of_solution    = 0.; // of a linear equilibrium or steady state; 0: not known
+    double      components          = 0.; // of all fields that are written together
   };
 
+
+  /** What writing fields takes: seconds in all, and bytes at its peak. */
+  struct OutputEstimate
+  {
+    double time = 0., memory = 0.;
+  };
+
+  /** @param components of the fields of each model (ModelEstimate::components). Not collective. */
+  template <int dim>
+  OutputEstimate estimate_output(const Scene<dim>          &scene,
+                                 const double               cells,
+                                 const std::vector<double> &components,
+                                 const unsigned int         n_processes);
+
+  /**
+   * The last lines of `perideal check` of a scene that has been built: time and memory of a run. @param computing in seconds, negative if it is not
+   * known. Collective.
+   */
+  template <int dim>
+  std::vector<std::string> describe_costs(const Scene<dim>          &scene,
+                                          const double               computing,
+                                          const double               cells,
+                                          const std::vector<double> &components,
+                                          const MPI_Comm             communicator);
 
   /** What a run will need. Memory is what all processes together take at its peak beyond what they
    * have now, in bytes; times are of this number of processes, in seconds. */
   struct RunEstimate
   {
-    double                     cells = 0., memory = 0., time_to_build = 0.;
+    double                     cells = 0., memory = 0., time_to_build = 0., time_of_output = 0.;
     std::vector<ModelEstimate> models;
     bool                       sampled = false;
     std::string                reason; // why it is not

@@ -9,6 +9,7 @@
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/progress.h>
 #include <perideal/mesh/grading.h>
+#include <perideal/output/crack_writer.h>
 #include <perideal/simulation/model_run.h>
 #include <perideal/simulation/run_files.h>
 
@@ -50,25 +51,29 @@ namespace PeriDeal
     /** In the order of `Models`. Not collective. */
     const ModelRun<dim> &model(const unsigned int number) const;
 
+    /** Of the fields of a model, as many as it writes at a time. Collective. */
+    unsigned int components_written(const unsigned int number) const;
+
     /** What the user should know. Not collective. */
     const std::vector<std::string> &notes() const;
 
   private:
-    void build();
-    void build_mesh_of_run();
-    void with_formulas(const std::function<void()> &action) const;
-    void make_steppers();
-    void make_stepper_of(ModelRun<dim> &model);
-    void make_readers();
-    void solve_models();
-    void prepare_adaptation();
-    bool adapt(const double t);
-    void make_tables();
-    void make_writers();
-    void compute();
-    void make_reference();
+    void                   build();
+    void                   build_mesh_of_run();
+    void                   with_formulas(const std::function<void()> &action) const;
+    void                   make_steppers();
+    void                   make_stepper_of(ModelRun<dim> &model);
+    void                   make_readers();
+    void                   solve_models();
+    void                   prepare_adaptation();
+    bool                   adapt(const double t);
+    void                   make_tables();
+    void                   make_writers();
+    nlohmann::ordered_json compute(); // the summary at the end
+    void                   make_reference();
     void advance_through_events(ModelRun<dim> &model, const double t_begin, const double t_end);
     void write_output(const double t);
+    void write_start(); // the first frame of a film
     void end_output(const double t);
     void add_points(const double t);
     void add_totals(const double t, ModelRun<dim> &model);
@@ -82,6 +87,9 @@ namespace PeriDeal
     double                 expected_applications(const ModelRun<dim> &model) const;
     double                 time_of_application(const ModelRun<dim> &model) const;
 
+    /** The share of the run that is done when the first n models have got to @p t and the others are where they are now, as far as sizes tell it. Collective. */
+    double share_done(const unsigned int n, const double t) const;
+
     const Scene<dim>                                 &scene;
     const SceneText                                  &text;
     MPI_Comm                                          communicator;
@@ -94,6 +102,7 @@ namespace PeriDeal
     std::unique_ptr<ExactSolution>                    exact;
     std::unique_ptr<RunFiles>                         files; // of run() only
     std::unique_ptr<PointTable>                       probes, line, grid;
+    std::unique_ptr<CrackWriter>                      cracks; // from the first fields on
     std::unique_ptr<ResultRecord>                     record;
     Vector                        difference; // peridynamics minus finite elements, at the nodes
     std::unique_ptr<Grading<dim>> grading;    // only where the mesh is adapted

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Units of what follows from lengths, forces, times and amounts: labels made of those that a scene names."""
+
+PRESSURES = {("N", "m"): "Pa", ("kN", "m"): "kPa", ("MN", "m"): "MPa", ("GN", "m"): "GPa",
+             ("N", "mm"): "MPa", ("kN", "mm"): "GPa"}
+ENERGIES = {("N", "m"): "J", ("kN", "m"): "kJ"}
+RATES = {("J", "s"): "W", ("kJ", "s"): "kW"}
+IN_BODIES = {1: "²", 2: "", 3: None}  # power of the length by which numbers of a 1D, 2D body are divided
+
+
+def over(unit, by):
+    """'N/m', or nothing where a part of it is unknown."""
+    return f"{unit}/{by}" if unit and by else ""
+
+
+class Units:
+    """Labels of a run, each empty where the scene names too little for it.
+
+    Numbers of a 2D body are per unit of its thickness, those of a 1D one per unit of its cross section.
+    """
+
+    def __init__(self, named, dimension, physics):
+        named = {key: str(value) for key, value in (named or {}).items() if value}
+        self.length, self.time = named.get("length", ""), named.get("time", "")
+        self.dimension, self.physics = dimension, physics
+        force = named.get("force", "") if physics == "elasticity" else ""
+        self.stress = PRESSURES.get((force, self.length), over(force, self.length and f"{self.length}²"))
+        self.intensity = f"{self.stress} √{self.length}" if self.stress and self.length else ""
+        self.toughness = over(force, self.length)
+        self.force = self.per_body(force)
+        amount, rate = self.amounts(named, force)
+        self.amount, self.rate = self.per_body(amount), self.per_body(rate)
+        self.flux = over(rate, self.length and f"{self.length}²")
+
+    def amounts(self, named, force):
+        """(unit of what a body holds, unit of what passes its sides in a time)."""
+        if self.physics == "elasticity":
+            energy = ENERGIES.get((force, self.length), f"{force} {self.length}" if force and self.length
+                                  else "")
+            return named.get("energy", energy), ""
+        if self.physics == "electricity":
+            current = named.get("current", "")
+            return (f"{current} {self.time}" if current and self.time else ""), current
+        amount = named.get("mass" if self.physics == "moisture" else "energy", "")
+        return amount, RATES.get((amount, self.time), over(amount, self.time))
+
+    def per_body(self, unit):
+        """The unit of a number of the whole body."""
+        power = IN_BODIES.get(self.dimension)
+        if power is None or not unit:
+            return unit
+        return over(unit, self.length and self.length + power)
+
+    def of_total(self, quantity):
+        """The unit of a quantity of totals.csv; empty where it has none or it is not known."""
+        return self.of_elastic_total(quantity) if self.physics == "elasticity" \
+            else self.of_scalar_total(quantity)
+
+    def of_elastic_total(self, quantity):
+        """... of an elastic body."""
+        if quantity.startswith("displacement of "):
+            return self.length
+        if quantity.startswith("stress intensity "):
+            return self.intensity
+        if quantity.startswith("J-integral "):
+            return self.toughness
+        if quantity.startswith("mean stress"):
+            return self.stress
+        if quantity.startswith(("force on ", "body force in ")) or quantity in ("throughput", "imbalance"):
+            return self.force
+        return self.amount if "energy" in quantity.split() or quantity.startswith("work of ") else ""
+
+    def of_scalar_total(self, quantity):
+        """... of heat, moisture or charge."""
+        if quantity.endswith(" since start") or quantity in ("heat content", "weight", "charge",
+                                                             "cumulative imbalance"):
+            return self.amount
+        flows = (" through ", " from sources")
+        if any(part in quantity for part in flows) or quantity in ("rate of storage", "throughput",
+                                                                   "imbalance"):
+            return self.rate
+        return ""
