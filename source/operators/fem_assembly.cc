@@ -14,6 +14,7 @@
 #include <perideal/operators/fem_operator.h>
 
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 
 #include "fem_cell_data.h"
