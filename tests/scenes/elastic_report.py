@@ -127,7 +127,9 @@ def check_tables(run, rows):
     check(found == expected, "the table of probes has the numbers of probes.csv")
     totals = {(r["model"], r["quantity"]): r["value"] for r in run.totals}
     for quantity in ("strain energy", "mean stress xx"):
-        row = next((r for r in rows if r[0] == quantity.capitalize()), None)
+        row = next((r for r in rows if r[0].split(" (")[0] == quantity.capitalize()), None)
+        unit = {"strain energy": {1: "J/m²", 2: "J/m", 3: "J"}[run.summary["dimension"]]}.get(quantity, "Pa")
+        check(row is not None and row[0].endswith(f" ({unit})"), f"the unit of {quantity} is {unit}")
         check(row is not None and row[1:] == [written(totals[m, quantity]) for m in (FEM, PD)], f"{quantity} is that of totals.csv")
     for side, force in run.model(PD)["boundary force"].items():
         for d, value in enumerate(force):
@@ -181,7 +183,7 @@ def plate():
         stress = file["von_mises"][:].max()
     row = next(r for r in rows if r[0].startswith("Largest magnitude of the displacement"))
     check(row[2].startswith(written(float(largest)) + " at "), f"the largest displacement is {largest}: {row}")
-    row = next(r for r in rows if r[0] == "Largest von Mises stress")
+    row = next(r for r in rows if r[0] == "Largest von Mises stress (Pa)")
     check(row[2].startswith(written(float(stress)) + " at "), f"the largest von Mises stress is {stress}: {row}")
     factor = float(re.search("displacements magnified (.*?) times", text)[1].replace("\u202f", ""))
     check(0.03 < factor * largest / 2 < 0.08, f"displacements are drawn {factor} times as large, as {factor * largest / 2} of the body")
@@ -212,7 +214,7 @@ def bonds_sentence(run, when):
     first, last = next(t for t, v in broken if v > 0), int(broken[-1][1])
     total = last + run.model(PD)["bonds"]
     return f"The first bonds broke {when} t = {written(first, 4)} s; in the end {written(last)} bonds of {written(total)} " \
-        f"({written(100 * last / total, 3)} %) were broken, and an energy of {written(lost[-1][1], 4)} was dissipated."
+        f"({written(100 * last / total, 3)} %) were broken, and an energy of {written(lost[-1][1], 4)} J/m was dissipated."
 
 
 def loaded_until_it_breaks():
@@ -221,11 +223,11 @@ def loaded_until_it_breaks():
                     {**COARSE, "Models": "finite elements, peridynamics", "Time/Time step": "0.1", "Output/Write at": "0.6",
                      "Boundary conditions/Displacement": "top: 0, 0.012*t; bottom: 0, -0.012*t"})
     rows, text, n_images = report_of(run)
-    check(n_images == 16, f"sketch, 4 displacements, 6 stresses, 2 damages, forces, energies and totals are drawn: {n_images}")
+    check(n_images == 17, f"sketch, 4 displacements, 6 stresses, 2 damages, forces twice, energies and totals are drawn: {n_images}")
     check("2D, slowly loaded" in text and "slowly loaded up to t = 1 s, was computed" in text, "a slowly loaded body")
     check(bonds_sentence(run, "at") in text, f"the report says: {bonds_sentence(run, 'at')}")
     peaks = {m: max(over_time(run, m, "force on top in y"), key=lambda pair: abs(pair[1])) for m in (FEM, PD)}
-    listed = " and ".join(f"{written(v, 4)} at t = {written(t, 4)} s ({m})" for m, (t, v) in peaks.items())
+    listed = " and ".join(f"{written(v, 4)} N/m at t = {written(t, 4)} s ({m})" for m, (t, v) in peaks.items())
     check(f"The largest force on top, in y, was {listed}." in text, f"the largest force on top is {listed}")
     check(0.5 < peaks[PD][0] < 1 and peaks[FEM][0] == 1, "peridynamics breaks before the end, finite elements never")
     check("Above, the force on top in y; that on bottom is equal and opposite; below, the bonds that have broken." in text,
@@ -234,7 +236,8 @@ def loaded_until_it_breaks():
     for quantity, key in (("Energy released by broken bonds", "released"), ("Energy dissipated", "dissipated"),
                           ("Broken bonds", "broken bonds")):
         value = over_time(run, PD, quantity[0].lower() + quantity[1:])[-1][1]
-        check([quantity, "–", written(value)] in rows, f"{quantity} is that of totals.csv, {value}")
+        unit = "" if quantity == "Broken bonds" else " (J/m)"
+        check([quantity + unit, "–", written(value)] in rows, f"{quantity} is that of totals.csv, {value}")
         check_close(balance[key], value, relative=1e-14, what=f"{key} of the summary")
     with h5py.File(os.path.join(run.folder, run.summary["fields"][-1]["files"][PD])) as file:
         damage = file["damage"][:].max()
@@ -248,7 +251,7 @@ def loaded_and_whole():
     _, text, _ = report_of(run)
     check("No bond broke." in text and "none is left" not in text, "no bond broke, and no damage is drawn")
     force = over_time(run, PD, "force on top in y")[-1][1]
-    check(f"The largest force on top, in y, was {written(force, 4)} at t = 0.3 s." in text, f"the largest force is {force}")
+    check(f"The largest force on top, in y, was {written(force, 4)} N/m at t = 0.3 s." in text, f"the largest force is {force}")
 
 
 def branching():
@@ -260,7 +263,8 @@ def branching():
     check("The bonds that have broken; the forces on the sides do not change." in text, "broken bonds over time")
     for quantity in ("Kinetic energy", "Energy dissipated", "Broken bonds"):
         value = over_time(run, PD, quantity[0].lower() + quantity[1:])[-1][1]
-        check([quantity, written(value)] in rows, f"{quantity} is that of totals.csv, {value}")
+        unit = "" if quantity == "Broken bonds" else " (J/m)"
+        check([quantity + unit, written(value)] in rows, f"{quantity} is that of totals.csv, {value}")
 
 
 def fracture():
