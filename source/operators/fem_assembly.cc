@@ -429,9 +429,8 @@ namespace PeriDeal
           {
             if (!cell->face(f)->at_boundary())
               continue;
-            const auto &conditions = scene.boundary_conditions;
             condition_faces.for_each(
-              conditions.flux,
+              scene.boundary_conditions.flux,
               cell,
               f,
               data.face_values,
@@ -442,7 +441,7 @@ namespace PeriDeal
               });
             cell->get_dof_indices(data.indices);
             condition_faces.for_each(
-              conditions.convection,
+              scene.boundary_conditions.convection,
               cell,
               f,
               data.face_values,
