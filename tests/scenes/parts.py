@@ -71,8 +71,9 @@ def loads():
     for model in (FE, PD):
         check_close(force(run, model, "disc"), -math.pi * 0.045, relative=6e-4, what=f"{model}: half a disc")  # measured: 3.7e-4
     run = run_scene(HEAT, {**ELASTIC, "Models": both, **area, BC + "Traction": "load: 0, -sqrt(0.237^2 - (x - 0.47)^2)"})
-    for model in (FE, PD):
-        check_close(force(run, model, "load"), -math.pi * 0.237 ** 2 / 2, relative=0.01, what=f"{model}: a pressure that ends at the rim of the part")  # measured: 9e-4 and 5.5e-3
+    # Measured: 9e-4 and, with one value of the formula for each node, 2.7e-2 on the six cells of the part.
+    for model, bound in ((FE, 1.4e-3), (PD, 0.04)):
+        check_close(force(run, model, "load"), -math.pi * 0.237 ** 2 / 2, relative=bound, what=f"{model}: a pressure that ends at the rim of the part")
 
 
 def same(what, one, other, tolerance=1e-11):
