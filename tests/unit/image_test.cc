@@ -406,7 +406,7 @@ namespace PeriDeal
       return fault(image.settings({{"Domain/" + entry, text}}));
     };
     expect_parts(with("Image", "missing.png"),
-                 {"'Image' in section 'Domain'", "missing.png", "cannot be read"});
+                 {"'Image' in section 'Domain'", "missing.png", "there is no file"});
     expect_parts(with("Image", ""), {"'Image' in section 'Domain'", "empty"});
     expect_parts(with("Image colors", ""),
                  {"'Image colors'", "rgb(90,90,90) (7 pixels)", "rgb(50,50,50) (3 pixels)"});

@@ -235,7 +235,7 @@ namespace PeriDeal
               }
             EXPECT_TRUE(entry.type == EntryType::text || entry.type == EntryType::boolean ||
                         entry.type == EntryType::choice || entry.type == EntryType::choices ||
-                        entry.name == "Symmetry" || entry.name == "Regions" ||
+                        entry.name == "Symmetry" || entry.name == "Parts" || entry.name == "Regions" ||
                         entry.name == "Image colors" || !entry.unit.empty())
               << entry.name;
           }
