@@ -18,11 +18,12 @@ namespace PeriDeal
 {
   double RemainingTime::update(const double spent, const double done)
   {
-    constexpr double least_share = 0.005, least_time = 3., factor = 1.5, span = 30.;
+    constexpr double least_share = 0.005, least_time = 3., factor = 1.5;
     if (done < least_share || spent < least_time)
       return -1.;
     const double found  = spent * std::max(0., 1. - done) / done,
-                 passed = std::max(0., spent - last);
+                 passed = std::max(0., spent - last),
+                 span   = std::clamp(0.05 * (spent + found), 1., 30.);
     if (shown < 0.)
       shown = found;
     else

@@ -12,7 +12,7 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  namespace
+  namespace PartFaces
   {
     using Interval = std::pair<double, double>;
 
@@ -107,7 +107,9 @@ namespace PeriDeal
       const CellVertices<dim> &vertices;
       const unsigned int       normal, end;
     };
-  } // namespace
+  } // namespace PartFaces
+
+  using namespace PartFaces;
 
 
   template <int dim>

@@ -145,23 +145,25 @@ namespace PeriDeal
       const BoundaryConditions<dim> &bc        = scene.boundary_conditions;
       const FluxTreatment            treatment = scene.peridynamics.flux_treatment;
       if (runs(scene, Model::peridynamics) && treatment != FluxTreatment::natural)
-        for (const SideCondition &condition : bc.flux)
-          if (const Part *const part = bc.part(condition.id);
-              part != nullptr &&
-              (part->kind != Part::of_side || treatment == FluxTreatment::layer_extrapolation))
-            entry_error(bc.where("Flux"),
-                        "the part '" + condition.name +
-                          "' is not for 'Flux treatment' in section 'Peridynamics' = " +
-                          (part->kind != Part::of_side ?
-                             "extrapolation, which is for sides and their parts." :
-                             "layer extrapolation, which is for whole sides.") +
-                          " Use 'natural'.");
-          else if (BoundaryConditions<dim>::find(bc.convection, condition.id) != nullptr)
-            entry_error(
-              bc.where("Convection"),
-              "the side '" + condition.name +
-                "' is named in 'Flux', too, and with 'Flux treatment' in section 'Peridynamics' = extrapolation its values "
-                "follow from the flux alone. Use 'natural' to have both.");
+        {
+          for (const SideCondition &condition : bc.flux)
+            if (const Part *const part = bc.part(condition.id);
+                part != nullptr &&
+                (part->kind != Part::of_side || treatment == FluxTreatment::layer_extrapolation))
+              entry_error(bc.where("Flux"),
+                          "the part '" + condition.name +
+                            "' is not for 'Flux treatment' in section 'Peridynamics' = " +
+                            (part->kind != Part::of_side ?
+                               "extrapolation, which is for sides and their parts." :
+                               "layer extrapolation, which is for whole sides.") +
+                            " Use 'natural'.");
+            else if (BoundaryConditions<dim>::find(bc.convection, condition.id) != nullptr)
+              entry_error(
+                bc.where("Convection"),
+                "the side '" + condition.name +
+                  "' is named in 'Flux', too, and with 'Flux treatment' in section 'Peridynamics' = extrapolation its values "
+                  "follow from the flux alone. Use 'natural' to have both.");
+        }
       if (scene.domain.shape == Shape::mesh_file && !(scene.peridynamics.horizon > 0.) &&
           scene.cracks.conduct() && scene.cracks.contact_conductance < 0.)
         entry_error(

@@ -13,7 +13,7 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  namespace
+  namespace Overlaps
   {
     /** What a condition says of one unknown of the places that it is on. */
     struct Claim
@@ -132,7 +132,9 @@ namespace PeriDeal
             }
       return "";
     }
-  } // namespace
+  } // namespace Overlaps
+
+  using namespace Overlaps;
 
 
   template <int dim>

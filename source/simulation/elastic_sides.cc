@@ -8,7 +8,9 @@
 #include <perideal/scene/lists.h>
 
 #include <cmath>
+#include <iomanip>
 #include <map>
+#include <sstream>
 
 #include "elastic_summary.h"
 
@@ -131,8 +133,10 @@ namespace PeriDeal
     const auto [side, direction] = largest_force(balance);
     if (side.empty())
       return "";
-    return "force " + number_text(balance.sides.at(side)[direction]) + " on " + side + " in " +
-           "xyz"[direction];
+    std::ostringstream text;
+    text << "force " << std::setprecision(4) << balance.sides.at(side)[direction] << " on " << side
+         << " in " << "xyz"[direction];
+    return text.str();
   }
 
 

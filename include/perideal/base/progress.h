@@ -13,7 +13,7 @@ namespace PeriDeal
 {
   /**
    * The time that a run still needs, from the share that is done. What it says follows the time that passes, and changes besides by a
-   * factor of 1.5 in half a minute at most, however unevenly a run advances.
+   * factor of 1.5 in a twentieth of the whole run, or half a minute, at most, however unevenly a run advances.
    */
   class RemainingTime
   {
