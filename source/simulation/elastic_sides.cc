@@ -5,8 +5,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/scene/lists.h>
-
 #include <cmath>
 #include <iomanip>
 #include <map>

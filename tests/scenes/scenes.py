@@ -106,7 +106,9 @@ def main():
             entry = run.model(model)
             if "energy balance" in entry:  # an elastic body in motion, or loaded slowly
                 lost = abs(entry["energy balance"]["imbalance"]) / (entry["energy balance"]["start"] + abs(entry["energy balance"]["work"]))
-                check_less(lost, 2.4e-3 if "branching" in name else 1e-3, f"{name}, {model}: energy lost, over what there was and came in")  # measured: 1.5e-3
+                # Measured 1.5e-3 and 6.8e-3: where accelerations jump as bonds break, a quarter with half the step.
+                bound = 2.4e-3 if "branching" in name else 8e-3 if "kalthoff" in name else 1e-3
+                check_less(lost, bound, f"{name}, {model}: energy lost, over what there was and came in")
                 rows.append((name, model, entry["unknowns"], entry.get("bonds", ""), entry.get("stepper", "none"), f"{lost:.1e}", f"{seconds:.1f}"))
                 continue
             if "force balance" in entry:
