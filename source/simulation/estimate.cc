@@ -247,7 +247,12 @@ namespace PeriDeal
         return result;
       }
     const Sample &one = samples[0], &two = samples[1];
-    const Growth  growth(dim, one.nodes, two.nodes, nodes);
+    if (!(two.nodes > one.nodes))
+      {
+        result.reason = "the lattice is small";
+        return result;
+      }
+    const Growth growth(dim, one.nodes, two.nodes, nodes);
     result.sampled       = true;
     result.cells         = growth(one.cells, two.cells);
     result.time_to_build = growth(one.time_to_build, two.time_to_build);

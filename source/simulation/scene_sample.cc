@@ -42,7 +42,8 @@ namespace PeriDeal
     };
     const auto ideal =
       static_cast<unsigned int>(std::ceil(std::pow(number_of<dim>(cells, 1) / nodes, 1. / dim)));
-    for (unsigned int q = std::max(2u, ideal); q < 2 * ideal; ++q)
+    // Not so far from the ideal that lattices of a quarter of the nodes have the same divisor.
+    for (unsigned int q = std::max(2u, ideal); 2 * q < 3 * ideal; ++q)
       if (std::all_of(cells.begin(), cells.end(), [q](const unsigned int k) { return k % q == 0; }))
         return divide(q);
     return divide(std::max(2u, ideal));
@@ -69,6 +70,7 @@ namespace PeriDeal
       }
     coarse->domain.set("Node spacing", "");
     coarse->domain.set("Cells", text);
+    coarse->cracks.set("Nodes on cracks", "left"); // these very cells
     if (scene.peridynamics.horizon > 0.)
       {
         const Tensor<1, dim> h   = scene.domain.spacing();
