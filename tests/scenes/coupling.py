@@ -257,7 +257,8 @@ def graded():
     check_less(steady.error(BOTH), 2.7e-3, "steady, adapted: error")
     check(any("adapted" in note for note in steady.summary["notes"]), "steady: the note tells of the mesh")
 
-    small = {"Domain/Cells": "80, 80", "Domain/Coarsening": "2", "Time/End time": "4", "Output/Write at": "1, 2, 3"}
+    # On the same cells, although the cracks run along rows of nodes.
+    small = {"Domain/Cells": "80, 80", "Domain/Coarsening": "2", "Cracks/Nodes on cracks": "left", "Time/End time": "4", "Output/Write at": "1, 2, 3"}
     adapted = run_quietly("adaptive_zone.prm", small)
     uniform = run_quietly("adaptive_zone.prm", small, {"Domain/Coarsening": "0", "Coupling/Zone": "cracks: 1"})
     gap = max(abs(a["value"] - b["value"]) for a, b in zip(adapted.probes, uniform.probes)) / 200

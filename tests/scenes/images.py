@@ -373,7 +373,7 @@ def mistakes():
     with open(words, "w") as file:
         file.write("this is no picture")
     cases = [
-        ("missing", {"Domain/Image": "no_such.png"}, ["'Image' in section 'Domain'", "'no_such.png' cannot be read"]),
+        ("missing", {"Domain/Image": "no_such.png"}, ["'Image' in section 'Domain'", "there is no file 'no_such.png'"]),
         ("cut short", {"Domain/Image": broken}, ["'Image' in section 'Domain'", "cut short"]),
         ("no picture", {"Domain/Image": words}, ["'Image' in section 'Domain'", "PNG, PGM or PPM"]),
         ("a folder", {"Domain/Image": FOLDER}, ["'Image' in section 'Domain'", "cannot be read"]),
