@@ -226,7 +226,7 @@ def together():
     first.kill()
     first.wait()
     check(run(results)[0] == 0 and status_of(results) == "complete", "a run after one that was killed")
-    check("fields/peridynamics_0003.h5" not in listing(results), f"files of the killed run: {sorted(listing(results))}")
+    check("fields/peridynamics_0004.h5" not in listing(results), f"files of the killed run: {sorted(listing(results))}")
 
 
 def ends():

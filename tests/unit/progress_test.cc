@@ -69,7 +69,7 @@ namespace
     setenv("PERIDEAL_PROGRESS", "lines", 1);
     testing::internal::CaptureStdout();
     {
-      Progress progress(MPI_COMM_WORLD, false, 0.2);
+      Progress progress(MPI_COMM_SELF, false, 0.2); // on each process: only the first one tells
       progress.begin("time");
       progress.doing("peridynamics: time stepping");
       progress.state("force 12 on top in y");
