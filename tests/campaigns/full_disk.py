@@ -17,7 +17,7 @@ import time
 
 from campaign import COMPLETE, GOOD, REFUSED, WRONG, Campaign, Process, run
 from kills import FRAME, HEAT, LOADING, MOTION, files_in
-from result_folder import wrong_results
+from result_folder import status_of, wrong_results
 
 SCENES = {"heat": (HEAT, 0.01, 0.15), "motion": (MOTION, 0.1, 2), "loading": (LOADING, 0.05, 0.5)}
 
@@ -92,7 +92,8 @@ def disturbed(case, ranks, what, disturb):
     wanted = case.random.randint(1, case.files)
     while process.running and time.monotonic() < until and len(files_in(results)) < wanted:
         time.sleep(0.01)
-    went_on = process.running
+    # A process that has written all still takes some time to leave.
+    went_on = process.running and status_of(results) != "complete"
     undo = disturb(results)
     end = process.wait(240)
     if undo:

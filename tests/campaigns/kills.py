@@ -120,7 +120,8 @@ def judge(case, end, number, memory):
     results = os.path.join(case.folder, "results")
     if end.kind == HANG:
         return HANG, end.detail
-    complete = end.status == 0
+    # The starter may be ended when the run has written all: then it returns 1, and the results have to be whole.
+    complete = end.status == 0 or status_of(results) == "complete"
     problems = list(wrong_results(results, complete))
     if problems:
         return WRONG, "; ".join(problems[:4])
