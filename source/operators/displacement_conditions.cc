@@ -73,11 +73,11 @@ namespace PeriDeal
   DisplacementConditions<dim>::DisplacementConditions(const std::vector<NodeOnSide<dim>> &nodes,
                                                       const std::vector<Point<dim>>      &positions,
                                                       const Scene<dim>                   &scene,
+                                                      const bool     at_centers,
                                                       const MPI_Comm communicator)
   {
-    const auto &conditions = scene.boundary_conditions;
-    const bool  at_centers = scene.domain.nodes == NodePlacement::cell_centers;
-    const auto  beyond     = beyond_sides(scene);
+    const auto                        &conditions = scene.boundary_conditions;
+    const auto                         beyond     = beyond_sides(scene);
     std::map<unsigned int, Prescribed> found;
     std::vector<unsigned long long>    n_nodes(conditions.displacement.size(), 0), n_held(n_nodes);
     const auto require = [&](const types::boundary_id side, const std::string &entry) {

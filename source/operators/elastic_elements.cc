@@ -136,8 +136,11 @@ namespace PeriDeal
       on_sides.push_back({unknown.node, unknown.id, unknown.position});
     const std::vector<Point<dim>> own(positions.begin(),
                                       positions.begin() + nodes->locally_owned_size());
-    conditions =
-      std::make_unique<DisplacementConditions<dim>>(on_sides, own, scene, dofs.get_communicator());
+    conditions = std::make_unique<DisplacementConditions<dim>>(on_sides,
+                                                               own,
+                                                               scene,
+                                                               false,
+                                                               dofs.get_communicator());
     conditions->pin(own, scene, false);
   }
 

@@ -33,11 +33,13 @@ namespace PeriDeal
     std::vector<Point<dim>> positions;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       positions.push_back(nodes.position(i));
-    conditions = std::make_unique<DisplacementConditions<dim>>(on_sides,
+    const bool at_centers = scene.domain.nodes == NodePlacement::cell_centers;
+    conditions            = std::make_unique<DisplacementConditions<dim>>(on_sides,
                                                                positions,
                                                                scene,
+                                                               at_centers,
                                                                nodes.communicator());
-    conditions->pin(positions, scene, scene.domain.nodes == NodePlacement::cell_centers);
+    conditions->pin(positions, scene, at_centers);
     const auto &force = scene.initial_and_source.body_force;
     loads_vary        = std::any_of(force.begin(), force.end(), [](const Expression &e) {
       return e.depends_on_time();

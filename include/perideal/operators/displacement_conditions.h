@@ -34,12 +34,14 @@ namespace PeriDeal
     /**
      * @param nodes on the sides
      * @param positions of this process's own nodes, for those in `Displacement layer`
+     * @param at_centers the nodes lie at the centres of cells; then none is held by a plane of symmetry beyond which families go on
      *
      * Collective. Throws UserError for a side of symmetry that is not normal to an axis, and for sides without nodes.
      */
     DisplacementConditions(const std::vector<NodeOnSide<dim>>    &nodes,
                            const std::vector<dealii::Point<dim>> &positions,
                            const Scene<dim>                      &scene,
+                           const bool                             at_centers,
                            const MPI_Comm                         communicator);
 
     /** Hold the pins of the scene's islands. @param positions of this process's own nodes; @param at_centers which pins are meant. Not collective. */
