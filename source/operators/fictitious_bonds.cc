@@ -173,20 +173,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FictitiousBonds<dim>::set_thermal_strains(
-    const std::function<double(const unsigned int)> &strain)
-  {
-    strains.resize(images.size());
-    for_each([&](const Bond &bond) {
-      double other = 0.;
-      for (std::size_t k = term_starts[bond.image]; k < term_starts[bond.image + 1]; ++k)
-        other += terms[k].factor * strain(terms[k].node);
-      strains[bond.number] = 0.5 * (strain(bond.node) + other);
-    });
-  }
-
-
-  template <int dim>
   const std::vector<unsigned int> &FictitiousBonds<dim>::nodes() const
   {
     return list;

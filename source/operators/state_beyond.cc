@@ -68,6 +68,35 @@ namespace PeriDeal
 
 
   template <int dim>
+  void FictitiousBonds<dim>::set_thermal_strains(
+    const std::function<double(const unsigned int)> &strain)
+  {
+    strains.resize(images.size());
+    for_each([&](const Bond &bond) {
+      // What a temperature linear in space does to a free body is no linear displacement. The bond has no force then if its extension is that of what the image follows
+      // from, at r_k from the node: e = sum f_k (s_k M.r_k - r_k^2/2 ds/dM), the mean of both ends for a mirror image.
+      const Point<dim>     at  = families.nodes().position(bond.node);
+      const Tensor<1, dim> xi  = bond_vector(bond);
+      double               own = strain(bond.node), other = 0., mean = 0., half = 0., rest = 1.;
+      for (std::size_t k = term_starts[bond.image]; k < term_starts[bond.image + 1]; ++k)
+        {
+          Tensor<1, dim> r = families.nodes().position(terms[k].node) - at;
+          for (unsigned int d = 0; d < dim; ++d)
+            r[d] = (terms[k].mirrored >> d) & 1 ? xi[d] : r[d];
+          const double f = terms[k].factor / xi.norm_square(), s = strain(terms[k].node);
+          other += terms[k].factor * s;
+          mean += f * s * (r * xi);
+          half += 0.5 * f * r.norm_square();
+          rest -= f * (r * xi);
+        }
+      // A body narrower than a family mirrors and continues along one axis: no such sum.
+      mean -= half * (other - own);
+      strains[bond.number] = std::abs(rest) > 1e-6 ? 0.5 * (own + other) : mean;
+    });
+  }
+
+
+  template <int dim>
   void StateOperator<dim>::complete_families()
   {
     const auto sides = beyond_sides(scene);
@@ -326,6 +355,8 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template void FictitiousBonds<dim>::set_thermal_strains(                                         \
+    const std::function<double(const unsigned int)> &);                                            \
   template void   StateOperator<dim>::complete_families();                                         \
   template void   StateOperator<dim>::add_images_to_dilatations(const Vector &, const bool) const; \
   template void   StateOperator<dim>::add_strained_image_forces(Vector &, const Vector &) const;   \
