@@ -5,26 +5,117 @@
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
+#include <iterator>
+#include <string>
 #include <vector>
 
 namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    struct Hindrance
+    {
+      std::string reason, remedy;
+    };
+
+
+    /** Why no families can go on beyond the sides; empty where they can. */
+    template <int dim>
+    Hindrance find_hindrance(const Scene<dim> &scene)
+    {
+      if (scene.domain.shape == Shape::mesh_file)
+        return {
+          "the nodes of a mesh file are on no lattice",
+          "Families go on beyond those of 'Shape = box' (section 'Domain'), which may have 'Holes'."};
+      if (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty())
+        return {"cracks are cut into the mesh ('Mesh = faces')",
+                "Families go on with 'Mesh = removed' (section 'Cracks')."};
+      if (scene.peridynamics.nodal_volume != NodalVolume::partial)
+        return {"nodes on sides have whole cells ('Nodal volume = full')",
+                "Families go on with 'Nodal volume = partial'."};
+      if (scene.elasticity.micromodulus == Micromodulus::constant)
+        return {"bonds at sides are those inside ('Micromodulus = constant')",
+                "Families go on with 'Micromodulus = family' (section 'Elasticity')."};
+      return {};
+    }
+
+
+    /** Sides and parts of sides where one row of nodes bears what acts, of the conditions that no layer spreads. */
+    template <int dim>
+    std::vector<std::string> single_rows(const Scene<dim>                   &scene,
+                                         const std::vector<VectorCondition> &list,
+                                         const double                        layer,
+                                         bool                               &flat)
+    {
+      const auto               beyond = beyond_sides(scene);
+      std::vector<std::string> names;
+      for (const VectorCondition &condition : list)
+        {
+          const types::boundary_id side = scene.boundary_conditions.side_of(condition.id);
+          if (layer > 0. || side == numbers::invalid_boundary_id ||
+              (side < 2 * dim && beyond[side] != BeyondSide::nothing))
+            continue;
+          flat = flat && side < 2 * dim && scene.domain.shape != Shape::mesh_file;
+          names.push_back("'" + scene.boundary_conditions.name_of(condition.id) + "'");
+        }
+      return names;
+    }
+  } // namespace
+
+
   template <int dim>
   std::string hindrance_of_fictitious_nodes(const Scene<dim> &scene)
   {
-    if (scene.peridynamics.surface_correction != SurfaceCorrection::automatic)
+    return scene.peridynamics.surface_correction == SurfaceCorrection::automatic ?
+             find_hindrance(scene).reason :
+             std::string();
+  }
+
+
+  template <int dim>
+  std::string note_on_cut_sides(const Scene<dim> &scene)
+  {
+    const bool  automatic  = scene.peridynamics.surface_correction == SurfaceCorrection::automatic;
+    const auto &conditions = scene.boundary_conditions;
+    const Hindrance hindrance = find_hindrance(scene);
+    if (!(automatic && !hindrance.reason.empty()) &&
+        scene.peridynamics.surface_correction != SurfaceCorrection::none)
       return {};
-    if (scene.domain.shape == Shape::mesh_file)
-      return "the nodes of a mesh file are on no lattice";
-    if (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty())
-      return "cracks are cut into the mesh ('Mesh = faces')";
-    if (scene.peridynamics.nodal_volume != NodalVolume::partial)
-      return "nodes on sides have whole cells ('Nodal volume = full')";
-    if (scene.elasticity.micromodulus == Micromodulus::constant)
-      return "bonds at sides are those inside ('Micromodulus = constant')";
-    return {};
+    bool       flat = true;
+    const auto held =
+      single_rows(scene, conditions.displacement, conditions.displacement_layer, flat);
+    const auto loaded = single_rows(scene, conditions.traction, conditions.traction_layer, flat);
+    // With a constant micromodulus surfaces are meant to be soft.
+    if (held.empty() && loaded.empty() &&
+        (!automatic || scene.elasticity.micromodulus == Micromodulus::constant))
+      return {};
+    std::string              text  = automatic ?
+                                       "Families of peridynamics end at the sides, because " + hindrance.reason :
+                                       std::string("Families of peridynamics end at the sides "
+                                                   "('Surface correction = none' in section 'Peridynamics')");
+    std::vector<std::string> names = held;
+    std::copy_if(loaded.begin(), loaded.end(), std::back_inserter(names), [&](const auto &name) {
+      return std::find(held.begin(), held.end(), name) == held.end();
+    });
+    if (!names.empty())
+      text += ", where one row of nodes bears what acts on " + join_names(names);
+    text +=
+      ". Displacements of sides that are held or loaded, and stresses within a horizon of all sides, "
+      "do not converge as the nodes get denser. ";
+    text += !hindrance.reason.empty() ? hindrance.remedy :
+                                        "With 'auto' families go on beyond them.";
+    if (names.empty() || !flat)
+      return text;
+    const std::string hold = "'Displacement layer' of two horizons",
+                      pull = "'Traction layer' of a horizon";
+    return text + " " +
+           (held.empty()   ? pull :
+            loaded.empty() ? hold :
+                             hold + " and " + pull) +
+           " (section 'Boundary conditions') " +
+           (held.empty() || loaded.empty() ? "spreads" : "spread") + " it over a depth.";
   }
 
 
@@ -40,7 +131,9 @@ namespace PeriDeal
       return beyond;
     const auto &conditions = scene.boundary_conditions;
     const bool  brittle    = scene.material.fracture_energy || scene.material.critical_stretch;
-    if (!automatic || !brittle)
+    // Nodes on sides and at corners that others follow are stiff, and explicit steps would be short.
+    const bool moves = scene.elasticity.solver == ElasticSolver::dynamics;
+    if (!automatic || !(brittle || moves))
       beyond.fill(BeyondSide::continued);
     const auto set = [&](const types::boundary_id side, const BeyondSide value) {
       if (side < 2 * dim)
@@ -61,8 +154,7 @@ namespace PeriDeal
   template <int dim>
   std::string automatic_correction(const Scene<dim> &scene)
   {
-    const std::string reason = hindrance_of_fictitious_nodes(scene);
-    if (!reason.empty())
+    if (const std::string reason = hindrance_of_fictitious_nodes(scene); !reason.empty())
       return "none, because " + reason;
     const auto               beyond = beyond_sides(scene);
     std::vector<std::string> names;
@@ -73,9 +165,10 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                 \
-  template std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene); \
-  template std::string                     automatic_correction(const Scene<dim> &scene);
+#define PERIDEAL_INSTANTIATE(dim)                                                         \
+  template std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene);         \
+  template std::string                     automatic_correction(const Scene<dim> &scene); \
+  template std::string                     note_on_cut_sides(const Scene<dim> &scene);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -114,7 +114,7 @@ namespace PeriDeal
       EntryType::choice,
       "none",
       "",
-      "What makes up for missing bonds. `auto`: nothing for what diffuses; families of elastic peridynamics on a lattice go on beyond planes of symmetry and all flat sides (where bonds may break, "
+      "What makes up for missing bonds. `auto`: nothing for what diffuses; families of elastic peridynamics on a lattice go on beyond planes of symmetry and all flat sides (where bonds may break, and in motion, "
       "beyond those with conditions), at no more cost than their bonds. Factors of bonds: beside cracks only (`crack scaling`, for finite elements with "
       "`Mesh = pairs`, too); or wherever the energy of a unit gradient is not that of the classical body (`energy`), at sides, cracks and "
       "voids. Elasticity has `energy`, of stretches along the axes, `volume`, by the volumes of both ends' families, and `moments`, the smallest change of bonds "

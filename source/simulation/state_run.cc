@@ -182,11 +182,8 @@ namespace PeriDeal
         const std::string entry     = "'Surface correction = moments' in section 'Peridynamics' ";
         const unsigned long long n  = states->n_uncorrected_nodes();
         std::vector<std::string> list;
-        if (const std::string reason = hindrance_of_fictitious_nodes(scene); !reason.empty() && scene.elasticity.micromodulus != Micromodulus::constant)
-          list.push_back(
-            "'Surface correction = auto' in section 'Peridynamics': families of peridynamics end at the sides, because " +
-            reason +
-            ". Displacements of sides that are held or loaded, and stresses within a horizon of all sides, do not converge as the nodes get denser.");
+        if (const std::string note = note_on_cut_sides(scene); !note.empty())
+          list.push_back(note);
         if (dim > 1 && scene.elasticity.model == ElasticModel::bond_based &&
             scene.elasticity.micromodulus == Micromodulus::family)
           list.push_back(

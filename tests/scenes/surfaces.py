@@ -96,6 +96,16 @@ def part():
     run = run_scene(SCENE, {"Output/Fields": "none"})
     setting = run.model(PD)["settings"]["surface correction"]
     check("fictitious nodes beyond" in setting and "left" in setting, f"the report names what is done: {setting}")
+    check(run.summary["notes"] == [], f"no note where families go on: {run.summary['notes']}")
+    # Planes of symmetry hold finite elements, whatever beside them the cell centres of peridynamics do.
+    both = run_scene(SCENE, {"Output/Fields": "none", "Models": "finite elements, peridynamics", "Domain/Nodes": "cell centers"})
+    table.add("finite elements beside cell centers: displacement of the right side", both.rows("finite elements")[0]["ux"], 1, relative=1e-9)
+    for more, words in (({"Peridynamics/Surface correction": "none"}, ("'Surface correction = none'", "on 'right'", "With 'auto'", "'Traction layer'")),
+                        ({"Peridynamics/Nodal volume": "full"}, ("'Nodal volume = full'", "on 'right'", "'Nodal volume = partial'"))):
+        found = run_scene(SCENE, {"Output/Fields": "none", **more}).summary["notes"]
+        check(any(all(word in note for word in words) for note in found), f"a note on {more}: {found}")
+    layer = run_scene(SCENE, {"Output/Fields": "none", "Peridynamics/Surface correction": "none", "Boundary conditions/Traction layer": "0.1"})
+    check(layer.summary["notes"] == [], f"no note on a row where a layer bears the traction: {layer.summary['notes']}")
     table.show()
 
 

@@ -32,6 +32,14 @@ namespace PeriDeal
   std::string hindrance_of_fictitious_nodes(const Scene<dim> &scene);
 
 
+  /**
+   * For `Models = peridynamics`: that families end at the sides, with `none` or since `auto` is hindered, and where one row of nodes bears what acts there; with what to do. With `none` empty
+   * where nothing is held or loaded so. Not collective.
+   */
+  template <int dim>
+  std::string note_on_cut_sides(const Scene<dim> &scene);
+
+
   /** What `Surface correction = auto` does, for reports: "fictitious nodes beyond left, right", or "none" and why. */
   template <int dim>
   std::string automatic_correction(const Scene<dim> &scene);
