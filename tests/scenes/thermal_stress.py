@@ -215,7 +215,8 @@ STRIP = {FEM: (1e-12, 2.7e-3), PD: (2.1e-4, 3.9e-3)}
 def ranks():
     """The same on 1, 2 and 4 processes."""
     small = {**QUIET, "Domain/Cells": "20, 80", "Models": "finite elements, peridynamics"}
-    for what, scene, more in (("cooling", SCENE, small), ("steady", PLATE, {**QUIET, **CLAMPED}), ("coupled", PLATE, {**QUIET, **CLAMPED, "Models": "coupled", "Coupling/Zone": "x - 1", "Finite elements/Degree": "1"})):
+    for what, scene, more in (("cooling", SCENE, small), ("steady", PLATE, {**QUIET, **CLAMPED}),
+                              ("completed", PLATE, {**QUIET, **CLAMPED, "Models": PD, "Peridynamics/Surface correction": "auto"}), ("coupled", PLATE, {**QUIET, **CLAMPED, "Models": "coupled", "Coupling/Zone": "x - 1", "Finite elements/Degree": "1"})):
         alone, two, four = (run_scene(scene, more, ranks=n) for n in (1, 2, 4))
         for columns in (("ux", "uy"), ("sxx", "syy", "szz", "sxy", "von_mises"), ("temperature",)):
             a, b, c = ([row[k] for row in run.probes for k in columns] for run in (alone, two, four))

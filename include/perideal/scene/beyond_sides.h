@@ -20,7 +20,7 @@ namespace PeriDeal
 
 
   /**
-   * Of the sides left, right, bottom, top, back, front. With `Surface correction = fictitious nodes` all go on. With `auto` they do where the scene allows, for `Models = peridynamics`; where bonds may
+   * Of the sides left, right, bottom, top, back, front. With `Surface correction = fictitious nodes` all go on. With `auto` they do where the scene allows, for `Models = peridynamics`; in motion, and where bonds may
    * break those with conditions alone, since bonds at free sides break as those of their own families. Not collective.
    */
   template <int dim>
