@@ -17,7 +17,17 @@ namespace PeriDeal
     if (scene.peridynamics.surface_correction != SurfaceCorrection::automatic)
       return {};
     if (scene.domain.shape == Shape::mesh_file)
-      return "the nodes of a mesh file are on no lattice";
+      {
+        const std::string on_mesh = "on a mesh from a file families do not go on ";
+        if (dim == 1)
+          return on_mesh + "in 1D";
+        if (scene.domain.nodes == NodePlacement::cell_centers)
+          return on_mesh + "with nodes at cell centres";
+        if (scene.material.fracture_energy || scene.material.critical_stretch)
+          return on_mesh + "where bonds may break";
+        if (!scene.cracks.cracks.empty())
+          return on_mesh + "with cracks";
+      }
     if (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty())
       return "cracks are cut into the mesh ('Mesh = faces')";
     if (scene.peridynamics.nodal_volume != NodalVolume::partial)
@@ -36,7 +46,8 @@ namespace PeriDeal
     const bool automatic = scene.peridynamics.surface_correction == SurfaceCorrection::automatic;
     if (!automatic && !scene.peridynamics.completes_families())
       return beyond;
-    if (automatic && !hindrance_of_fictitious_nodes(scene).empty())
+    if (automatic &&
+        (scene.domain.shape == Shape::mesh_file || !hindrance_of_fictitious_nodes(scene).empty()))
       return beyond;
     const auto &conditions = scene.boundary_conditions;
     const bool  brittle    = scene.material.fracture_energy || scene.material.critical_stretch;
@@ -59,11 +70,22 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool completes_mesh(const Scene<dim> &scene)
+  {
+    return scene.domain.shape == Shape::mesh_file && scene.general.physics == Physics::elasticity &&
+           scene.peridynamics.surface_correction == SurfaceCorrection::automatic &&
+           hindrance_of_fictitious_nodes(scene).empty();
+  }
+
+
+  template <int dim>
   std::string automatic_correction(const Scene<dim> &scene)
   {
     const std::string reason = hindrance_of_fictitious_nodes(scene);
     if (!reason.empty())
       return "none, because " + reason;
+    if (completes_mesh(scene))
+      return "fictitious nodes beyond the whole boundary";
     const auto               beyond = beyond_sides(scene);
     std::vector<std::string> names;
     for (unsigned int side = 0; side < 2 * dim; ++side)
@@ -73,8 +95,9 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                 \
-  template std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene); \
+#define PERIDEAL_INSTANTIATE(dim)                                                   \
+  template std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene);   \
+  template bool                            completes_mesh(const Scene<dim> &scene); \
   template std::string                     automatic_correction(const Scene<dim> &scene);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
