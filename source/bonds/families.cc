@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/bonds/boundary_images.h>
 #include <perideal/bonds/families.h>
 #include <perideal/laws/crack_conductance.h>
 #include <perideal/laws/interface.h>
@@ -56,10 +57,11 @@ namespace PeriDeal
       voids = &scene.domain;
     find_weights();
     // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away than any bond.
-    const double layer = parameters.flux_treatment == FluxTreatment::layer_extrapolation ?
-                           delta + 0.5 * nodes.smallest_spacing() :
-                           0.;
-    add_halo(nodes, std::max(farthest, layer), halo);
+    const double layer  = parameters.flux_treatment == FluxTreatment::layer_extrapolation ?
+                            delta + 0.5 * nodes.smallest_spacing() :
+                            0.;
+    const double images = completes_mesh(scene) ? halo_of_images(farthest) : 0.;
+    add_halo(nodes, std::max({farthest, layer, images}), halo);
     typename Lattice<dim>::Index reach_in_sites{};
     for (const FamilyMember<dim> &member : members)
       for (unsigned int d = 0; d < dim; ++d)

@@ -18,7 +18,7 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  double Families<dim>::off_lattice_weight(const double r) const
+  double Families<dim>::weight_off_lattice(const double r) const
   {
     const double h        = own_nodes->smallest_spacing();
     double       fraction = 1., at = r;
@@ -67,7 +67,7 @@ namespace PeriDeal
           continue; // the node itself, or its twin across a crack
         double w = 0.;
         if (members.empty())
-          w = off_lattice_weight(r);
+          w = weight_off_lattice(r);
         else if (const FamilyMember<dim> *member = find_member(xi))
           w = member->weight;
         if (w > 0.)
@@ -121,7 +121,7 @@ namespace PeriDeal
         double moment = 0.;
         for (const auto &[neighbor, square] : found)
           if (square > tiny * tiny) // not the node itself, nor its twin across a crack
-            moment += off_lattice_weight(std::sqrt(square)) * own_nodes->volume(neighbor) * square;
+            moment += weight_off_lattice(std::sqrt(square)) * own_nodes->volume(neighbor) * square;
         sum += moment / (2. * dim);
         n_full += 1.;
       }
@@ -142,7 +142,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template double Families<dim>::off_lattice_weight(const double) const;                           \
+  template double Families<dim>::weight_off_lattice(const double) const;                           \
   template void   Families<dim>::bonds_off_lattice(const unsigned int, std::vector<Bond> &) const; \
   template void   Families<dim>::calibrate_off_lattice(const HasBonds &);
   PERIDEAL_INSTANTIATE(1)

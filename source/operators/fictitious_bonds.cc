@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/base/interleaved.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/fictitious_bonds.h>
 
@@ -11,141 +10,6 @@
 namespace PeriDeal
 {
   using namespace dealii;
-
-  template <int dim>
-  FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
-                                        const std::array<BeyondSide, 2 * dim> &beyond,
-                                        std::vector<CrackGeometry<dim>>        cracks)
-    : families(families)
-    , extension(families, beyond)
-    , cracks(std::move(cracks))
-  {
-    const Nodes<dim> &nodes = families.nodes();
-    int               reach = 0;
-    for (const FamilyMember<dim> &member : families.lattice_members())
-      for (unsigned int d = 0; d < dim; ++d)
-        reach = std::max(reach, member.offset[d]);
-    starts.assign(1, 0);
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        if (extension.distance(nodes.lattice()->index(nodes.position(i))) <= reach)
-          find_bonds_of(i);
-        if (images.size() > starts.back())
-          list.push_back(i);
-        starts.push_back(images.size());
-      }
-    image_of = {};
-    values.resize(dim * origins.size());
-    image_forces.resize(values.size());
-    passed.reinit(interleaved(*nodes.partitioner(), dim));
-  }
-
-
-  template <int dim>
-  void FictitiousBonds<dim>::find_bonds_of(const unsigned int i)
-  {
-    const Nodes<dim>   &nodes      = families.nodes();
-    const Lattice<dim> &lattice    = *nodes.lattice();
-    const Index         center     = lattice.index(nodes.position(i));
-    const bool          near_crack = families.near_crack(i);
-    Site                site;
-    for (const FamilyMember<dim> &member : families.lattice_members())
-      {
-        const Index index = center + member.offset;
-        if (extension.is_inside(index) || !extension.find(index, site))
-          continue;
-        const unsigned int real   = families.node_at(index);
-        const double       inside = real == numbers::invalid_unsigned_int ? 0. : nodes.volume(real);
-        const double       volume = site.volume - inside;
-        if (volume <= 1e-9 * site.volume)
-          continue;
-        // What a crack cuts of a mirror image counts in the damage.
-        const bool cut = near_crack && is_cut(i, index, site);
-        if (cut && !(site.terms.size() == 1 && is_separated(i, index, site.terms[0])))
-          continue;
-        Tensor<1, dim> xi;
-        for (unsigned int d = 0; d < dim; ++d)
-          xi[d] = member.offset[d] * lattice.spacing[d];
-        const double w = cut ? 0. : nodes.volume(i) * volume * member.weight;
-        images.push_back(image_at(index, site, volume));
-        moments.push_back(w * xi);
-        springs.push_back(w * xi.norm_square());
-      }
-  }
-
-
-  template <int dim>
-  unsigned int FictitiousBonds<dim>::image_at(const Index &index,
-                                              const Site  &site,
-                                              const double volume)
-  {
-    const Lattice<dim> &lattice = *families.nodes().lattice();
-    std::size_t         key     = 0;
-    for (unsigned int d = dim; d-- > 0;)
-      {
-        const std::size_t wide = 4 * static_cast<std::size_t>(lattice.n_sites[d]) + 4096;
-        key                    = key * wide + (index[d] + wide / 2);
-      }
-    const auto [entry, is_new] = image_of.try_emplace(key, origins.size());
-    if (is_new)
-      {
-        sites.push_back(index);
-        volumes.push_back(volume);
-        origins.push_back(site.origin);
-        terms.insert(terms.end(), site.terms.begin(), site.terms.end());
-        term_starts.push_back(terms.size());
-      }
-    return entry->second;
-  }
-
-
-  template <int dim>
-  bool FictitiousBonds<dim>::is_separated(const unsigned int i,
-                                          const Index       &index,
-                                          const Term        &term) const
-  {
-    // Instead of the cracks mirror the bond, about each set of the planes of symmetry that it passes.
-    const Nodes<dim> &nodes = families.nodes();
-    const Point<dim>  far = nodes.lattice()->position(index), origin = nodes.position(term.node);
-    for (unsigned int image = 0; image < (1u << dim); ++image)
-      {
-        if ((image & ~term.mirrored) != 0)
-          continue;
-        Point<dim> a = nodes.crack_point(i), b = nodes.crack_point(term.node);
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            const double twice = far[d] + origin[d];
-            if ((image >> d) & 1)
-              a[d] = twice - a[d];
-            else if ((term.mirrored >> d) & 1)
-              b[d] = twice - b[d];
-          }
-        for (const CrackGeometry<dim> &crack : cracks)
-          if (crack.separates(a, b))
-            return true;
-      }
-    return false;
-  }
-
-
-  template <int dim>
-  bool FictitiousBonds<dim>::is_cut(const unsigned int i,
-                                    const Index       &index,
-                                    const Site        &site) const
-  {
-    for (const Term &term : site.terms)
-      {
-        bool cut = false;
-        if (term.mirrored != 0)
-          cut = is_separated(i, index, term);
-        else if (term.node != i)
-          families.kept_fraction(i, term.node, cut);
-        if (cut)
-          return true;
-      }
-    return false;
-  }
-
 
   template <int dim>
   void FictitiousBonds<dim>::add_weights(Vector &q) const
@@ -206,8 +70,7 @@ namespace PeriDeal
   template <int dim>
   Tensor<1, dim> FictitiousBonds<dim>::bond_vector(const Bond &bond) const
   {
-    return families.nodes().lattice()->position(sites[bond.image]) -
-           families.nodes().position(bond.node);
+    return places[bond.image] - families.nodes().position(bond.node);
   }
 
 
@@ -281,19 +144,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::array<Tensor<1, dim>, 2 * dim> FictitiousBonds<dim>::forces_of_planes() const
+  std::map<types::boundary_id, Tensor<1, dim>> FictitiousBonds<dim>::forces_of_planes() const
   {
-    std::array<Tensor<1, dim>, 2 * dim> sums;
+    std::map<types::boundary_id, Tensor<1, dim>> sums;
     for (unsigned int g = 0; g < origins.size(); ++g)
       for (unsigned int d = 0; d < dim; ++d)
         {
+          if (planes[g][d] == numbers::invalid_boundary_id)
+            continue;
           double all = 0.; // 1 beyond continued sides, -1 beyond a plane
           for (std::size_t k = term_starts[g]; k < term_starts[g + 1]; ++k)
             all += terms[k].of_component[d];
-          const bool   above = 2 * sites[g][d] >= families.nodes().lattice()->n_sites[d] - 1;
           const double force =
             image_forces[dim * g + d] + (kept_forces.empty() ? 0. : kept_forces[dim * g + d]);
-          sums[2 * d + (above ? 1 : 0)][d] += (1. - all) * force;
+          sums[planes[g][d]][d] += (1. - all) * force;
         }
     return sums;
   }
@@ -396,7 +260,7 @@ namespace PeriDeal
   unsigned int FictitiousBonds<dim>::n_ends(const Bond &bond) const
   {
     const Term      &term = terms[term_starts[bond.image]];
-    const Point<dim> far  = families.nodes().lattice()->position(sites[bond.image]);
+    const Point<dim> far  = places[bond.image];
     const Point<dim> p    = families.nodes().position(term.node),
                      i    = families.nodes().position(bond.node);
     const double slack    = 1e-6 * families.nodes().smallest_spacing();
@@ -468,7 +332,8 @@ namespace PeriDeal
     return images.capacity() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
            (lengths.capacity() + across.capacity() + strains.capacity()) * sizeof(double) +
            starts.capacity() * sizeof(std::size_t) + terms.capacity() * sizeof(Term) +
-           sites.capacity() * (sizeof(Index) + 2 * dim * sizeof(double));
+           sites.capacity() * sizeof(Index) +
+           places.capacity() * (sizeof(Point<dim>) + sizeof(planes[0]) + 2 * dim * sizeof(double));
   }
 
 

@@ -99,6 +99,14 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::complete_families()
   {
+    if (completes_mesh(scene))
+      {
+        beyond = std::make_unique<FictitiousBonds<dim>>(
+          bonds,
+          boundary_images(bonds.nodes(), scene.boundary_conditions.symmetry, bonds.reach()));
+        beyond->add_weights(weighted);
+        return;
+      }
     const auto sides = beyond_sides(scene);
     if (!bonds.has_unique_sites() || std::all_of(sides.begin(), sides.end(), [](const auto side) {
           return side == BeyondSide::nothing;

@@ -398,10 +398,9 @@ namespace PeriDeal
     if (beyond)
       {
         // Bonds to mirror images pull at the body; those of the last application are known.
-        const auto planes = beyond->forces_of_planes();
-        for (types::boundary_id side = 0; side < 2 * dim; ++side)
-          if (planes[side] != Tensor<1, dim>())
-            sums[side] += planes[side];
+        for (const auto &[side, force] : beyond->forces_of_planes())
+          if (force != Tensor<1, dim>())
+            sums[side] += force;
       }
     for_each_load(t, [&](const auto side, const unsigned int unknown, const double value) {
       sums[side][unknown % dim] += value;

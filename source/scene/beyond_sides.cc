@@ -21,14 +21,28 @@ namespace PeriDeal
     };
 
 
+    template <int dim>
+    std::string obstacle_on_mesh(const Scene<dim> &scene)
+    {
+      if (dim == 1)
+        return "in 1D";
+      if (scene.domain.nodes == NodePlacement::cell_centers)
+        return "with nodes at cell centres";
+      if (scene.material.fracture_energy || scene.material.critical_stretch)
+        return "where bonds may break";
+      return scene.cracks.cracks.empty() ? "" : "with cracks";
+    }
+
+
     /** Why no families can go on beyond the sides; empty where they can. */
     template <int dim>
     Hindrance find_hindrance(const Scene<dim> &scene)
     {
       if (scene.domain.shape == Shape::mesh_file)
-        return {
-          "the nodes of a mesh file are on no lattice",
-          "Families go on beyond those of 'Shape = box' (section 'Domain'), which may have 'Holes'."};
+        if (const std::string obstacle = obstacle_on_mesh(scene); !obstacle.empty())
+          return {"on a mesh from a file families do not go on " + obstacle,
+                  "They do beyond the sides of 'Shape = box' (section 'Domain'), which may have "
+                  "'Holes'."};
       if (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty())
         return {"cracks are cut into the mesh ('Mesh = faces')",
                 "Families go on with 'Mesh = removed' (section 'Cracks')."};
@@ -54,7 +68,7 @@ namespace PeriDeal
       for (const VectorCondition &condition : list)
         {
           const types::boundary_id side = scene.boundary_conditions.side_of(condition.id);
-          if (layer > 0. || side == numbers::invalid_boundary_id ||
+          if (layer > 0. || side == numbers::invalid_boundary_id || completes_mesh(scene) ||
               (side < 2 * dim && beyond[side] != BeyondSide::nothing))
             continue;
           flat = flat && side < 2 * dim && scene.domain.shape != Shape::mesh_file;
@@ -127,7 +141,8 @@ namespace PeriDeal
     const bool automatic = scene.peridynamics.surface_correction == SurfaceCorrection::automatic;
     if (!automatic && !scene.peridynamics.completes_families())
       return beyond;
-    if (automatic && !hindrance_of_fictitious_nodes(scene).empty())
+    if (automatic &&
+        (scene.domain.shape == Shape::mesh_file || !hindrance_of_fictitious_nodes(scene).empty()))
       return beyond;
     const auto &conditions = scene.boundary_conditions;
     const bool  brittle    = scene.material.fracture_energy || scene.material.critical_stretch;
@@ -152,10 +167,21 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool completes_mesh(const Scene<dim> &scene)
+  {
+    return scene.domain.shape == Shape::mesh_file && scene.general.physics == Physics::elasticity &&
+           scene.peridynamics.surface_correction == SurfaceCorrection::automatic &&
+           hindrance_of_fictitious_nodes(scene).empty();
+  }
+
+
+  template <int dim>
   std::string automatic_correction(const Scene<dim> &scene)
   {
     if (const std::string reason = hindrance_of_fictitious_nodes(scene); !reason.empty())
       return "none, because " + reason;
+    if (completes_mesh(scene))
+      return "fictitious nodes beyond the whole boundary";
     const auto               beyond = beyond_sides(scene);
     std::vector<std::string> names;
     for (unsigned int side = 0; side < 2 * dim; ++side)
@@ -167,6 +193,7 @@ namespace PeriDeal
 
 #define PERIDEAL_INSTANTIATE(dim)                                                         \
   template std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene);         \
+  template bool                            completes_mesh(const Scene<dim> &scene);       \
   template std::string                     automatic_correction(const Scene<dim> &scene); \
   template std::string                     note_on_cut_sides(const Scene<dim> &scene);
   PERIDEAL_INSTANTIATE(1)

@@ -88,6 +88,9 @@ namespace PeriDeal
     double horizon() const;
     double reach() const;
 
+    /** Off the lattice: w of a bond of this length (unit conductivity). */
+    double weight_off_lattice(const double r) const;
+
     /** One conductivity everywhere, so that the lattice form needs no corrections for it. */
     bool   uniform_conductivity() const;
     double conductivity(const unsigned int node) const;
@@ -186,12 +189,11 @@ namespace PeriDeal
                         const CrackGeometry<dim> &crack,
                         const Test               &test) const;
     template <typename Test>
-    void   test_images(const unsigned int         node,
-                       const FictitiousNode<dim> &fictitious,
-                       const Test                &test) const;
-    double off_lattice_weight(const double r) const;
-    void   add_self_term(const unsigned int node, std::vector<Bond> &bonds) const;
-    void   sites_in(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &found) const;
+    void test_images(const unsigned int         node,
+                     const FictitiousNode<dim> &fictitious,
+                     const Test                &test) const;
+    void add_self_term(const unsigned int node, std::vector<Bond> &bonds) const;
+    void sites_in(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &found) const;
     dealii::Point<dim> position(const unsigned int node) const;
 
     Nodes<dim>                     *own_nodes;

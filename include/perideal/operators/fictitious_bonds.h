@@ -4,16 +4,21 @@
 #pragma once
 
 #include <perideal/base/types.h>
-#include <perideal/bonds/fictitious_extension.h>
+#include <perideal/bonds/boundary_images.h>
 
 #include <functional>
+#include <map>
 #include <unordered_map>
 #include <vector>
 
 namespace PeriDeal
 {
+  template <int dim>
+  class PointBins;
+
+
   /**
-   * The bonds of the linear peridynamic solid that lead beyond the sides of the body, to fictitious nodes (FictitiousExtension) whose displacement u_g = P u is linear in that of the nodes. Only
+   * The bonds of the linear peridynamic solid that lead beyond the sides of the body, to fictitious nodes (FictitiousExtension, of meshes BoundaryImage) whose displacement u_g = P u is linear in that of the nodes. Only
    * families of nodes of the body have energy: a bond (i, g) is one of i alone, in theta_i and q_i, with the spring (b_i/q_i)/(W x^2) of its own end. The force on i is that of any
    * bond; the opposite one on g is passed on through P^T, so that K stays symmetric and forces and moments balance.
    *
@@ -36,6 +41,9 @@ namespace PeriDeal
     FictitiousBonds(const Families<dim>                   &families,
                     const std::array<BeyondSide, 2 * dim> &beyond,
                     std::vector<CrackGeometry<dim>>        cracks);
+
+    /** Of a mesh, without cracks. Not collective. */
+    FictitiousBonds(const Families<dim> &families, const std::vector<BoundaryImage<dim>> &beyond);
 
     /** Add sum W x^2/V_i to q of the owned nodes. */
     void add_weights(Vector &q) const;
@@ -97,7 +105,7 @@ namespace PeriDeal
     bool is_own_image(const Bond &bond) const;
 
     /** What planes of symmetry have added to the sum of all forces since begin_forces(), by side; on this process. */
-    std::array<dealii::Tensor<1, dim>, 2 * dim> forces_of_planes() const;
+    std::map<dealii::types::boundary_id, dealii::Tensor<1, dim>> forces_of_planes() const;
 
     /** K x of what does not depend on dilatations, and with tau of owned nodes of what does: adds to y. Collective. */
     void add_forces(Vector &y, const Vector &x, const double *tau) const;
@@ -141,26 +149,33 @@ namespace PeriDeal
     using Term  = typename Site::Term;
 
     void         find_bonds_of(const unsigned int i);
+    void         find_bonds_of(const unsigned int                     i,
+                               const std::vector<BoundaryImage<dim>> &beyond,
+                               const PointBins<dim>                  &bins,
+                               std::vector<unsigned int>             &number_of);
+    void         make_room();
     unsigned int image_at(const Index &index, const Site &site, const double volume);
     bool         is_cut(const unsigned int i, const Index &index, const Site &site) const;
     bool         is_separated(const unsigned int i, const Index &index, const Term &term) const;
 
-    const Families<dim>                          &families;
-    const FictitiousExtension<dim>                extension;
-    const std::vector<CrackGeometry<dim>>         cracks;
-    std::unordered_map<std::size_t, unsigned int> image_of; // while bonds are found
-    std::vector<unsigned int>                     list;
-    std::vector<std::size_t>                      starts; // of all owned nodes, or empty
-    std::vector<unsigned int>                     images;
-    std::vector<dealii::Tensor<1, dim>>           moments;
-    std::vector<double>                           springs, lengths, across, strains;
-    std::vector<Index>                            sites; // of the images
-    std::vector<double>                           volumes;
-    std::vector<unsigned int>                     origins;
-    std::vector<std::size_t>                      term_starts{0};
-    std::vector<Term>                             terms;
-    mutable std::vector<double>                   values, image_forces;
-    std::vector<double>                           kept_forces;
-    mutable Vector                                passed;
+    const Families<dim>                                     &families;
+    const FictitiousExtension<dim>                           extension;
+    const std::vector<CrackGeometry<dim>>                    cracks;
+    std::unordered_map<std::size_t, unsigned int>            image_of; // while bonds are found
+    std::vector<unsigned int>                                list;
+    std::vector<std::size_t>                                 starts; // of all owned nodes, or empty
+    std::vector<unsigned int>                                images;
+    std::vector<dealii::Tensor<1, dim>>                      moments;
+    std::vector<double>                                      springs, lengths, across, strains;
+    std::vector<Index>                                       sites; // of the images, on a lattice
+    std::vector<dealii::Point<dim>>                          places;
+    std::vector<std::array<dealii::types::boundary_id, dim>> planes; // that images may lie beyond
+    std::vector<double>                                      volumes;
+    std::vector<unsigned int>                                origins;
+    std::vector<std::size_t>                                 term_starts{0};
+    std::vector<Term>                                        terms;
+    mutable std::vector<double>                              values, image_forces;
+    std::vector<double>                                      kept_forces;
+    mutable Vector                                           passed;
   };
 } // namespace PeriDeal

@@ -27,6 +27,11 @@ namespace PeriDeal
   std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene);
 
 
+  /** Families of an elastic body on a mesh from a file go on beyond its whole boundary, with `Surface correction = auto`. Not collective. */
+  template <int dim>
+  bool completes_mesh(const Scene<dim> &scene);
+
+
   /** With `Surface correction = auto`: why no families can go on; empty where they can, and with other corrections. */
   template <int dim>
   std::string hindrance_of_fictitious_nodes(const Scene<dim> &scene);

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/bonds/point_bins.h>
+#include <perideal/mesh/nodes.h>
+
+#include <array>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** A plane of symmetry of a mesh: the points whose coordinate along an axis is @p at. */
+  struct SymmetryPlane
+  {
+    unsigned int               axis;
+    double                     at;
+    bool                       above; // the body lies below it
+    dealii::types::boundary_id side;
+  };
+
+
+  /**
+   * The boundary of a mesh but for its planes of symmetry, as segments (2D) or triangles (3D) between nodes on its vertices; all of it is known to each process.
+   */
+  template <int dim>
+  class BoundaryFacets
+  {
+  public:
+    /** A point of the boundary, which moves with the nodes of its facet by their weights. */
+    struct Foot
+    {
+      dealii::Point<dim>      point;
+      double                  distance;
+      unsigned int            facet;
+      std::array<double, dim> weights;
+    };
+
+    /**
+     * @param reach of searches
+     * Throws UserError for planes of symmetry that are not normal to an axis. Collective.
+     */
+    BoundaryFacets(const Nodes<dim>                              &nodes,
+                   const std::vector<dealii::types::boundary_id> &symmetry,
+                   const double                                   reach);
+
+    const std::vector<SymmetryPlane> &planes() const;
+
+    /** Global index and place of a facet's node. */
+    dealii::types::global_dof_index node(const unsigned int facet, const unsigned int k) const;
+    const dealii::Point<dim>       &corner(const unsigned int facet, const unsigned int k) const;
+    const dealii::Tensor<1, dim>   &normal(const unsigned int facet) const;
+
+    /**
+     * The points of the boundary within the reach that are nearest to p among those around them, the nearest first, one for each direction: of those whose facets' normals differ by less than
+     * some 37 degrees the nearest.
+     */
+    std::vector<Foot> feet(const dealii::Point<dim> &p) const;
+
+    /** The nearest point of facets whose normals differ from @p normal by less than that; false if none is within the reach. */
+    bool nearest(const dealii::Point<dim>     &p,
+                 const dealii::Tensor<1, dim> &normal,
+                 Foot                         &foot) const;
+
+    /** Whether a point of the boundary is nearer than that. */
+    bool is_nearer(const dealii::Point<dim> &p, const double distance) const;
+
+    /** How much larger the mirror image of a small volume beyond a curved side is; 1 beyond a flat one, 0 where there is none. */
+    double growth(const Foot &foot) const;
+
+  private:
+    struct Facet
+    {
+      std::array<dealii::types::global_dof_index, dim> nodes;
+      std::array<dealii::Point<dim>, dim>              corners;
+      std::array<dealii::Tensor<1, dim>, dim>          corner_normals;
+      dealii::Tensor<1, dim>                           normal;
+      double                                           area;
+      dealii::types::boundary_id                       side;
+    };
+
+    void gather(const Nodes<dim> &nodes);
+    void take_out_planes(const std::vector<dealii::types::boundary_id> &symmetry);
+    void find_corner_normals();
+    Foot foot_on(const dealii::Point<dim> &p, const unsigned int facet) const;
+    bool is_lowest(const dealii::Point<dim> &p, const Foot &foot) const;
+
+    double                                 reach, size = 0.; // of the largest facet
+    std::vector<Facet>                     facets;
+    std::vector<SymmetryPlane>             symmetry_planes;
+    PointBins<dim>                         bins;
+    std::vector<std::vector<unsigned int>> touching; // facets, by facet, itself included
+  };
+} // namespace PeriDeal

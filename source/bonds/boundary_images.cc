@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/bonds/boundary_facets.h>
+#include <perideal/bonds/boundary_images.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** The images of nodes, one node at a time. */
+    template <int dim>
+    class ImageFinder
+    {
+    public:
+      ImageFinder(const Nodes<dim> &nodes, const BoundaryFacets<dim> &facets, const double reach)
+        : nodes(nodes)
+        , facets(facets)
+        , reach(reach)
+      {}
+
+      /** Add the images of a node through the sides that go on. */
+      void find(const unsigned int m, std::vector<BoundaryImage<dim>> &images) const
+      {
+        const std::vector<Foot> feet = facets.feet(nodes.position(m));
+        const unsigned int      n    = std::min<std::size_t>(feet.size(), 2 * dim);
+        for (unsigned int set = 1; set < (1u << n); ++set)
+          add(m, feet, set, images);
+      }
+
+    private:
+      using Foot = typename BoundaryFacets<dim>::Foot;
+      using Term = typename BoundaryImage<dim>::Term;
+
+      /** A point with the displacement sum w u over nodes. */
+      struct Part
+      {
+        double                                                  factor;
+        Point<dim>                                              place;
+        std::vector<std::pair<types::global_dof_index, double>> weights;
+        std::vector<Point<dim>>                                 places;
+      };
+
+      Part part_of(const Foot &foot, const double factor) const
+      {
+        Part part{factor, foot.point, {}, {}};
+        for (unsigned int k = 0; k < dim; ++k)
+          if (foot.weights[k] != 0.)
+            {
+              part.weights.emplace_back(facets.node(foot.facet, k), foot.weights[k]);
+              part.places.push_back(facets.corner(foot.facet, k));
+            }
+        return part;
+      }
+
+      /** Through one side, or at a convex edge through several, one after the other. */
+      void add(const unsigned int               m,
+               const std::vector<Foot>         &feet,
+               const unsigned int               set,
+               std::vector<BoundaryImage<dim>> &images) const
+      {
+        const auto         m_global = nodes.partitioner()->local_to_global(m);
+        std::vector<Part>  parts{{1., nodes.position(m), {{m_global, 1.}}, {nodes.position(m)}}};
+        std::vector<Foot>  through;
+        BoundaryImage<dim> image;
+        double             farthest = 0.;
+        image.volume                = nodes.volume(m);
+        image.origin                = m;
+        image.planes.fill(numbers::invalid_boundary_id);
+        for (unsigned int k = 0; k < feet.size(); ++k)
+          if ((set >> k) & 1)
+            {
+              const Foot &foot = feet[k];
+              image.volume *= facets.growth(foot) * share_of_edge(foot, through);
+              if (image.volume <= 0. || !reflect(parts, foot))
+                return;
+              farthest = std::max(farthest, foot.distance);
+              through.push_back(foot);
+            }
+        for (const Part &part : parts)
+          image.place += part.factor * part.place;
+        // Beyond reentrant corners and narrow gaps there are other sides, or the body itself.
+        constexpr double nearly = 0.9;
+        if (farthest > 1e-9 * reach && facets.is_nearer(image.place, nearly * farthest))
+          return;
+        for (const SymmetryPlane &plane : facets.planes())
+          if ((image.place[plane.axis] - plane.at) * (plane.above ? 1. : -1.) > 1e-9 * reach)
+            return; // there are mirror images
+        find_terms(parts, image);
+        images.push_back(image);
+      }
+
+      /** What is left at the edge for images through both of its sides: (2 pi - 3 a)/a at an angle a, at most 1. */
+      double share_of_edge(const Foot &foot, const std::vector<Foot> &through) const
+      {
+        double share = 1.;
+        for (const Foot &other : through)
+          {
+            const double cosine =
+              std::clamp(facets.normal(foot.facet) * facets.normal(other.facet), -1., 1.);
+            if (cosine < -0.9)
+              return 0.; // both sides of a thin body
+            const double angle = numbers::PI - std::acos(cosine);
+            share              = std::min(share, std::clamp(2. * numbers::PI / angle - 3., 0., 1.));
+          }
+        return share < 1e-9 ? 0. : share;
+      }
+
+      /** Each point has an image through its nearest point of that side. */
+      bool reflect(std::vector<Part> &parts, const Foot &foot) const
+      {
+        std::vector<Part> result;
+        for (Part &part : parts)
+          {
+            Foot nearest = foot;
+            if (parts.size() > 1 && !facets.nearest(part.place, facets.normal(foot.facet), nearest))
+              return false;
+            result.push_back(part_of(nearest, 2. * part.factor));
+            part.factor *= -1.;
+            result.push_back(part);
+          }
+        parts.swap(result);
+        return true;
+      }
+
+      void find_terms(const std::vector<Part> &parts, BoundaryImage<dim> &image) const
+      {
+        std::vector<types::global_dof_index> found;
+        for (const Part &part : parts)
+          for (unsigned int k = 0; k < part.weights.size(); ++k)
+            {
+              const auto [node, weight] = part.weights[k];
+              std::size_t at = std::find(found.begin(), found.end(), node) - found.begin();
+              if (at == found.size())
+                {
+                  found.push_back(node);
+                  const auto &layout = *nodes.partitioner();
+                  const bool  known  = layout.in_local_range(node) || layout.is_ghost_entry(node);
+                  image.terms.push_back(
+                    {known ? layout.global_to_local(node) : numbers::invalid_unsigned_int,
+                     0.,
+                     Tensor<1, dim>(),
+                     0});
+                  image.term_places.push_back(part.places[k]);
+                }
+              image.terms[at].factor += part.factor * weight;
+              for (unsigned int d = 0; d < dim; ++d)
+                image.terms[at].of_component[d] += part.factor * weight;
+            }
+      }
+
+      const Nodes<dim>          &nodes;
+      const BoundaryFacets<dim> &facets;
+      const double               reach;
+    };
+
+
+    /** Append the mirror images of all nodes and images near a plane of symmetry. */
+    template <int dim>
+    void mirror(const Nodes<dim>                &nodes,
+                const SymmetryPlane             &plane,
+                const double                     reach,
+                std::vector<BoundaryImage<dim>> &images)
+    {
+      const unsigned int              axis = plane.axis;
+      std::vector<BoundaryImage<dim>> mirrored;
+      const auto                      add = [&](BoundaryImage<dim> image) {
+        const double depth = (plane.at - image.place[axis]) * (plane.above ? 1. : -1.);
+        if (depth < -1e-9 * reach || depth > reach)
+          return;
+        if (depth > 1e-9 * reach) // else the other part of a volume in the plane
+          {
+            image.place[axis]  = 2. * plane.at - image.place[axis];
+            image.planes[axis] = plane.side;
+            for (auto &term : image.terms)
+              {
+                term.of_component[axis] *= -1.;
+                term.mirrored ^= 1u << axis;
+              }
+          }
+        mirrored.push_back(image);
+      };
+      for (unsigned int m = 0; m < nodes.n_local(); ++m)
+        {
+          BoundaryImage<dim> image;
+          image.place  = nodes.position(m);
+          image.volume = nodes.volume(m);
+          image.origin = m;
+          image.planes.fill(numbers::invalid_boundary_id);
+          Tensor<1, dim> ones;
+          for (unsigned int d = 0; d < dim; ++d)
+            ones[d] = 1.;
+          image.terms.push_back({m, 1., ones, 0});
+          image.term_places.push_back(image.place);
+          add(image);
+        }
+      for (const BoundaryImage<dim> &image : images)
+        add(image);
+      images.insert(images.end(), mirrored.begin(), mirrored.end());
+    }
+  } // namespace
+
+
+  double halo_of_images(const double reach)
+  {
+    // Beyond a flat side an image's node is as near as the image, beyond a hole somewhat farther.
+    return 1.5 * reach;
+  }
+
+
+  template <int dim>
+  std::vector<BoundaryImage<dim>> boundary_images(const Nodes<dim>                      &nodes,
+                                                  const std::vector<types::boundary_id> &symmetry,
+                                                  const double                           reach)
+  {
+    std::vector<BoundaryImage<dim>> images;
+    if constexpr (dim > 1)
+      {
+        const BoundaryFacets<dim> facets(nodes, symmetry, reach);
+        const ImageFinder<dim>    finder(nodes, facets, reach);
+        for (unsigned int m = 0; m < nodes.n_local(); ++m)
+          finder.find(m, images);
+        for (const SymmetryPlane &plane : facets.planes())
+          mirror(nodes, plane, reach, images);
+      }
+    return images;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                           \
+  template std::vector<BoundaryImage<dim>> boundary_images( \
+    const Nodes<dim> &,                                     \
+    const std::vector<types::boundary_id> &,                \
+    const double);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

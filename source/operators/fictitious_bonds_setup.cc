@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Which bonds lead beyond the sides.
+
+#include <perideal/base/interleaved.h>
+#include <perideal/bonds/point_bins.h>
+#include <perideal/mesh/lattice_sites.h>
+#include <perideal/operators/fictitious_bonds.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
+                                        const std::array<BeyondSide, 2 * dim> &beyond,
+                                        std::vector<CrackGeometry<dim>>        cracks)
+    : families(families)
+    , extension(families, beyond)
+    , cracks(std::move(cracks))
+  {
+    const Nodes<dim> &nodes = families.nodes();
+    int               reach = 0;
+    for (const FamilyMember<dim> &member : families.lattice_members())
+      for (unsigned int d = 0; d < dim; ++d)
+        reach = std::max(reach, member.offset[d]);
+    starts.assign(1, 0);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        if (extension.distance(nodes.lattice()->index(nodes.position(i))) <= reach)
+          find_bonds_of(i);
+        if (images.size() > starts.back())
+          list.push_back(i);
+        starts.push_back(images.size());
+      }
+    image_of = {};
+    make_room();
+  }
+
+
+  template <int dim>
+  FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
+                                        const std::vector<BoundaryImage<dim>> &beyond)
+    : families(families)
+    , extension(families, {})
+  {
+    const Nodes<dim> &nodes = families.nodes();
+    PointBins<dim>    bins(families.reach());
+    for (unsigned int g = 0; g < beyond.size(); ++g)
+      bins.add(beyond[g].place, g);
+    std::vector<unsigned int> number_of(beyond.size(), numbers::invalid_unsigned_int);
+    starts.assign(1, 0);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        find_bonds_of(i, beyond, bins, number_of);
+        if (images.size() > starts.back())
+          list.push_back(i);
+        starts.push_back(images.size());
+      }
+    make_room();
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::make_room()
+  {
+    values.resize(dim * origins.size());
+    image_forces.resize(values.size());
+    passed.reinit(interleaved(*families.nodes().partitioner(), dim));
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::find_bonds_of(const unsigned int                     i,
+                                           const std::vector<BoundaryImage<dim>> &beyond,
+                                           const PointBins<dim>                  &bins,
+                                           std::vector<unsigned int>             &number_of)
+  {
+    const Nodes<dim> &nodes    = families.nodes();
+    const Point<dim> &center   = nodes.position(i);
+    const double      farthest = halo_of_images(families.reach());
+    std::vector<std::pair<Tensor<1, dim>, unsigned int>> around;
+    bins.visit_near(center, [&](const unsigned int g) {
+      const Tensor<1, dim> xi = beyond[g].place - center;
+      if (xi.norm() > 1e-9 * families.reach() && families.weight_off_lattice(xi.norm()) > 0. &&
+          std::all_of(beyond[g].term_places.begin(),
+                      beyond[g].term_places.end(),
+                      [&](const Point<dim> &p) { return center.distance(p) < farthest; }))
+        around.emplace_back(xi, g);
+    });
+    // In the order of the relative position; images at one place come in the order in which they were found.
+    std::sort(around.begin(), around.end(), [](const auto &a, const auto &b) {
+      for (unsigned int d = dim; d-- > 0;)
+        if (a.first[d] != b.first[d])
+          return a.first[d] < b.first[d];
+      return a.second < b.second;
+    });
+    for (const auto &[xi, g] : around)
+      {
+        const BoundaryImage<dim> &image = beyond[g];
+        if (number_of[g] == numbers::invalid_unsigned_int)
+          {
+            number_of[g] = origins.size();
+            places.push_back(image.place);
+            planes.push_back(image.planes);
+            volumes.push_back(image.volume);
+            origins.push_back(image.origin);
+            terms.insert(terms.end(), image.terms.begin(), image.terms.end());
+            term_starts.push_back(terms.size());
+          }
+        const double w = nodes.volume(i) * image.volume * families.weight_off_lattice(xi.norm());
+        images.push_back(number_of[g]);
+        moments.push_back(w * xi);
+        springs.push_back(w * xi.norm_square());
+      }
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::find_bonds_of(const unsigned int i)
+  {
+    const Nodes<dim>   &nodes      = families.nodes();
+    const Lattice<dim> &lattice    = *nodes.lattice();
+    const Index         center     = lattice.index(nodes.position(i));
+    const bool          near_crack = families.near_crack(i);
+    Site                site;
+    for (const FamilyMember<dim> &member : families.lattice_members())
+      {
+        const Index index = center + member.offset;
+        if (extension.is_inside(index) || !extension.find(index, site))
+          continue;
+        const unsigned int real   = families.node_at(index);
+        const double       inside = real == numbers::invalid_unsigned_int ? 0. : nodes.volume(real);
+        const double       volume = site.volume - inside;
+        if (volume <= 1e-9 * site.volume)
+          continue;
+        // What a crack cuts of a mirror image counts in the damage.
+        const bool cut = near_crack && is_cut(i, index, site);
+        if (cut && !(site.terms.size() == 1 && is_separated(i, index, site.terms[0])))
+          continue;
+        Tensor<1, dim> xi;
+        for (unsigned int d = 0; d < dim; ++d)
+          xi[d] = member.offset[d] * lattice.spacing[d];
+        const double w = cut ? 0. : nodes.volume(i) * volume * member.weight;
+        images.push_back(image_at(index, site, volume));
+        moments.push_back(w * xi);
+        springs.push_back(w * xi.norm_square());
+      }
+  }
+
+
+  template <int dim>
+  unsigned int FictitiousBonds<dim>::image_at(const Index &index,
+                                              const Site  &site,
+                                              const double volume)
+  {
+    const Lattice<dim> &lattice = *families.nodes().lattice();
+    std::size_t         key     = 0;
+    for (unsigned int d = dim; d-- > 0;)
+      {
+        const std::size_t wide = 4 * static_cast<std::size_t>(lattice.n_sites[d]) + 4096;
+        key                    = key * wide + (index[d] + wide / 2);
+      }
+    const auto [entry, is_new] = image_of.try_emplace(key, origins.size());
+    if (is_new)
+      {
+        sites.push_back(index);
+        places.push_back(lattice.position(index));
+        std::array<types::boundary_id, dim> sides;
+        for (unsigned int d = 0; d < dim; ++d)
+          sides[d] = 2 * d + (2 * index[d] >= lattice.n_sites[d] - 1 ? 1 : 0);
+        planes.push_back(sides);
+        volumes.push_back(volume);
+        origins.push_back(site.origin);
+        terms.insert(terms.end(), site.terms.begin(), site.terms.end());
+        term_starts.push_back(terms.size());
+      }
+    return entry->second;
+  }
+
+
+  template <int dim>
+  bool FictitiousBonds<dim>::is_separated(const unsigned int i,
+                                          const Index       &index,
+                                          const Term        &term) const
+  {
+    // Instead of the cracks mirror the bond, about each set of the planes of symmetry that it passes.
+    const Nodes<dim> &nodes = families.nodes();
+    const Point<dim>  far = nodes.lattice()->position(index), origin = nodes.position(term.node);
+    for (unsigned int image = 0; image < (1u << dim); ++image)
+      {
+        if ((image & ~term.mirrored) != 0)
+          continue;
+        Point<dim> a = nodes.crack_point(i), b = nodes.crack_point(term.node);
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double twice = far[d] + origin[d];
+            if ((image >> d) & 1)
+              a[d] = twice - a[d];
+            else if ((term.mirrored >> d) & 1)
+              b[d] = twice - b[d];
+          }
+        for (const CrackGeometry<dim> &crack : cracks)
+          if (crack.separates(a, b))
+            return true;
+      }
+    return false;
+  }
+
+
+  template <int dim>
+  bool FictitiousBonds<dim>::is_cut(const unsigned int i,
+                                    const Index       &index,
+                                    const Site        &site) const
+  {
+    for (const Term &term : site.terms)
+      {
+        bool cut = false;
+        if (term.mirrored != 0)
+          cut = is_separated(i, index, term);
+        else if (term.node != i)
+          families.kept_fraction(i, term.node, cut);
+        if (cut)
+          return true;
+      }
+    return false;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                         \
+  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                   \
+                                                 const std::array<BeyondSide, 2 * dim> &, \
+                                                 std::vector<CrackGeometry<dim>>);        \
+  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                   \
+                                                 const std::vector<BoundaryImage<dim>> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

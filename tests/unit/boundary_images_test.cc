@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Families of the linear peridynamic solid that go on beyond the boundary of a mesh (`Surface correction = auto`).
+
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
+
+#include <perideal/bonds/boundary_images.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+#include "elastic_test_tools.h"
+
+using namespace PeriDeal;
+using namespace PeriDeal::OperatorTests;
+
+namespace
+{
+  using dealii::Point;
+  using dealii::Tensor;
+  using dealii::Triangulation;
+
+
+  /** A mesh in a file for as long as this lives; sides as deal.II numbers them. */
+  template <int dim>
+  class MeshFile
+  {
+  public:
+    MeshFile(const std::string &name, const Triangulation<dim> &mesh)
+      : path(name + "_" + std::to_string(dim) + ".msh")
+    {
+      if (is_first())
+        write(mesh);
+      MPI_Barrier(MPI_COMM_WORLD);
+    }
+
+    ~MeshFile()
+    {
+      MPI_Barrier(MPI_COMM_WORLD);
+      if (is_first())
+        std::remove(path.c_str());
+    }
+
+    Settings settings(const double horizon) const
+    {
+      const std::string sides = dim == 2 ? "0: 0, 0" : "0: 0, 0, 0";
+      return {{"Domain/Shape", "mesh file"},
+              {"Domain/Mesh file", path},
+              {"Peridynamics/Horizon", std::to_string(horizon)},
+              {"Peridynamics/Surface correction", "auto"},
+              {"Material/Young modulus", "3"},
+              {"Material/Poisson ratio", "0.2"},
+              {"Boundary conditions/Displacement", sides}};
+    }
+
+  private:
+    void write(const Triangulation<dim> &mesh) const
+    {
+      // Gmsh goes around a quadrilateral.
+      const std::array<unsigned int, 8> order{0, 1, 3, 2, 4, 5, 7, 6};
+      std::vector<std::string>          elements;
+      const auto add = [&](const unsigned int type, const unsigned int id, const auto &object) {
+        std::ostringstream line;
+        line << elements.size() + 1 << ' ' << type << " 2 " << id << ' ' << id;
+        for (unsigned int k = 0; k < object->n_vertices(); ++k)
+          line << ' ' << object->vertex_index(order[k]) + 1;
+        elements.push_back(line.str());
+      };
+      for (const auto &cell : mesh.active_cell_iterators())
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary())
+            add(dim == 2 ? 1 : 3, face->boundary_id(), face);
+      for (const auto &cell : mesh.active_cell_iterators())
+        add(dim == 2 ? 3 : 5, 99, cell);
+      std::ofstream file(path);
+      file.precision(17);
+      file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << mesh.n_vertices() << '\n';
+      for (unsigned int v = 0; v < mesh.n_vertices(); ++v)
+        {
+          file << v + 1;
+          for (unsigned int d = 0; d < 3; ++d)
+            file << ' ' << (d < dim ? mesh.get_vertices()[v][d] : 0.);
+          file << '\n';
+        }
+      file << "$EndNodes\n$Elements\n" << elements.size() << '\n';
+      for (const std::string &line : elements)
+        file << line << '\n';
+      file << "$EndElements\n";
+    }
+
+    static bool is_first()
+    {
+      return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+    }
+
+    const std::string path;
+  };
+
+
+  /** The mesh of box(). */
+  template <int dim>
+  void make_lattice(Triangulation<dim> &mesh)
+  {
+    const std::array<unsigned int, 3> n{dim == 2 ? 16u : 8u, dim == 2 ? 12u : 6u, 4u};
+    Point<dim>                        upper;
+    for (unsigned int d = 0; d < dim; ++d)
+      upper[d] = 1. - 0.25 * d;
+    dealii::GridGenerator::subdivided_hyper_rectangle(
+      mesh,
+      std::vector<unsigned int>(n.begin(), n.begin() + dim),
+      Point<dim>(),
+      upper,
+      true);
+  }
+
+
+  /** A quarter of a square with a hole, graded towards it, of irregular cells: curved, flat, convex. */
+  void make_irregular(Triangulation<2> &mesh)
+  {
+    dealii::GridGenerator::subdivided_hyper_rectangle(mesh,
+                                                      {10, 16},
+                                                      Point<2>(),
+                                                      Point<2>(1., 1.),
+                                                      true);
+    dealii::GridTools::transform(
+      [](const Point<2> &p) {
+        const bool   inside = p[0] > 1e-9 && p[0] < 1. - 1e-9 && p[1] > 1e-9 && p[1] < 1. - 1e-9;
+        const double s      = p[0] - 0.3 * p[0] * (1. - p[0]) +
+                         (inside ? 0.02 * std::sin(57. * p[1] + 31. * p[0]) : 0.),
+                     t   = p[1] + (inside ? 0.015 * std::sin(43. * p[0] - 71. * p[1]) : 0.);
+        const double phi = 0.5 * dealii::numbers::PI * t, c = std::cos(phi), e = std::sin(phi);
+        const double square = 1. / std::max(c, e), r = 0.4 * (1. - s) + square * s;
+        return Point<2>(r * c, r * e);
+      },
+      mesh);
+  }
+
+
+  template <int dim>
+  Tensor<1, dim> strained(const Point<dim> &p)
+  {
+    return some_gradient<dim>() * p;
+  }
+
+
+  /** Forces of a lattice and of the same mesh from a file are the same, with and without a plane of symmetry. */
+  template <int dim>
+  void check_lattice(const bool symmetric)
+  {
+    Triangulation<dim> mesh;
+    make_lattice(mesh);
+    const MeshFile<dim> file("lattice", mesh);
+    Settings            more{{"Peridynamics/Surface correction", "auto"}};
+    if (symmetric)
+      more.push_back({"Boundary conditions/Symmetry", dim == 2 ? "bottom" : "back"});
+    const Body<dim> lattice(box<dim>() + more, Model::peridynamics);
+    if (symmetric)
+      more.back().second = dim == 2 ? "2" : "4";
+    const Body<dim> body(file.settings(lattice.scene.horizon()) + more, Model::peridynamics);
+    // Places in another order: norms, and products with another field.
+    double       numbers[2][3];
+    unsigned int k = 0;
+    for (const Body<dim> *b : {&lattice, &body})
+      {
+        const Vector u = b->values(bumpy_vector<dim>), v = b->values(strained<dim>);
+        Vector       y(u);
+        b->op().multiply(y, u);
+        numbers[k][0]   = y.l2_norm();
+        numbers[k][1]   = y * v;
+        numbers[k++][2] = b->op().energy(u);
+      }
+    for (unsigned int n = 0; n < 3; ++n)
+      EXPECT_NEAR(numbers[1][n] / numbers[0][n], 1., 1e-11) << dim << "D, " << n;
+  }
+} // namespace
+
+
+TEST(BoundaryImages, are_those_of_a_lattice)
+{
+  for (const bool symmetric : {false, true})
+    {
+      check_lattice<2>(symmetric);
+      check_lattice<3>(symmetric);
+    }
+}
+
+
+TEST(BoundaryImages, uniform_strain_on_irregular_nodes)
+{
+  Triangulation<2> mesh;
+  make_irregular(mesh);
+  const MeshFile<2>       file("irregular", mesh);
+  const Body<2>           body(file.settings(0.2), Model::peridynamics);
+  const StateOperator<2> &op = *body.states;
+  const Vector            u = body.values(strained<2>), b = body.values(bumpy_vector<2>);
+  Vector                  y(u), z(u);
+  op.multiply(y, u);
+  op.multiply(z, b);
+  std::vector<double> theta;
+  op.dilatations(body.values([](const Point<2> &p) { return p - Point<2>(); }), theta);
+  const auto tensors = op.tensors(u);
+  for (unsigned int i = 0; i < theta.size(); ++i)
+    {
+      EXPECT_LT((tensors.strain[i] - symmetrize(some_gradient<2>())).norm(), 1e-11);
+      EXPECT_NEAR(theta[i], 2., 1e-11);
+    }
+  // Forces balance, the stiffness is symmetric, the energy is that of the forces and positive.
+  for (const Vector &motion : op.near_null_space())
+    EXPECT_LT(std::abs(motion * y), 1e-11 * motion.linfty_norm() * y.l1_norm());
+  EXPECT_NEAR((y * b) / (z * u), 1., 1e-11);
+  EXPECT_NEAR(2. * op.energy(b) / (z * b), 1., 1e-11);
+  EXPECT_GT(op.energy(b), 0.);
+}
+
+
+TEST(BoundaryImages, same_on_all_processes)
+{
+  Triangulation<2> mesh;
+  make_irregular(mesh);
+  const MeshFile<2> file("ranks", mesh);
+  const Settings    settings =
+    file.settings(0.17) + Settings{{"Boundary conditions/Symmetry", "2 ; 3"}};
+  const Body<2> all(settings, Model::peridynamics),
+    one(settings, Model::peridynamics, MPI_COMM_SELF);
+  double       numbers[2][3];
+  unsigned int k = 0;
+  for (const Body<2> *b : {&all, &one})
+    {
+      const Vector u = b->values(bumpy_vector<2>), v = b->values(strained<2>);
+      Vector       y(u);
+      b->op().multiply(y, u);
+      numbers[k][0]   = y.l2_norm();
+      numbers[k][1]   = y * v;
+      numbers[k++][2] = b->op().energy(u);
+    }
+  for (unsigned int n = 0; n < 3; ++n)
+    EXPECT_NEAR(numbers[0][n] / numbers[1][n], 1., 1e-12) << n;
+}
