@@ -425,7 +425,7 @@ int main(int argc, char **argv)
   start_hdf5();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
-  handle_signals(first_rank);
+  handle_signals(first_rank, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1);
   const ExitGuard guard;
   try
     {

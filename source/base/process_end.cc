@@ -31,6 +31,7 @@ namespace PeriDeal
     std::atomic<const std::string *> unfinished{nullptr};
     std::string                      unfinished_files[2];
     bool                             speaker            = false;
+    bool                             has_company        = false;
     thread_local bool                memory_was_refused = false;
 
     const char *const out_of_memory =
@@ -113,6 +114,26 @@ namespace PeriDeal
     }
 
 
+    /** Memory was refused, and nobody has come to say so. */
+    void give_up(int)
+    {
+      prepare_to_speak();
+      say("\nperideal: error: ");
+      say(out_of_memory);
+      say("\n");
+      _exit(static_cast<int>(ExitStatus::error));
+    }
+
+
+    /** A library may swallow the exception on one process, while the others wait for it in a collective call. */
+    void expect_an_end()
+    {
+      constexpr unsigned int seconds = 20;
+      if (has_company)
+        alarm(seconds);
+    }
+
+
     [[maybe_unused]] void fail(int signal) // not with sanitizers
     {
       prepare_to_speak();
@@ -165,9 +186,10 @@ namespace PeriDeal
   }
 
 
-  void handle_signals(const bool speaks)
+  void handle_signals(const bool speaks, const bool alone)
   {
     speaker       = speaks;
+    has_company   = !alone;
     const auto on = [](const int signal, void (*handler)(int), const int flags) {
       struct sigaction action = {};
       action.sa_handler       = handler;
@@ -178,6 +200,7 @@ namespace PeriDeal
     };
     on(SIGTERM, stop, 0);
     on(SIGINT, stop, 0);
+    on(SIGALRM, give_up, 0);
     std::signal(SIGXFSZ,
                 SIG_IGN); // a file that would grow beyond a limit: writing fails, which is checked
 #ifndef __SANITIZE_ADDRESS__ // it has handlers of its own
@@ -219,26 +242,47 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** While it lives, refused memory is remembered. */
+    class MemoryWatch
+    {
+    public:
+      MemoryWatch()
+        : previous_handler(std::set_new_handler([] {
+          memory_was_refused = true;
+          expect_an_end();
+          throw std::bad_alloc();
+        }))
+      {
+        memory_was_refused = false;
+      }
+
+      ~MemoryWatch()
+      {
+        alarm(0);
+        std::set_new_handler(previous_handler);
+      }
+
+    private:
+      const std::new_handler previous_handler;
+    };
+  } // namespace
+
+
   void with_memory_errors(const std::function<void()> &action)
   {
-    memory_was_refused                      = false;
-    const std::new_handler previous_handler = std::set_new_handler([] {
-      memory_was_refused = true;
-      throw std::bad_alloc();
-    });
     try
       {
+        const MemoryWatch watch;
         action();
-        std::set_new_handler(previous_handler);
       }
     catch (const UserError &)
       {
-        std::set_new_handler(previous_handler);
         throw;
       }
     catch (...) // also the numbers that Trilinos throws
       {
-        std::set_new_handler(previous_handler);
         AssertThrow(!memory_was_refused && !memory_is_short(), UserError(out_of_memory));
         throw;
       }

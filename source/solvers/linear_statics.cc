@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/user_error.h>
+#include <perideal/solvers/floating_part.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/static_solver.h>
 
@@ -35,12 +36,18 @@ namespace PeriDeal
       void operator_changed() override
       {
         solver.operator_changed();
+        is_untried = false;
       }
 
       unsigned int solve(Vector &u, const double t, const double size) override
       {
         op.distribute(u, t);
         op.residual(residual, u, t);
+        if (is_untried && residual.l2_norm() > 0.)
+          {
+            check_no_loose_part(op, solver.surrogate(), residual);
+            is_untried = false;
+          }
         change                          = 0.;
         const unsigned int n_iterations = solver.solve(0., 1., change, residual, size);
         u += change;
@@ -55,6 +62,7 @@ namespace PeriDeal
       ElasticOperator &op;
       LinearSolver     solver;
       Vector           residual, change;
+      bool             is_untried = true; // later on fragments may come loose
     };
   } // namespace
 

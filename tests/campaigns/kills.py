@@ -135,8 +135,8 @@ def judge(case, end, number, memory):
     if end.kind in (CRASH, TRACE) and not (end.status < 0 and -end.status == number):
         return end.kind, end.detail
     status = status_of(results)
-    if status is None and not files_in(results):
-        return KILLED, "before it began"
+    if status is None and all(name.startswith(".perideal") for name in files_in(results)):
+        return KILLED, "before it wrote anything but its list of files"
     if status != "stopped":
         return WRONG, f"exit status {end.status}, the summary says {status!r}"
     if end.status <= 0 or end.messages > 1 or "stopped" not in end.text.lower():

@@ -43,6 +43,8 @@ ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "200", "Material/P
 PARTS, DIRICHLET = "Boundary conditions/Parts", "Boundary conditions/Dirichlet"
 HOT = {DIRICHLET: "bottom: 0; a: 1"}
 BLOCK = {"Dimension": "3", "Domain/Lower corner": "0, 0, 0", "Domain/Upper corner": "1, 1, 1", "Domain/Cells": "4, 4, 4", "Output/Probes": ""}
+CUT_OFF = {**ELASTIC, "Boundary conditions/Displacement": "bottom: 0, 0", "Boundary conditions/Traction": "right: if(y > 0.6, 1, 0), 0",
+           "Cracks/Segments": "-1, 0.52 ; 2, 0.52"}
 MOTION = {**ELASTIC, "Elasticity/Solver": "dynamics"}
 
 QUADS = """$MeshFormat
@@ -184,6 +186,10 @@ def scene_mistakes(folder):
         ("incompressible in plane strain", {**ELASTIC, "Material/Poisson ratio": "0.5", "Elasticity/Plane": "strain"}, ["'Poisson ratio'", "less than 0.5"]),
         ("body that may turn", {**ELASTIC, "Boundary conditions/Displacement": "bottom: 0, free"},
          ["'Displacement'", "translation in y, rotation about z"]),
+        *[(f"part cut off, {model}", {**CUT_OFF, "Models": model}, ["holds a part", "it has no equilibrium", "one of them at (", "Cracks", "'Displacement'"])
+          for model in ("finite elements", "peridynamics", "coupled")],
+        ("part that hangs on a hinge", {**CUT_OFF, "Boundary conditions/Parts": "pin: point 0, 1", "Boundary conditions/Displacement": "bottom: 0, 0; pin: 0, 0"},
+         ["holds a part", "it has no equilibrium"]),
         ("empty grip", {**ELASTIC, "Boundary conditions/Displacement": "left: 0, 0; top: free, free"}, ["'Displacement'", "'top'", "empty grip"]),
         ("traction on a grip", {**ELASTIC, "Boundary conditions/Traction": "left: 1, 0"}, ["'Traction'", "'left'", "displacement in x"]),
         ("temperature of an elastic body", {**ELASTIC, "Boundary conditions/Dirichlet": "top: 1"}, ["'Dirichlet'", "'Displacement'"]),

@@ -81,6 +81,24 @@ def kept():
     table.show()
 
 
+def ramps():
+    """Loads that begin at nothing, where the first velocity comes before the first work; also in the midst of a run and with output after each step."""
+    table = Comparison("Energy over what loads that set in gently have brought in")
+    bar = {**HELD, "Domain/Cells": "20, 4", "Domain/Upper corner": "1, 0.2", "Elasticity/Kinematics": "linear", "Time/End time": "3",
+           "Models": "peridynamics, finite elements"}
+    traction, body = "Boundary conditions/Traction", "Initial and source/Body force"
+    for name, settings in (("line", {traction: "right: 0.1*min(t, 1), 0"}), ("sine", {traction: "right: 0.1*sin(t), 0"}),
+                           ("square", {traction: "right: 0.1*t^2, 0"}), ("later", {traction: "right: 0.1*max(0, t - 1.01), 0"}),
+                           ("weight", {body: "0.1*t, 0"}), ("often", {traction: "right: 0.1*t, 0", "Output/Write every": "0.01", "Time/End time": "0.5"}),
+                           ("moved", {traction: "right: 0.1*t, 0", "Initial and source/Initial velocity": "1e-12, 0"})):
+        run = run_scene(BODY, {**bar, **settings})
+        for model in (PD, "finite elements"):
+            energy_kept(table, f"{name}, {model}", run, model, imbalance=0.002)
+    run = run_scene(BODY, {**bar, "Models": PD, "Elasticity/Kinematics": "full", traction: "right: 0.1*t, 0"})
+    energy_kept(table, "full kinematics", run)
+    table.show()
+
+
 def stopped():
     """Motions and an equilibrium that mean nothing any more end with a message."""
     for settings in ({"Boundary conditions/Traction": "right: -0.1, 0"},
@@ -131,7 +149,7 @@ def refused():
 
 
 def main():
-    parts = {function.__name__: function for function in (kept, stopped, ranks, supplied, refused)}
+    parts = {function.__name__: function for function in (kept, ramps, stopped, ranks, supplied, refused)}
     for name in sys.argv[1:] or parts:
         parts[name]()
     finish()

@@ -159,7 +159,7 @@ int main(int argc, char **argv)
   prepare_mpi_environment();
   start_hdf5();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  handle_signals(is_first());
+  handle_signals(is_first(), dealii::Utilities::MPI::n_mpi_processes(communicator) == 1);
   while (true)
     {
       const std::string request = next_request();

@@ -9,6 +9,7 @@
 #include <perideal/solvers/work_of_forces.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -118,7 +119,7 @@ namespace PeriDeal
   private:
     void   begin(const Vector &u, const Vector &v, const double t);
     double kinetic_energy(const Vector &v, const bool supports_only) const;
-    void   check(const Vector &v, const double t) const;
+    void   check(const Vector &v, const double t);
     void   check_drift(const Vector &u, const Vector &v, const double t);
     void   check_inversion(const Vector &u, const double t) const;
     bool   follow_body(const Vector &u, const double t);
@@ -132,8 +133,11 @@ namespace PeriDeal
     double                     step_now  = 0.; // the last one
     double                     jumps     = 0.; // of what steps keep back
     double                     exchanged = 0.; // the most that start and work have been so far
-    Vector                     change;         // of a step
-    WorkOfForces               work_of_forces;
+    static constexpr auto      never     = std::numeric_limits<unsigned long long>::max();
+    unsigned long long         suspected_at =
+      never;             // the step since which there is more energy than has come in
+    Vector       change; // of a step
+    WorkOfForces work_of_forces;
   };
 
 
