@@ -2,7 +2,9 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Cracks along rows of nodes and tips on edges of cells: symmetric where the scene is, and no jump where a crack moves by 1e-9.
 
-    crack_rows.py heat | elasticity | fracture | mesh
+    crack_rows.py heat | elasticity | fracture | mesh | table
+
+`table` computes the jumps that doc/theory.md shows.
 """
 
 import math
@@ -214,10 +216,65 @@ end
         check_close([stretch[name][0], stretch[name][-1]], [wanted, wanted], relative=0.15, what=f"{name} cells: lowest and highest stretch")
 
 
+# Distances in spacings from a row of nodes, or a tip from the edge of a cell, that `table` compares; up to 1e-3 a crack is on the row.
+PAIRS = ((0, 1e-9), (0, -1e-9), (0.999e-3, 1.001e-3), (-0.999e-3, -1.001e-3))
+
+
+def heat_figure(place, along, model, nodes):
+    """The difference of temperature across a crack at y = place, or with its right tip at 0.5 + place."""
+    y, end = (0.0, 0.5 + place) if along else (place, 0.5)
+    odd = (nodes == "vertices") == along  # the crack on a row of nodes, or the tip between rows of them
+    cells = f"20, {20 + odd}" if nodes == "vertices" else f"20, {21 - odd}"
+    run = plate(cells, f"-0.5,{y!r} ; {end!r},{y!r}", model, **{"Domain/Nodes": nodes})
+    above, below = temperatures(run, model, POINTS[:2])
+    return above - below
+
+
+def opening_figure(place, along, model, nodes):
+    """K_I of an edge crack, of peridynamics how far its mouth opens."""
+    y, end = (0.0, 0.5 + place) if along else (place, 0.5)
+    rows = 120 if (nodes == "vertices") != along else 121
+    run = run_scene(SENT, {"Domain/Cells": f"40, {rows}", "Domain/Nodes": nodes, "Cracks/Segments": f"0,{y!r} ; {end!r},{y!r}", "Models": model,
+                           "Output/Probes": "0,0.1 ; 0,-0.1", "Peridynamics/Surface correction": "auto" if model == PD else "none"})
+    if model != PD:
+        return intensity(run, model)
+    above, below = (run.probe(PD, (0, y), column="uy") for y in (0.1, -0.1))
+    return above - below
+
+
+def strength_figure(place, along, model, nodes):
+    """The largest force on a plate with a crack in its middle that is pulled until it breaks."""
+    y, end = (0.0, 0.2 + place) if along else (place, 0.2)
+    rows = 40 if (nodes == "vertices") != along else 41
+    run = run_scene("prm/fracture/centre_crack.prm", {
+        "Domain/Cells": f"20, {rows}", "Domain/Nodes": nodes, "Cracks/Segments": f"-0.2,{y!r} ; {end!r},{y!r}", "Peridynamics/Horizon ratio": "3",
+        "Output/Fields": "none", "Output/Write at": "", "Solver/Tolerance": "1e-10", "Time/Time step": "0.02"})
+    return max(row["value"] for row in run.totals if row["quantity"] == "force on top in y")
+
+
+def table():
+    """Relative changes of a figure where a crack moves by next to nothing."""
+    h = {heat_figure: 0.1, opening_figure: 0.025, strength_figure: 0.05}
+    print("| figure | nodes | model | moved | 0 to 1e-9 | 0 to -1e-9 | 0.999e-3 to 1.001e-3 | -0.999e-3 to -1.001e-3 | 1.001e-3 from 0 |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for figure, name in ((heat_figure, "temperature across"), (opening_figure, "K_I, opening of the mouth"), (strength_figure, "strength")):
+        for nodes in ("vertices", "cell centers"):
+            for model in (FEM, PD, COUPLED) if figure != strength_figure else (PD,):
+                if model == COUPLED and nodes != "vertices" or model == FEM and nodes != "vertices":
+                    continue
+                for along in (False, True):
+                    values = {d: figure(d * h[figure], along, model, nodes) for d in sorted({d for pair in PAIRS for d in pair})}
+                    gaps = [values[b] / values[a] - 1 for a, b in PAIRS] + [values[1.001e-3] / values[0] - 1]
+                    print(f"| {name} | {nodes} | {model} | {'tip' if along else 'crack'} |" + "".join(f" {gap:.1e} |" for gap in gaps), flush=True)
+
+
 def main():
     parts = {"heat": heat, "elasticity": elasticity, "fracture": fracture, "mesh": mesh}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
+    if sys.argv[1:] == ["table"]:
+        table()
+    else:
+        for name in sys.argv[1:] or parts:
+            parts[name]()
     finish()
 
 

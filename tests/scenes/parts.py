@@ -267,6 +267,7 @@ def scenes():
         check_close(force(run, model, "back"), 0, absolute=1e-6, what=f"{model}: nothing left for the back")
     body_force()
     kalthoff(quiet)
+    kalthoff_halves()
 
 
 def body_force():
@@ -276,6 +277,32 @@ def body_force():
     hung = run_scene(HEAT, {**base, "Initial and source/Body force": "0, -0.5"})
     pulled = run_scene(HEAT, {**base, BC + "Traction": "bottom: 0, -1"})
     check_close(intensity(hung, FE), intensity(pulled, FE), relative=0.01, what="K under the own weight and under a traction")
+
+
+def direction(nodes, damage, tip, side, shown=0.35, clear=0.006):
+    """Angle to x, in degrees, of the straight line fitted (total least squares) to the damaged nodes further than `clear` beside a notch along x that ends at tip; side: 1 above, -1 below."""
+    import numpy as np
+
+    beyond = (nodes - np.array(tip)) * np.array([1, side])
+    beyond = beyond[(damage > shown) & (beyond[:, 1] > clear)]
+    along = np.linalg.svd(beyond - beyond.mean(0))[2][0]
+    return math.degrees(math.atan2(abs(along[1]), along[0] * np.sign(along[1])))
+
+
+def kalthoff_halves():
+    """Half of the plate by a plane of symmetry breaks as the whole one. Notches lie between rows of cell centres, so that both have the same lattice."""
+    import h5py
+
+    angles, broken = [], []
+    half = {"Domain/Lower corner": "0, 0", BC + "Symmetry": "bottom", "Cracks/Segments": "0,0.025 ; 0.05,0.025", BC + "Parts": "blow: left if y < 0.025"}
+    for more, rows in (({}, 64), (half, 32)):
+        run = run_scene("prm/fracture/kalthoff_winkler.prm", {"Domain/Cells": f"32, {rows}", "Peridynamics/Surface correction": "auto", "Output/Fields": "hdf5",
+                                                              "Output/Write every": "", **more})
+        with h5py.File(os.path.join(run.folder, run.summary["fields"][-1]["files"][PD])) as file:
+            angles.append(direction(file["nodes"][:], file["damage"][:].ravel(), (0.05, 0.025), 1))
+        broken.append(run.model(PD)["energy balance"]["broken bonds"])
+    check(broken[1] > 500, f"bonds break: {broken}")
+    check_close(angles[1], angles[0], absolute=3, what="angle of the crack, half and whole plate")
 
 
 def kalthoff(quiet):
