@@ -125,7 +125,7 @@ namespace PeriDeal
     }
 
 
-    /** A library may swallow the exception on one process, while the others wait for it in a collective call. */
+    /** A library may swallow the exception of one process while the others wait for that one. */
     void expect_an_end()
     {
       constexpr unsigned int seconds = 20;

@@ -230,7 +230,7 @@ namespace PeriDeal
     }
 
 
-    /** Rigid motions of the free unknowns, at most 1: the translations, then the rotations of each part about its middle. */
+    /** Rigid motions, at most 1: translations, then rotations of each part about its middle. */
     std::vector<Vector> motions_of_parts(const ElasticOperator &op, const Vector &part)
     {
       std::vector<Vector> motions = op.near_null_space();
@@ -263,7 +263,8 @@ namespace PeriDeal
 
 
     /**
-     * Of each part, by rigid motions a, b: energies a.K b, sizes a.D b with the diagonal D of K, the work of the residual, and, in the first row, what the residual is in 1/D.
+     * Of each part, for rigid motions a and b: the energies a.K b, the sizes a.D b with the diagonal
+     * D of K, the work of the residual r, and in the first row r.r/D.
      */
     PartSums energies_of_parts(const ElasticOperator     &op,
                                const Vector              &part,

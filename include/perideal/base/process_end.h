@@ -32,8 +32,9 @@ namespace PeriDeal
    * MPI_Init, which sets handlers of its own.
    *
    * @param speaks whether this process tells the user; one of each run does
-   * @param alone  whether the run has no other processes; those would wait for ever for one that was refused memory inside a library that goes on
-   *               regardless, so that such a one ends when nobody has reported it for 20 s
+   * @param alone  whether the run has no other processes; those would wait for ever for one that
+   *               was refused memory inside a library that goes on regardless, so that such a one
+   *               ends when nobody has reported it for 20 s
    */
   void handle_signals(const bool speaks, const bool alone);
 

@@ -18,11 +18,14 @@ namespace PeriDeal
                               const dealii::TrilinosWrappers::SparseMatrix &surrogate);
 
   /**
-   * Throws UserError if a part of a body can move without a strain, and the forces on it do that way: cracks or voids have cut it off from its supports, and it has no
-   * equilibrium. The message names one place in it, its number of nodes and the force. Parts that nothing holds and whose forces balance pass.
+   * Throws UserError if a part of a body can move without a strain and the forces on it do work
+   * on that motion: cracks or voids have cut it off from its supports, and it has no equilibrium.
+   * The message names one place in it, its number of nodes and the force. Parts that nothing holds
+   * and whose forces balance pass.
    *
-   * Parts are found as above, and what they can do from the energies of their rigid motions with prescribed unknowns at rest; the operator itself confirms it. Costs an application for each rigid
-   * motion. Collective.
+   * Parts are found as above, what they can do from the energies of their rigid motions with
+   * prescribed unknowns at rest; the operator itself confirms it. Costs an application for each
+   * rigid motion. Collective.
    *
    * @param residual of the free unknowns at a state that fulfils the conditions
    */
