@@ -104,13 +104,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  BoundaryFacets<dim>::BoundaryFacets(const Nodes<dim>                      &nodes,
-                                      const std::vector<types::boundary_id> &symmetry,
-                                      const double                           reach)
+  BoundaryFacets<dim>::BoundaryFacets(const Nodes<dim>                                    &nodes,
+                                      const std::vector<types::boundary_id>               &symmetry,
+                                      const std::function<bool(const types::boundary_id)> &goes_on,
+                                      const double                                         reach)
     : reach(reach)
     , bins(reach)
   {
-    gather(nodes);
+    gather(nodes, goes_on);
     take_out_planes(symmetry);
     for (const Facet &facet : facets)
       for (const Point<dim> &corner : facet.corners)
@@ -123,7 +124,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BoundaryFacets<dim>::gather(const Nodes<dim> &nodes)
+  void BoundaryFacets<dim>::gather(const Nodes<dim>                                    &nodes,
+                                   const std::function<bool(const types::boundary_id)> &goes_on)
   {
     std::vector<double> numbers; // global indices are exact up to 2^53
     for (const auto &cell : nodes.dof_handler().active_cell_iterators())
@@ -153,7 +155,8 @@ namespace PeriDeal
       for (std::size_t n = 0; n < list.size();)
         {
           Facet facet;
-          facet.side = static_cast<types::boundary_id>(list[n++]);
+          facet.side    = static_cast<types::boundary_id>(list[n++]);
+          facet.goes_on = goes_on(facet.side);
           for (unsigned int k = 0; k < dim; ++k)
             {
               facet.nodes[k] = static_cast<types::global_dof_index>(list[n++]);
@@ -303,6 +306,8 @@ namespace PeriDeal
   {
     std::vector<Foot> all, result;
     bins.visit_near(p, [&](const unsigned int f) {
+      if (!facets[f].goes_on)
+        return;
       const Foot foot = foot_on(p, f);
       if (foot.distance <= reach && is_lowest(p, foot))
         all.push_back(foot);
@@ -330,7 +335,7 @@ namespace PeriDeal
     bool         any   = false;
     const double slack = 1e-9 * reach;
     bins.visit_near(p, [&](const unsigned int f) {
-      if (facets[f].normal * normal <= alike)
+      if (!facets[f].goes_on || facets[f].normal * normal <= alike)
         return;
       const Foot found = foot_on(p, f);
       if (!any || found.distance < foot.distance - slack ||

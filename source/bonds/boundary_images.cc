@@ -175,8 +175,9 @@ namespace PeriDeal
           return;
         if (depth > 1e-9 * reach) // else the other part of a volume in the plane
           {
-            image.place[axis]  = 2. * plane.at - image.place[axis];
-            image.planes[axis] = plane.side;
+            image.place[axis]        = 2. * plane.at - image.place[axis];
+            image.planes[axis]       = plane.side;
+            image.twice_planes[axis] = 2. * plane.at;
             for (auto &term : image.terms)
               {
                 term.of_component[axis] *= -1.;
@@ -214,14 +215,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<BoundaryImage<dim>> boundary_images(const Nodes<dim>                      &nodes,
-                                                  const std::vector<types::boundary_id> &symmetry,
-                                                  const double                           reach)
+  std::vector<BoundaryImage<dim>> boundary_images(
+    const Nodes<dim>                                    &nodes,
+    const std::vector<types::boundary_id>               &symmetry,
+    const std::function<bool(const types::boundary_id)> &goes_on,
+    const double                                         reach)
   {
     std::vector<BoundaryImage<dim>> images;
     if constexpr (dim > 1)
       {
-        const BoundaryFacets<dim> facets(nodes, symmetry, reach);
+        const BoundaryFacets<dim> facets(nodes, symmetry, goes_on, reach);
         const ImageFinder<dim>    finder(nodes, facets, reach);
         for (unsigned int m = 0; m < nodes.n_local(); ++m)
           finder.find(m, images);
@@ -236,6 +239,7 @@ namespace PeriDeal
   template std::vector<BoundaryImage<dim>> boundary_images( \
     const Nodes<dim> &,                                     \
     const std::vector<types::boundary_id> &,                \
+    const std::function<bool(const types::boundary_id)> &,  \
     const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

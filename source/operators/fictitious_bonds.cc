@@ -288,10 +288,10 @@ namespace PeriDeal
     if (starts.empty() || starts[node] == starts[node + 1])
       return false;
     // Images of other nodes that are gone: what is continued from them is, too.
-    std::vector<Index> lost_sites;
+    std::vector<unsigned int> lost_images;
     for_each_of(node, [&](const Bond &bond) {
       if (may_break(bond) && bond.spring == 0.)
-        lost_sites.push_back(sites[bond.image]);
+        lost_images.push_back(bond.image);
     });
     bool any = false;
     for_each_of(node, [&](const Bond &bond) {
@@ -299,14 +299,13 @@ namespace PeriDeal
         return;
       for (std::size_t k = term_starts[bond.image]; k < term_starts[bond.image + 1]; ++k)
         {
-          Index site = families.nodes().lattice()->index(families.nodes().position(terms[k].node));
-          for (unsigned int d = 0; d < dim; ++d)
-            if ((terms[k].mirrored >> d) & 1)
-              site[d] = sites[bond.image][d];
-          const bool gone = terms[k].mirrored == 0 ?
-                              std::find(lost.begin(), lost.end(), terms[k].node) != lost.end() :
-                              std::find(lost_sites.begin(), lost_sites.end(), site) !=
-                                lost_sites.end();
+          const Term &term = terms[k];
+          const bool  gone =
+            term.mirrored == 0 ?
+               std::find(lost.begin(), lost.end(), term.node) != lost.end() :
+               std::any_of(lost_images.begin(), lost_images.end(), [&](const unsigned int image) {
+                return are_images_of_one(image, bond.image, term);
+              });
           if (gone)
             {
               break_bond(bond.number);
@@ -316,6 +315,27 @@ namespace PeriDeal
         }
     });
     return any;
+  }
+
+
+  template <int dim>
+  bool FictitiousBonds<dim>::are_images_of_one(const unsigned int lost,
+                                               const unsigned int image,
+                                               const Term        &term) const
+  {
+    if (sites.empty())
+      {
+        const Term &other = terms[term_starts[lost]];
+        bool        same  = other.node == term.node && other.mirrored == term.mirrored;
+        for (unsigned int d = 0; d < dim; ++d)
+          same = same && (!((term.mirrored >> d) & 1) || planes[lost][d] == planes[image][d]);
+        return same;
+      }
+    Index site = families.nodes().lattice()->index(families.nodes().position(term.node));
+    for (unsigned int d = 0; d < dim; ++d)
+      if ((term.mirrored >> d) & 1)
+        site[d] = sites[image][d];
+    return site == sites[lost];
   }
 
 

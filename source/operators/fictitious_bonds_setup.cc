@@ -44,9 +44,11 @@ namespace PeriDeal
 
   template <int dim>
   FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
-                                        const std::vector<BoundaryImage<dim>> &beyond)
+                                        const std::vector<BoundaryImage<dim>> &beyond,
+                                        std::vector<CrackGeometry<dim>>        cracks)
     : families(families)
     , extension(families, {})
+    , cracks(std::move(cracks))
   {
     const Nodes<dim> &nodes = families.nodes();
     PointBins<dim>    bins(families.reach());
@@ -102,6 +104,12 @@ namespace PeriDeal
     for (const auto &[xi, g] : around)
       {
         const BoundaryImage<dim> &image = beyond[g];
+        // As on a lattice.
+        const bool cut = !cracks.empty() &&
+                         is_cut(i, image.terms, [&](const Term &) { return image.twice_planes; });
+        if (cut &&
+            !(image.terms.size() == 1 && is_separated(i, image.terms[0], image.twice_planes)))
+          continue;
         if (number_of[g] == numbers::invalid_unsigned_int)
           {
             number_of[g] = origins.size();
@@ -112,7 +120,8 @@ namespace PeriDeal
             terms.insert(terms.end(), image.terms.begin(), image.terms.end());
             term_starts.push_back(terms.size());
           }
-        const double w = nodes.volume(i) * image.volume * families.weight_off_lattice(xi.norm());
+        const double w =
+          cut ? 0. : nodes.volume(i) * image.volume * families.weight_off_lattice(xi.norm());
         images.push_back(number_of[g]);
         moments.push_back(w * xi);
         springs.push_back(w * xi.norm_square());
@@ -139,8 +148,12 @@ namespace PeriDeal
         if (volume <= 1e-9 * site.volume)
           continue;
         // What a crack cuts of a mirror image counts in the damage.
-        const bool cut = near_crack && is_cut(i, index, site);
-        if (cut && !(site.terms.size() == 1 && is_separated(i, index, site.terms[0])))
+        const auto twice_planes = [&](const Term &term) {
+          return Point<dim>(lattice.position(index) + (nodes.position(term.node) - Point<dim>()));
+        };
+        const bool cut = near_crack && is_cut(i, site.terms, twice_planes);
+        if (cut && !(site.terms.size() == 1 &&
+                     is_separated(i, site.terms[0], twice_planes(site.terms[0]))))
           continue;
         Tensor<1, dim> xi;
         for (unsigned int d = 0; d < dim; ++d)
@@ -185,25 +198,21 @@ namespace PeriDeal
 
   template <int dim>
   bool FictitiousBonds<dim>::is_separated(const unsigned int i,
-                                          const Index       &index,
-                                          const Term        &term) const
+                                          const Term        &term,
+                                          const Point<dim>  &twice_planes) const
   {
     // Instead of the cracks mirror the bond, about each set of the planes of symmetry that it passes.
     const Nodes<dim> &nodes = families.nodes();
-    const Point<dim>  far = nodes.lattice()->position(index), origin = nodes.position(term.node);
     for (unsigned int image = 0; image < (1u << dim); ++image)
       {
         if ((image & ~term.mirrored) != 0)
           continue;
         Point<dim> a = nodes.crack_point(i), b = nodes.crack_point(term.node);
         for (unsigned int d = 0; d < dim; ++d)
-          {
-            const double twice = far[d] + origin[d];
-            if ((image >> d) & 1)
-              a[d] = twice - a[d];
-            else if ((term.mirrored >> d) & 1)
-              b[d] = twice - b[d];
-          }
+          if ((image >> d) & 1)
+            a[d] = twice_planes[d] - a[d];
+          else if ((term.mirrored >> d) & 1)
+            b[d] = twice_planes[d] - b[d];
         for (const CrackGeometry<dim> &crack : cracks)
           if (crack.separates(a, b))
             return true;
@@ -213,15 +222,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool FictitiousBonds<dim>::is_cut(const unsigned int i,
-                                    const Index       &index,
-                                    const Site        &site) const
+  bool FictitiousBonds<dim>::is_cut(
+    const unsigned int                             i,
+    const std::vector<Term>                       &of_image,
+    const std::function<Point<dim>(const Term &)> &twice_planes) const
   {
-    for (const Term &term : site.terms)
+    for (const Term &term : of_image)
       {
         bool cut = false;
         if (term.mirrored != 0)
-          cut = is_separated(i, index, term);
+          cut = is_separated(i, term, twice_planes(term));
         else if (term.node != i)
           families.kept_fraction(i, term.node, cut);
         if (cut)
@@ -236,7 +246,8 @@ namespace PeriDeal
                                                  const std::array<BeyondSide, 2 * dim> &, \
                                                  std::vector<CrackGeometry<dim>>);        \
   template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                   \
-                                                 const std::vector<BoundaryImage<dim>> &);
+                                                 const std::vector<BoundaryImage<dim>> &, \
+                                                 std::vector<CrackGeometry<dim>>);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "state_lattice.h"
@@ -21,48 +20,60 @@ namespace PeriDeal
 
   namespace
   {
-    /** A traction acts on the side, where the displacement is 3/2 u_0 - 1/2 u_1 of the cell centres in the two outermost rows. */
+    /**
+     * A traction acts on the side, where the displacement is 3/2 u_0 - 1/2 u_1 of the cell centres in the two outermost rows: of a whole side or a part of it, each node of the
+     * second row bears -1/2 of what its neighbour in the outermost row does. Collective.
+     */
     template <int dim>
     void draw_on_to_side(const Families<dim>                   &families,
+                         const BoundaryConditions<dim>         &conditions,
                          const std::array<BeyondSide, 2 * dim> &sides,
                          std::vector<TractionShare<dim>>       &tractions)
     {
-      const Nodes<dim>                  &nodes = families.nodes();
-      std::map<types::boundary_id, bool> loaded;
-      const auto                         next =
+      const Nodes<dim>   &nodes   = families.nodes();
+      const Lattice<dim> &lattice = *nodes.lattice();
+      const auto          next =
         [&](const unsigned int node, const types::boundary_id side, const int step) {
-          auto site = nodes.lattice()->index(nodes.position(node));
+          auto site = lattice.index(nodes.position(node));
           site[side / 2] += side % 2 == 0 ? step : -step;
           return families.node_at(site);
         };
-      for (TractionShare<dim> &share : tractions)
+      std::vector<TractionShare<dim>> second;
+      std::array<Vector, dim + 1>     carried; // areas and places of the outermost row
+      for (const VectorCondition &condition : conditions.traction)
         {
-          if (share.side >= 2 * dim)
-            continue; // a part: the outermost row bears what it is given
-          loaded[share.side] = true;
-          if (sides[share.side] == BeyondSide::continued &&
-              next(share.node, share.side, 1) != numbers::invalid_unsigned_int)
-            share.area *= 1.5;
-        }
-      for (unsigned int side = 0; side < 2 * dim; ++side)
-        {
-          const unsigned int axis = side / 2;
-          const int          last = nodes.lattice()->n_sites[axis] - 1;
-          // Rows of other processes may be loaded.
-          if (Utilities::MPI::max(loaded.count(side), nodes.communicator()) == 0 ||
-              sides[side] != BeyondSide::continued || last == 0)
+          const types::boundary_id side = conditions.side_of(condition.id);
+          if (side >= 2 * dim || sides[side] != BeyondSide::continued ||
+              lattice.n_sites[side / 2] == 1)
             continue;
-          const double area = nodes.lattice()->cell_volume() / nodes.lattice()->spacing[axis];
+          for (Vector &values : carried)
+            values.reinit(nodes.partitioner());
+          for (TractionShare<dim> &share : tractions)
+            if (share.side == condition.id &&
+                next(share.node, side, 1) != numbers::invalid_unsigned_int)
+              {
+                carried[dim].local_element(share.node) = share.area;
+                for (unsigned int d = 0; d < dim; ++d)
+                  carried[d].local_element(share.node) = share.place[d];
+                share.area *= 1.5;
+              }
+          for (Vector &values : carried)
+            values.update_ghost_values();
+          const int row = side % 2 == 0 ? 1 : lattice.n_sites[side / 2] - 2;
           for (unsigned int i = 0; i < nodes.n_owned(); ++i)
             {
-              const int row = nodes.lattice()->index(nodes.position(i))[axis];
-              if (row != (side % 2 == 0 ? 1 : last - 1))
+              if (lattice.index(nodes.position(i))[side / 2] != row)
                 continue;
-              if (const unsigned int outer = next(i, side, -1);
-                  outer != numbers::invalid_unsigned_int)
-                tractions.push_back({i, side, -0.5 * area, nodes.position(outer)});
+              const unsigned int outer = next(i, side, -1);
+              if (outer == numbers::invalid_unsigned_int || carried[dim].local_element(outer) == 0.)
+                continue;
+              Point<dim> place;
+              for (unsigned int d = 0; d < dim; ++d)
+                place[d] = carried[d].local_element(outer);
+              second.push_back({i, condition.id, -0.5 * carried[dim].local_element(outer), place});
             }
         }
+      tractions.insert(tractions.end(), second.begin(), second.end());
     }
   } // namespace
 
@@ -99,11 +110,22 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::complete_families()
   {
+    const bool cut_at_tips = scene.cracks.cuts_bonds_at_tips(scene.peridynamics.surface_correction);
+    const auto cracks      = [&] {
+      return make_crack_geometries(bonds.crack_history().pieces(bonds.cracks_now(), cut_at_tips));
+    };
     if (completes_mesh(scene))
       {
-        beyond = std::make_unique<FictitiousBonds<dim>>(
-          bonds,
-          boundary_images(bonds.nodes(), scene.boundary_conditions.symmetry, bonds.reach()));
+        const auto goes_on = [&](const types::boundary_id side) {
+          return goes_on_beyond(scene, side);
+        };
+        beyond =
+          std::make_unique<FictitiousBonds<dim>>(bonds,
+                                                 boundary_images(bonds.nodes(),
+                                                                 scene.boundary_conditions.symmetry,
+                                                                 goes_on,
+                                                                 bonds.reach()),
+                                                 cracks());
         beyond->add_weights(weighted);
         return;
       }
@@ -112,13 +134,9 @@ namespace PeriDeal
           return side == BeyondSide::nothing;
         }))
       return;
-    const bool cut_at_tips = scene.cracks.cuts_bonds_at_tips(scene.peridynamics.surface_correction);
-    beyond                 = std::make_unique<FictitiousBonds<dim>>(
-      bonds,
-      sides,
-      make_crack_geometries(bonds.crack_history().pieces(bonds.cracks_now(), cut_at_tips)));
+    beyond = std::make_unique<FictitiousBonds<dim>>(bonds, sides, cracks());
     if (bonds.nodes().lattice()->at_centers && scene.boundary_conditions.traction_layer <= 0.)
-      draw_on_to_side(bonds, sides, tractions);
+      draw_on_to_side(bonds, scene.boundary_conditions, sides, tractions);
     beyond->add_weights(weighted);
     // The lattice knows what is complete to the last bit.
     const double complete = complete_weighted();

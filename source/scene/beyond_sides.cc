@@ -26,11 +26,16 @@ namespace PeriDeal
     {
       if (dim == 1)
         return "in 1D";
-      if (scene.domain.nodes == NodePlacement::cell_centers)
-        return "with nodes at cell centres";
-      if (scene.material.fracture_energy || scene.material.critical_stretch)
-        return "where bonds may break";
-      return scene.cracks.cracks.empty() ? "" : "with cracks";
+      return scene.domain.nodes == NodePlacement::cell_centers ? "with nodes at cell centres" : "";
+    }
+
+
+    /** Families end at free sides: bonds there break as those of their own families, and nodes that others follow are stiff, so that explicit steps would be short. */
+    template <int dim>
+    bool ends_at_free_sides(const Scene<dim> &scene)
+    {
+      return scene.material.fracture_energy || scene.material.critical_stretch ||
+             scene.elasticity.solver == ElasticSolver::dynamics;
     }
 
 
@@ -145,10 +150,7 @@ namespace PeriDeal
         (scene.domain.shape == Shape::mesh_file || !hindrance_of_fictitious_nodes(scene).empty()))
       return beyond;
     const auto &conditions = scene.boundary_conditions;
-    const bool  brittle    = scene.material.fracture_energy || scene.material.critical_stretch;
-    // Nodes on sides and at corners that others follow are stiff, and explicit steps would be short.
-    const bool moves = scene.elasticity.solver == ElasticSolver::dynamics;
-    if (!automatic || !(brittle || moves))
+    if (!automatic || !ends_at_free_sides(scene))
       beyond.fill(BeyondSide::continued);
     const auto set = [&](const types::boundary_id side, const BeyondSide value) {
       if (side < 2 * dim)
@@ -176,12 +178,27 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool goes_on_beyond(const Scene<dim> &scene, const types::boundary_id side)
+  {
+    if (!ends_at_free_sides(scene))
+      return true;
+    const auto &conditions = scene.boundary_conditions;
+    for (const auto *const list : {&conditions.displacement, &conditions.traction})
+      for (const VectorCondition &condition : *list)
+        if (conditions.side_of(condition.id) == side)
+          return true;
+    return false;
+  }
+
+
+  template <int dim>
   std::string automatic_correction(const Scene<dim> &scene)
   {
     if (const std::string reason = hindrance_of_fictitious_nodes(scene); !reason.empty())
       return "none, because " + reason;
     if (completes_mesh(scene))
-      return "fictitious nodes beyond the whole boundary";
+      return ends_at_free_sides(scene) ? "fictitious nodes beyond sides with conditions" :
+                                         "fictitious nodes beyond the whole boundary";
     const auto               beyond = beyond_sides(scene);
     std::vector<std::string> names;
     for (unsigned int side = 0; side < 2 * dim; ++side)
@@ -191,11 +208,12 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                         \
-  template std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene);         \
-  template bool                            completes_mesh(const Scene<dim> &scene);       \
-  template std::string                     automatic_correction(const Scene<dim> &scene); \
-  template std::string                     note_on_cut_sides(const Scene<dim> &scene);
+#define PERIDEAL_INSTANTIATE(dim)                                                              \
+  template std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene);              \
+  template bool                            completes_mesh(const Scene<dim> &scene);            \
+  template bool        goes_on_beyond(const Scene<dim> &scene, const types::boundary_id side); \
+  template std::string automatic_correction(const Scene<dim> &scene);                          \
+  template std::string note_on_cut_sides(const Scene<dim> &scene);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -112,7 +112,7 @@ namespace PeriDeal
     declare(
       "Surface correction",
       EntryType::choice,
-      "none",
+      "auto",
       "",
       "What makes up for missing bonds. `auto`: nothing for what diffuses; families of elastic peridynamics on a lattice go on beyond planes of symmetry and all flat sides (where bonds may break, and in motion, "
       "beyond those with conditions), at no more cost than their bonds. Factors of bonds: beside cracks only (`crack scaling`, for finite elements with "

@@ -240,3 +240,80 @@ TEST(BoundaryImages, same_on_all_processes)
   for (unsigned int n = 0; n < 3; ++n)
     EXPECT_NEAR(numbers[0][n] / numbers[1][n], 1., 1e-12) << n;
 }
+
+
+/** Half a body with a plane of symmetry, a crack across the plane, and the whole one: forces, damage, and what breaks. */
+TEST(BoundaryImages, half_a_body_breaks_as_the_whole_one)
+{
+  const auto make = [](Triangulation<2> &mesh, const bool whole) {
+    dealii::GridGenerator::subdivided_hyper_rectangle(mesh,
+                                                      {whole ? 32u : 16u, 12u},
+                                                      Point<2>(whole ? -1. : 0., 0.),
+                                                      Point<2>(1., 0.75),
+                                                      true);
+    dealii::GridTools::transform(
+      [](const Point<2> &p) {
+        const double x = std::abs(p[0]), y = p[1];
+        const double edge = x * (1. - x) * y * (0.75 - y);
+        return Point<2>(p[0] * (1. + 0.6 * edge * std::sin(23. * x + 17. * y)),
+                        y + 0.3 * edge * std::cos(29. * x * x - 13. * y));
+      },
+      mesh);
+  };
+  const auto field = [](const Point<2> &p) {
+    Tensor<1, 2> u;
+    u[0] = 0.02 * std::sin(2. * p[0]) * (1. + p[1]);
+    u[1] = 0.02 * std::cos(3. * p[0]) * p[1] * p[1];
+    return u;
+  };
+  Triangulation<2> mesh[2];
+  make(mesh[0], false);
+  make(mesh[1], true);
+  const MeshFile<2> half_file("half", mesh[0]), whole_file("whole", mesh[1]);
+  for (const bool cracked : {false, true})
+    {
+      const Settings more{{"Boundary conditions/Displacement", "1: 0, 0"},
+                          {"Elasticity/Solver", "dynamics"},
+                          {"Material/Critical stretch", "0.03"}};
+      const auto     crack = [&](const std::string &text) {
+        return cracked ? Settings{{"Cracks/Segments", text}} : Settings();
+      };
+      const Body<2> half(half_file.settings(0.17) + more + crack("0,0.412 ; 0.21,0.412") +
+                           Settings{{"Boundary conditions/Symmetry", "0"}},
+                         Model::peridynamics,
+                         MPI_COMM_SELF),
+        whole(whole_file.settings(0.17) + more + crack("-0.21,0.412 ; 0.21,0.412") +
+                Settings{{"Boundary conditions/Traction", "0: 0, 0"}},
+              Model::peridynamics,
+              MPI_COMM_SELF);
+      const Vector u = half.values(field), v = whole.values(field);
+      for (const bool broken : {false, true})
+        {
+          if (broken)
+            {
+              const auto n_half = half.op().break_bonds(u), n = whole.op().break_bonds(v);
+              EXPECT_GT(n_half, 100u);
+              EXPECT_NEAR(static_cast<double>(n_half), 0.5 * n, 7.); // those that the plane halves
+            }
+          Vector of_half(u), of_whole(v);
+          half.op().multiply(of_half, u);
+          whole.op().multiply(of_whole, v);
+          const double size        = of_whole.linfty_norm();
+          const auto   damage_half = half.states->damage(), damage = whole.states->damage();
+          unsigned int n_pairs = 0;
+          for (unsigned int i = 0; i < damage_half.size(); ++i)
+            for (unsigned int k = 0; k < damage.size(); ++k)
+              if (half.position(i)[0] > 1e-9 && half.position(i).distance(whole.position(k)) < 1e-9)
+                {
+                  ++n_pairs;
+                  for (unsigned int d = 0; d < 2; ++d)
+                    EXPECT_NEAR(of_half.local_element(2 * i + d),
+                                of_whole.local_element(2 * k + d),
+                                1e-11 * size);
+                  EXPECT_NEAR(damage_half[i], damage[k], 1e-12);
+                }
+          EXPECT_EQ(n_pairs, 16u * 13u);
+          EXPECT_NEAR(2. * half.op().energy(u) / whole.op().energy(v), 1., 1e-11);
+        }
+    }
+}

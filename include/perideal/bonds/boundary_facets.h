@@ -7,6 +7,7 @@
 #include <perideal/mesh/nodes.h>
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace PeriDeal
@@ -38,12 +39,14 @@ namespace PeriDeal
     };
 
     /**
-     * @param reach of searches
+     * @param goes_on  of a side; feet are on such sides alone
+     * @param reach    of searches
      * Throws UserError for planes of symmetry that are not normal to an axis. Collective.
      */
-    BoundaryFacets(const Nodes<dim>                              &nodes,
-                   const std::vector<dealii::types::boundary_id> &symmetry,
-                   const double                                   reach);
+    BoundaryFacets(const Nodes<dim>                                            &nodes,
+                   const std::vector<dealii::types::boundary_id>               &symmetry,
+                   const std::function<bool(const dealii::types::boundary_id)> &goes_on,
+                   const double                                                 reach);
 
     const std::vector<SymmetryPlane> &planes() const;
 
@@ -78,9 +81,11 @@ namespace PeriDeal
       dealii::Tensor<1, dim>                           normal;
       double                                           area;
       dealii::types::boundary_id                       side;
+      bool                                             goes_on;
     };
 
-    void gather(const Nodes<dim> &nodes);
+    void gather(const Nodes<dim>                                            &nodes,
+                const std::function<bool(const dealii::types::boundary_id)> &goes_on);
     void take_out_planes(const std::vector<dealii::types::boundary_id> &symmetry);
     void find_corner_normals();
     Foot foot_on(const dealii::Point<dim> &p, const unsigned int facet) const;

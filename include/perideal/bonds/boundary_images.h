@@ -6,6 +6,7 @@
 #include <perideal/bonds/fictitious_extension.h>
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace PeriDeal
@@ -24,6 +25,7 @@ namespace PeriDeal
     std::vector<Term>                           terms;
     std::vector<dealii::Point<dim>>             term_places;
     std::array<dealii::types::boundary_id, dim> planes; // of symmetry that it lies beyond, by axis
+    dealii::Point<dim>                          twice_planes; // their coordinates, times 2
   };
 
 
@@ -38,13 +40,14 @@ namespace PeriDeal
    *
    * with u(p) of the facet's nodes, and a(d) the area of the facet moved by the distance d of the node along the normals of its vertices: beyond a hole images lie closer than nodes, and none are
    * beyond its middle. At convex edges one side after the other goes on. Images that are nearer to another part of the boundary are left out. Beyond planes of symmetry all is mirrored. A node on
-   * a side has an image at its own place, the other part of its volume.
+   * a side has an image at its own place, the other part of its volume. Beyond sides that do not go on there are none.
    *
    * Those of the nodes that this process knows. Collective. Throws UserError for planes of symmetry that are not normal to an axis.
    */
   template <int dim>
   std::vector<BoundaryImage<dim>> boundary_images(
-    const Nodes<dim>                              &nodes,
-    const std::vector<dealii::types::boundary_id> &symmetry,
-    const double                                   reach);
+    const Nodes<dim>                                            &nodes,
+    const std::vector<dealii::types::boundary_id>               &symmetry,
+    const std::function<bool(const dealii::types::boundary_id)> &goes_on,
+    const double                                                 reach);
 } // namespace PeriDeal

@@ -42,8 +42,10 @@ namespace PeriDeal
                     const std::array<BeyondSide, 2 * dim> &beyond,
                     std::vector<CrackGeometry<dim>>        cracks);
 
-    /** Of a mesh, without cracks. Not collective. */
-    FictitiousBonds(const Families<dim> &families, const std::vector<BoundaryImage<dim>> &beyond);
+    /** The same of a mesh. Not collective. */
+    FictitiousBonds(const Families<dim>                   &families,
+                    const std::vector<BoundaryImage<dim>> &beyond,
+                    std::vector<CrackGeometry<dim>>        cracks);
 
     /** Add sum W x^2/V_i to q of the owned nodes. */
     void add_weights(Vector &q) const;
@@ -155,8 +157,15 @@ namespace PeriDeal
                                std::vector<unsigned int>             &number_of);
     void         make_room();
     unsigned int image_at(const Index &index, const Site &site, const double volume);
-    bool         is_cut(const unsigned int i, const Index &index, const Site &site) const;
-    bool         is_separated(const unsigned int i, const Index &index, const Term &term) const;
+    bool         is_cut(const unsigned int                                     i,
+                        const std::vector<Term>                               &of_image,
+                        const std::function<dealii::Point<dim>(const Term &)> &twice_planes) const;
+    bool         is_separated(const unsigned int        i,
+                              const Term               &term,
+                              const dealii::Point<dim> &twice_planes) const;
+    bool         are_images_of_one(const unsigned int lost,
+                                   const unsigned int image,
+                                   const Term        &term) const;
 
     const Families<dim>                                     &families;
     const FictitiousExtension<dim>                           extension;

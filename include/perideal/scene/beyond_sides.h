@@ -27,9 +27,14 @@ namespace PeriDeal
   std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene);
 
 
-  /** Families of an elastic body on a mesh from a file go on beyond its whole boundary, with `Surface correction = auto`. Not collective. */
+  /** Families of an elastic body on a mesh from a file go on beyond its sides, with `Surface correction = auto`. Not collective. */
   template <int dim>
   bool completes_mesh(const Scene<dim> &scene);
+
+
+  /** Then: beyond this one, of those that are no planes of symmetry. Not collective. */
+  template <int dim>
+  bool goes_on_beyond(const Scene<dim> &scene, const dealii::types::boundary_id side);
 
 
   /** With `Surface correction = auto`: why no families can go on; empty where they can, and with other corrections. */
