@@ -15,6 +15,9 @@ namespace PeriDeal
      * differences and a step of one. Lambda = kappa/4 diag K makes that step stable, kappa (with a margin) the largest eigenvalue of diag(K)^-1 K; c = 2 omega
      * damps critically what moves: omega^2 = v.Kv/v.Lambda v, the Rayleigh quotient of the last step, K v from the residuals before and after. (The
      * published quotient, of u and a diagonal local stiffness, takes more iterations.) Iterations go with L/h.
+     *
+     * A deformed body may be stiffer than kappa, which is that of the body at rest, allows: then a motion that turns round at each step comes up, whose quotient is 4 or more, and
+     * Lambda is raised.
      */
     class AdaptiveDynamicRelaxation : public StaticSolver
     {
@@ -44,7 +47,7 @@ namespace PeriDeal
         unsigned int n = 0;
         for (; !goal.reached(residual, n); ++n)
           {
-            const double       damping = n == 0 ? 0. : find_damping(u);
+            const double       damping = n == 0 ? 0. : adapt(u);
             const double       keep    = (2. - damping) / (2. + damping);
             const double       push    = n == 0 ? 0.5 : 2. / (2. + damping);
             const unsigned int n_own   = mass.locally_owned_size();
@@ -59,9 +62,11 @@ namespace PeriDeal
       }
 
     private:
-      double find_damping(const Vector &u) const
+      /** The damping from the last step; raises the mass where that step was not stable. */
+      double adapt(const Vector &u)
       {
         constexpr double   most   = 1.9; // below 2: velocities must not turn round
+        constexpr double   stable = 4., nearly = 0.93, margin = 1.2, at_once = 2.;
         double             sum[2] = {0., 0.};
         const unsigned int n      = mass.locally_owned_size();
         for (unsigned int i = 0; i < n; ++i)
@@ -72,6 +77,8 @@ namespace PeriDeal
           }
         for (double &s : sum)
           s = dealii::Utilities::MPI::sum(s, u.get_mpi_communicator());
+        if (op.nonlinear() && sum[0] > nearly * stable * sum[1])
+          mass *= std::min(margin * sum[0] / (stable * sum[1]), at_once);
         return sum[0] > 0. ? std::min(2. * std::sqrt(sum[0] / sum[1]), most) : 0.;
       }
 

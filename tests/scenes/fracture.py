@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Bonds that break: strength against Griffith, energies, motion, numbers of processes.
 
-    fracture.py plate | cantilever | block | bend | motion | steps | ranks
+    fracture.py plate | cantilever | block | bend | mesh | motion | steps | ranks
     fracture.py fine_plate | fine_block | fine_motion      the scenes on their own lattices; the others take one of half the cells a side
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
@@ -11,8 +11,10 @@ Bounds that follow from no theory are at most 1.6 times the gap that was measure
 import math
 import os
 import sys
+import tempfile
 
-from scene_test import Comparison, check, check_close, check_less, check_message, finish, run_scene
+from crack_rows import write_mesh
+from scene_test import SOURCE_DIR, Comparison, check, check_close, check_less, check_message, finish, run_scene
 
 PD = "peridynamics"
 QUIET = {"Output/Fields": "none", "Output/Write at": ""}
@@ -49,14 +51,14 @@ HALF = {"Domain/Cells": "40, 80"}
 def plate(lattice=HALF, delta=0.1, left_over=2e-3):
     """A plate with a crack in its middle: Griffith's strength within 10 % at m = 4, for any Poisson ratio, and the crack runs through."""
     table = Comparison(f"Plate with a crack, m = 4, delta = {delta}, half length 0.2")
-    # Measured: 1.010, 0.974, 1.014 and 1.019; on the scene's own lattice 1.070, 1.004, 1.069 and 1.065.
+    # Measured: 1.013, 0.972, 1.015 and 1.019; on the scene's own lattice 1.070, 1.004, 1.069 and 1.065.
     for settings in ({}, {"Material/Poisson ratio": "0"}, {"Material/Poisson ratio": "0.45"},
                      {"Material/Poisson ratio": "0.3", "Elasticity/Plane": "strain"}):
         more = {"Boundary conditions/Displacement": "top: 0, 0.012*t; bottom: 0, -0.012*t", "Solver/Tolerance": "1e-8", **settings} if settings else {}
         run = run_scene("prm/fracture/centre_crack.prm", {**QUIET, **lattice, **more})
         young = YOUNG / (1 - 0.3 ** 2) if "Elasticity/Plane" in settings else YOUNG
         table.add(f"{settings or 'nu = 1/3'}: strength over Griffith's", strength(run, 1) / griffith(0.2, 1, young), 1, absolute=0.1)
-        energy_kept(table, f"{settings or 'nu = 1/3'}", run, 1e-8 if settings else 1e-10)
+        energy_kept(table, f"{settings or 'nu = 1/3'}", run, 3.2e-8 if settings else 1e-10)  # measured: at most 2.0e-8, the tolerance of the solver, and 4.2e-11
         left = run.model(PD)["boundary force"]["top"][1]
         table.add_limit(f"{settings or 'nu = 1/3'}: force left at the end over strength", abs(left) / strength(run, 1), left_over)  # measured: at most 1.3e-3 and 6.2e-4
     table.show()
@@ -91,11 +93,11 @@ def cantilever():
     table.show()
 
 
-def block(lattice={"Domain/Cells": "16, 32, 2"}, delta=0.19, apart=0.3):
+def block(lattice={"Domain/Cells": "16, 32, 2"}, delta=0.19, apart=0.35):
     """Three dimensions."""
     table = Comparison(f"Block with a crack, m = 3, delta = {delta}")
     run = run_scene("prm/fracture/cracked_block.prm", {**QUIET, **lattice})
-    table.add("strength over Griffith's", strength(run, 0.125) / griffith(0.2, 1), 1, absolute=apart)  # measured: 1.273; 1.160 at delta = 0.125, 1.076 on the scene's own lattice
+    table.add("strength over Griffith's", strength(run, 0.125) / griffith(0.2, 1), 1, absolute=apart)  # measured: 1.300; 1.160 at delta = 0.125, 1.076 on the scene's own lattice
     energy_kept(table, "block", run, 1e-8)
     table.show()
 
@@ -106,17 +108,45 @@ def fine_block():
 
 def bend():
     """A notched beam on two feet is pressed until it breaks: under a given load K rises with the crack, so the peak is where linear fracture mechanics has it start."""
-    table = Comparison("Three-point bend, m = 5, 30 cells across the height")
+    table = Comparison("Three-point bend, m = 6, 30 cells across the height")
     run = run_scene("prm/fracture/three_point_bend.prm", {
         **QUIET, "Models": PD, "Domain/Cells": "132, 30", "Domain/Nodes": "cell centers", "Material/Fracture energy": str(ENERGY),
-        "Peridynamics/Horizon ratio": "5", "Solver/Tolerance": "1e-8", "Time/Time step": "0.02", "Boundary conditions/Traction": "",
+        "Peridynamics/Horizon ratio": "6", "Solver/Tolerance": "1e-8", "Time/Time step": "0.02", "Boundary conditions/Traction": "",
         "Boundary conditions/Parts": "load: top if abs(x) < 0.06 ; left foot: bottom if abs(x + 2) < 0.06 ; right foot: bottom if abs(x - 2) < 0.06",
         "Boundary conditions/Displacement": "load: free, -0.045*t ; left foot: 0, 0 ; right foot: free, 0"})
     loads = [-row[1] for row in history(run, "force on load in y")]
     # K = 10.65 P (ASTM E399); the load, spread over 0.12, has the moment of 2 - 0.03 in place of 2.
     expected = math.sqrt(YOUNG * ENERGY) / (10.65 * (1 - 0.06 / 4))
-    table.add("peak over that of linear fracture mechanics", max(loads) / expected, 1, absolute=0.05)  # measured: 1.032; with load steps of 0.025 1.021; m = 4: 1.095
+    table.add("peak over that of linear fracture mechanics", max(loads) / expected, 1, absolute=0.05)  # measured: 1.014; m = 5: 1.069, m = 4: 1.143
     table.add_limit("force at the end over the peak", loads[-1] / max(loads), 0.95)
+    table.show()
+
+
+def mesh():
+    """The plate on a Gmsh file of the box's cells breaks as that on the box: families go on beyond the sides that are pulled, and on meshes are those of the lattice but for partial volumes."""
+    table = Comparison("Plate with a crack, m = 3, on a mesh over that on a lattice")
+    scene = open(os.path.join(SOURCE_DIR, "prm/fracture/centre_crack.prm"), encoding="utf-8").read()
+    for line in ("  set Horizon ratio   = 4\n", "  set Lower corner = -0.5, -1\n", "  set Upper corner = 0.5, 1\n", "  set Cells        = 80, 160\n"):
+        check(line in scene, f"the scene has {line.strip()}")
+        scene = scene.replace(line, "")
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "plate.msh")
+        write_mesh(path, [-0.5 + i / 24 for i in range(25)], [-1 + 2 * i / 49 for i in range(50)])
+        shared = {**QUIET, "Domain/Nodes": "vertices", "Peridynamics/Horizon": "0.125", "Solver/Tolerance": "1e-11", "Time/Time step": "0.02"}
+        box = run_scene(scene, {**shared, "Domain/Lower corner": "-0.5, -1", "Domain/Upper corner": "0.5, 1", "Domain/Cells": "24, 49",
+                               "Boundary conditions/Displacement": "top: 0, 0.015*t; bottom: 0, -0.015*t"})
+        runs = [run_scene(scene, {**shared, "Domain/Shape": "mesh file", "Domain/Mesh file": path,
+                                  "Boundary conditions/Displacement": "4: 0, 0.015*t; 3: 0, -0.015*t"}, ranks=ranks) for ranks in (1, 2)]
+        found = []
+        for run, side in ((box, "top"), (runs[0], "4"), (runs[1], "4")):
+            rows = history(run, f"force on {side} in y", BROKEN)
+            first = next(k for k, row in enumerate(rows) if row[2] > 0)
+            found.append((rows[first][0], max(row[1] for row in rows), rows[first - 1][1], rows[-1][2]))
+        for name, on_box, on_mesh, bound in zip(("time of the first break", "strength", "force before"), found[0], found[1], (1e-12, 2.2e-3, 2.2e-3)):
+            table.add(name, on_mesh / on_box, 1, absolute=bound)
+        check_close(found[2], found[1], relative=1e-9, what="two processes")
+        check(found[0][3] > 500, f"the plate breaks: {found[0][3]} bonds")
+        check("beyond sides with conditions" in runs[0].model(PD)["settings"]["surface correction"], "families go on")
     table.show()
 
 
@@ -135,7 +165,7 @@ def branching(lattice, steps):
 
 
 def motion():
-    branching({"Domain/Cells": "100, 40"}, ("2.8e-7", "1.4e-7"))
+    branching({"Domain/Cells": "100, 40"}, ("1.8e-7", "0.9e-7"))
     table = Comparison("Branching crack, newmark")
     newmark = run_scene("prm/fracture/branching_crack.prm", {"Domain/Cells": "50, 20", "Time/Stepper": "newmark", "Time/Time step": "4e-7",
                                                              "Output/Write every": "", "Output/Fields": "none", "Peridynamics/Horizon ratio": "3",
@@ -146,7 +176,7 @@ def motion():
 
 
 def fine_motion():
-    branching({}, ("1.4e-7", "0.7e-7"))
+    branching({}, ("0.9e-7", "0.45e-7"))
 
 
 COARSE = {**QUIET, "Domain/Cells": "24, 48", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-12", "Time/Time step": "0.05",
@@ -182,7 +212,7 @@ def ranks():
 
 
 def main():
-    parts = {function.__name__: function for function in (plate, cantilever, block, bend, motion, steps, ranks, fine_plate, fine_block, fine_motion)}
+    parts = {function.__name__: function for function in (plate, cantilever, block, bend, mesh, motion, steps, ranks, fine_plate, fine_block, fine_motion)}
     for name in sys.argv[1:] or [name for name in parts if not name.startswith("fine")]:
         parts[name]()
     finish()

@@ -345,7 +345,7 @@ def layers():
     # A bar stretched evenly: what its ends show without layers is the error of cut families.
     gaps = {}
     for n in (0, 6):
-        run = run_scene("prm/elasticity/bar_2d.prm", {**QUIET, "Models": "peridynamics", "Boundary conditions/Traction": "", "Boundary conditions/Symmetry": "bottom",
+        run = run_scene("prm/elasticity/bar_2d.prm", {**QUIET, "Models": "peridynamics", "Peridynamics/Surface correction": "none", "Boundary conditions/Traction": "", "Boundary conditions/Symmetry": "bottom",
                                                       "Boundary conditions/Displacement": "left: 1e-3*x, free ; right: 1e-3*x, free", "Domain/Extra layers": f"left: {n} ; right: {n}",
                                                       "Output/Line": "0,0.5 ; 2,0.5 ; 81"})
         rows = run.rows("peridynamics", table="line.csv")

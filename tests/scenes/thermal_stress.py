@@ -172,8 +172,6 @@ def cooling():
         for model in (FEM, PD):
             of_stress, of_temperature, crosswise = [], [], []
             for row in run.rows(model, time=t, table="line.csv"):
-                if model == PD and not 1 <= row["x"] <= HALF - 1:
-                    continue  # cut families, also at the plane of symmetry
                 here, mean = cooled(row["x"], t)
                 of_temperature.append(abs(row["temperature"] - 20 - here))
                 of_stress.append(abs(row["syy"] - YOUNG * EXPANSION * (mean - here)))
@@ -184,8 +182,8 @@ def cooling():
     table.show()
 
 
-# Measured: 1.4e-5, 8.0e-4 (the end at the top), 3.1e-4; peridynamics 4.3e-4 (at 5 s, then 1.1e-4), 1.4e-3, 2.4e-3.
-COOLING = {FEM: (2.1e-5, 1.2e-3, 4.6e-4), PD: (6.5e-4, 2e-3, 3.5e-3)}
+# Measured: 1.4e-5, 8.0e-4 (the end at the top), 3.1e-4; peridynamics 4.3e-4 (at 5 s, then 1.1e-4), 3.3e-3, 2.7e-3 (on the face).
+COOLING = {FEM: (2.1e-5, 1.2e-3, 4.6e-4), PD: (6.5e-4, 4.9e-3, 4.1e-3)}
 
 
 def strip():
@@ -198,8 +196,6 @@ def strip():
     for model in (FEM, PD):
         of_stress, of_temperature = [], []
         for row in run.rows(model, table="line.csv"):
-            if model == PD and not 1 <= row["x"] <= HALF - 1:
-                continue  # cut families
             here = top * (1 - (row["x"] / HALF) ** 2)
             of_temperature.append(abs(row["temperature"] - 20 - here))
             of_stress.append(abs(row["syy"] - YOUNG * EXPANSION * (2 / 3 * top - here)))
@@ -208,8 +204,8 @@ def strip():
     table.show()
 
 
-# Measured: 1.6e-13, 1.8e-3 (the end at the top); peridynamics 1.5e-4, 2.6e-3.
-STRIP = {FEM: (1e-12, 2.7e-3), PD: (2.1e-4, 3.9e-3)}
+# Measured: 1.6e-13, 1.8e-3 (the end at the top); peridynamics 1.5e-4, 7.1e-3 on the side, where families that end there are 0.13 off.
+STRIP = {FEM: (1e-12, 2.7e-3), PD: (2.1e-4, 1.1e-2)}
 
 
 def ranks():
