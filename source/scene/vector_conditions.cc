@@ -7,6 +7,7 @@
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 
@@ -162,26 +163,42 @@ namespace PeriDeal
 
   namespace
   {
-    /** Simpson's rule, halved until two halves agree with the whole. */
+    /** Simpson's rule, halved until two halves agree with the whole to 1e-11 of the largest value given; values that are round-off of larger ones, as 1 - cos(t) near 0, never do: so many at most. */
     template <typename Function>
-    double simpson(const Function    &f,
-                   const double       a,
-                   const double       b,
-                   const double       at_a,
-                   const double       at_middle,
-                   const double       at_b,
-                   const unsigned int left)
+    class Simpson
     {
-      const double middle = 0.5 * (a + b), whole = (b - a) / 6. * (at_a + 4. * at_middle + at_b);
-      const double of_left = f(0.5 * (a + middle)), of_right = f(0.5 * (middle + b));
-      const double halves =
-        (b - a) / 12. * (at_a + 4. * of_left + 2. * at_middle + 4. * of_right + at_b);
-      const double size = (b - a) * std::max({std::abs(at_a), std::abs(at_middle), std::abs(at_b)});
-      if (left == 0 || std::abs(halves - whole) <= 1e-11 * size)
-        return halves + (halves - whole) / 15.;
-      return simpson(f, a, middle, at_a, of_left, at_middle, left - 1) +
-             simpson(f, middle, b, at_middle, of_right, at_b, left - 1);
-    }
+    public:
+      Simpson(const Function &f, const double largest)
+        : f(f)
+        , largest(largest)
+      {}
+
+      double operator()(const double       a,
+                        const double       b,
+                        const double       at_a,
+                        const double       at_middle,
+                        const double       at_b,
+                        const unsigned int left)
+      {
+        const double middle = 0.5 * (a + b), whole = (b - a) / 6. * (at_a + 4. * at_middle + at_b);
+        const double of_left = f(0.5 * (a + middle)), of_right = f(0.5 * (middle + b));
+        const double halves =
+          (b - a) / 12. * (at_a + 4. * of_left + 2. * at_middle + 4. * of_right + at_b);
+        largest = std::max({largest, std::abs(of_left), std::abs(of_right)});
+        n_values += 2;
+        if (left == 0 || n_values > most_values ||
+            std::abs(halves - whole) <= 1e-11 * (b - a) * largest)
+          return halves + (halves - whole) / 15.;
+        return (*this)(a, middle, at_a, of_left, at_middle, left - 1) +
+               (*this)(middle, b, at_middle, of_right, at_b, left - 1);
+      }
+
+    private:
+      static constexpr unsigned int most_values = 1000;
+      const Function               &f;
+      double                        largest;
+      unsigned int                  n_values = 0;
+    };
   } // namespace
 
 
@@ -198,12 +215,18 @@ namespace PeriDeal
     const auto             f    = [&](const double t) { return rate.value(p, t); };
     constexpr unsigned int most = 40, // halvings: enough for a jump
       n_pieces                  = 4;  // so that what lasts shortly is seen
-    double sum                  = 0.;
-    for (unsigned int k = 0; k < n_pieces; ++k)
+    std::array<double, 2 * n_pieces + 1> values;
+    double                               sum = 0., largest = 0.;
+    const auto at = [&](const unsigned int k) { return from + (to - from) * k / (2 * n_pieces); };
+    for (unsigned int k = 0; k < values.size(); ++k)
       {
-        const double a = from + (to - from) * k / n_pieces,
-                     b = from + (to - from) * (k + 1) / n_pieces;
-        sum += simpson(f, a, b, f(a), f(0.5 * (a + b)), f(b), most);
+        values[k] = f(at(k));
+        largest   = std::max(largest, std::abs(values[k]));
+      }
+    for (unsigned int k = 0; k < values.size() - 1; k += 2)
+      {
+        Simpson simpson(f, largest);
+        sum += simpson(at(k), at(k + 2), values[k], values[k + 1], values[k + 2], most);
       }
     return sum;
   }

@@ -26,9 +26,7 @@ namespace PeriDeal
         if (scene.time.steady)
           {
             progress.line("  steady: one linear solve, about 20 iterations");
-            constexpr double of_one =
-              6.; // applications that an iteration with its preconditioner costs
-            computing += 20. * of_one * time_of_application(*model);
+            computing += time_of_run(*model);
             continue;
           }
         const Spectrum spectrum = model->op().spectrum();
@@ -42,8 +40,8 @@ namespace PeriDeal
             << "  stepper: " << model->stepper->name();
         progress.line(out.str());
         const double n    = expected_applications(*model);
-        const double time = n * time_of_application(*model);
-        computing         = n > 0. && computing >= 0. ? computing + time : -1.;
+        const double time = time_of_run(*model);
+        computing         = time >= 0. && computing >= 0. ? computing + time : -1.;
         if (n > 0.)
           progress.line("  estimated: " + readable_count(static_cast<unsigned long long>(n)) +
                         " operator applications, " + readable_duration(time));
@@ -55,8 +53,12 @@ namespace PeriDeal
     std::vector<double> components;
     for (unsigned int k = 0; k < models.size(); ++k)
       components.push_back(components_written(k));
-    for (const std::string &line :
-         describe_costs(scene, computing, mesh->n_global_active_cells(), components, communicator))
+    for (const std::string &line : describe_costs(scene,
+                                                  computing,
+                                                  0.,
+                                                  mesh->n_global_active_cells(),
+                                                  components,
+                                                  communicator))
       progress.line(line);
     progress.line("The scene is valid. Nothing was computed.");
   }
@@ -92,6 +94,29 @@ namespace PeriDeal
 
 
   template <int dim>
+  double Simulation<dim>::time_of_run(const ModelRun<dim> &model) const
+  {
+    // A linear solution takes about 20 iterations, each with its preconditioner 6 applications.
+    constexpr double of_solution = 20. * 6.;
+    const double     n           = scene.time.steady ? of_solution : expected_applications(model);
+    return n > 0. ? n * time_of_application(model) : -1.;
+  }
+
+
+  template <int dim>
+  double Simulation<dim>::time_of_run() const
+  {
+    double time = 0.;
+    for (const auto &model : models)
+      {
+        const double own = time_of_run(*model);
+        time             = own >= 0. && time >= 0. ? time + own : -1.;
+      }
+    return time;
+  }
+
+
+  template <int dim>
   double Simulation<dim>::time_of_application(const ModelRun<dim> &model) const
   {
     Vector x, y;
@@ -112,6 +137,9 @@ namespace PeriDeal
   template void         Simulation<1>::dry_run();
   template void         Simulation<2>::dry_run();
   template void         Simulation<3>::dry_run();
+  template double       Simulation<1>::time_of_run() const;
+  template double       Simulation<2>::time_of_run() const;
+  template double       Simulation<3>::time_of_run() const;
   template unsigned int Simulation<1>::components_written(const unsigned int) const;
   template unsigned int Simulation<2>::components_written(const unsigned int) const;
   template unsigned int Simulation<3>::components_written(const unsigned int) const;

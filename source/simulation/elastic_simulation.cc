@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
+#include <perideal/base/memory.h>
 #include <perideal/base/user_error.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/mesh/material_ids.h>
@@ -24,6 +25,7 @@
 #include "finite_results.h"
 #include "point_readers.h"
 #include "result_record.h"
+#include "scene_sample.h"
 #include "summary_parts.h"
 
 namespace PeriDeal
@@ -334,20 +336,21 @@ namespace PeriDeal
   void ElasticSimulation<dim>::dry_run()
   {
     refuse_what_is_not_computed(scene);
+    const double before = Utilities::MPI::sum(resident_memory(), communicator);
     build();
     if (!scene.elasticity.is_static())
       make_steppers();
     for (const std::string &note : record->notes)
       progress.note(note);
-    describe_costs_of_run();
+    describe_costs_of_run(before);
     progress.line("The scene is valid. Nothing was computed.");
   }
 
 
   template <int dim>
-  void ElasticSimulation<dim>::describe_costs_of_run()
+  void ElasticSimulation<dim>::describe_costs_of_run(const double before)
   {
-    double              computing = 0.;
+    double              computing = heat ? heat->time_of_run() : 0., memory = 0.;
     std::vector<double> components;
     for (const auto &model : models)
       {
@@ -356,10 +359,25 @@ namespace PeriDeal
         components.push_back(0.);
         for (const OutputField &field : model->fields())
           components.back() += field.components.size();
-        computing = model->stepper && computing >= 0. ? computing + time_of_motion(*model) : -1.;
+        const double own = model->stepper ?
+                             time_of_motion(*model) :
+                             time_of_equilibria(scene,
+                                                model->op(),
+                                                components.size() - 1,
+                                                scene.time.steady ?
+                                                  1. :
+                                                  std::max(scene.time.end_time / load_step(),
+                                                           1. * times_of_output().size()),
+                                                communicator,
+                                                memory);
+        computing        = own >= 0. && computing >= 0. ? computing + own : -1.;
       }
-    for (const std::string &line :
-         describe_costs(scene, computing, mesh->n_global_active_cells(), components, communicator))
+    for (const std::string &line : describe_costs(scene,
+                                                  computing,
+                                                  before + memory,
+                                                  mesh->n_global_active_cells(),
+                                                  components,
+                                                  communicator))
       progress.line(line);
   }
 

@@ -199,6 +199,7 @@ namespace PeriDeal
   template <int dim>
   std::vector<std::string> describe_costs(const Scene<dim>          &scene,
                                           const double               computing,
+                                          const double               memory,
                                           const double               cells,
                                           const std::vector<double> &components,
                                           const MPI_Comm             communicator)
@@ -206,15 +207,20 @@ namespace PeriDeal
     const OutputEstimate output =
       estimate_output(scene, cells, components, Utilities::MPI::n_mpi_processes(communicator));
     std::vector<std::string> lines;
+    const bool breaks = scene.material.fracture_energy || scene.material.critical_stretch;
+    const bool more   = breaks && scene.general.physics == Physics::elasticity &&
+                      scene.elasticity.is_static();
     lines.push_back(
       "time: " +
       (computing >= 0. ?
-         "about " + readable_duration(computing + output.time) + " after building, " +
-           readable_duration(output.time) + " of it for output" :
+         (more ? "at least " : "about ") + readable_duration(computing + output.time) +
+           " after building, " + readable_duration(output.time) + " of it for output" +
+           (more ? "; each step in which bonds break takes some more equilibria" : "") :
          "about " + readable_duration(output.time) + " for output, besides the solution"));
     const double resident = Utilities::MPI::sum(resident_memory(), communicator),
                  peak     = Utilities::MPI::sum(peak_memory(), communicator);
-    lines.push_back("memory: about " + readable_bytes(std::max(peak, resident + output.memory)) +
+    lines.push_back("memory: about " +
+                    readable_bytes(std::max({peak, resident + output.memory, memory})) +
                     " at its peak, the program's own included");
     return lines;
   }
@@ -402,6 +408,7 @@ namespace PeriDeal
                                                     const std::vector<double> &,      \
                                                     const unsigned int);              \
   template std::vector<std::string> describe_costs(const Scene<dim> &,                \
+                                                   const double,                      \
                                                    const double,                      \
                                                    const double,                      \
                                                    const std::vector<double> &,       \

@@ -118,6 +118,22 @@ namespace PeriDeal
     }
 
 
+    double time_of_linear_equilibrium(const SolverControlParameters &control,
+                                      ElasticOperator               &op,
+                                      const double                   t)
+    {
+      const Watch solving;
+      Vector      u, r, change;
+      for (Vector *const v : {&u, &r, &change})
+        op.initialize_vector(*v);
+      op.distribute(u, t);
+      op.residual(r, u, t);
+      LinearSolver solver(op, control.tolerance, control.max_iterations, control.direct_up_to);
+      solver.solve(0., 1., change, r);
+      return solving.seconds();
+    }
+
+
     /** Components of the fields of a model of what diffuses, with its difference from the others. */
     template <int dim>
     double components_of(const Simulation<dim> &simulation, const unsigned int model)
@@ -195,18 +211,7 @@ namespace PeriDeal
             model.applications = steps_of_motion(scene, op);
           if (!scene.elasticity.is_static() || scene.elasticity.solver != ElasticSolver::linear)
             continue;
-          const Watch solving;
-          Vector      u, r, change;
-          for (Vector *const v : {&u, &r, &change})
-            op.initialize_vector(*v);
-          op.distribute(u, 0.);
-          op.residual(r, u, 0.);
-          LinearSolver solver(op,
-                              scene.solver.tolerance,
-                              scene.solver.max_iterations,
-                              scene.solver.direct_up_to);
-          solver.solve(0., 1., change, r);
-          model.time_of_solution = solving.seconds();
+          model.time_of_solution = time_of_linear_equilibrium(scene.solver, op, 0.);
         }
     }
   } // namespace
@@ -240,13 +245,59 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  double time_of_equilibria(const Scene<dim>  &scene,
+                            ElasticOperator   &op,
+                            const unsigned int model,
+                            const double       n_steps,
+                            const MPI_Comm     communicator,
+                            double            &memory)
+  {
+    // Larger ones take longer than one likes to wait for a check; where there is no coarse lattice one waits some more.
+    constexpr double few_unknowns = 5e4, many_unknowns = 3e5;
+    // Iterations of other solvers over those of the linear one, where these are alike.
+    constexpr double of_full_kinematics = 3.;
+    if (scene.elasticity.solver == ElasticSolver::dynamic_relaxation ||
+        scene.elasticity.solver == ElasticSolver::adaptive_dynamic_relaxation)
+      return -1.;
+    const double n_unknowns = static_cast<double>(op.size().unknowns);
+    double       first      = 0.;
+    if (n_unknowns > few_unknowns)
+      {
+        const RunEstimate estimate = estimate_run(scene, communicator);
+        first                      = estimate.models[model].time_of_solution;
+        memory                     = std::max(memory, estimate.memory);
+      }
+    if (first <= 0. && n_unknowns <= many_unknowns)
+      first = Utilities::MPI::max(
+        time_of_linear_equilibrium(scene.solver, op, scene.time.steady ? 0. : scene.time.end_time),
+        communicator);
+    if (first <= 0.)
+      return -1.;
+    if (op.nonlinear())
+      first *= of_full_kinematics;
+    // A step whose loads grow in proportion starts from its solution, and looks at every bond.
+    constexpr double applications_of_step = 5.;
+    if (scene.time.steady)
+      return first;
+    const bool alike = !op.nonlinear() && !scene.warms_slowly();
+    return first + n_steps * (alike ? applications_of_step * time_of_application(op) : first);
+  }
+
+
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
   template double number_of<dim>(const std::array<unsigned int, dim> &, const unsigned int);       \
   template std::array<unsigned int, dim> coarse_cells<dim>(const std::array<unsigned int, dim> &,  \
                                                            const double);                          \
   template std::shared_ptr<Scene<dim>>   coarse_scene<dim>(const Scene<dim> &,                     \
                                                          const std::array<unsigned int, dim> &); \
-  template Sample                        take_sample<dim>(const Scene<dim> &, const MPI_Comm);
+  template Sample                        take_sample<dim>(const Scene<dim> &, const MPI_Comm);     \
+  template double                        time_of_equilibria<dim>(const Scene<dim> &,               \
+                                          ElasticOperator &,                \
+                                          const unsigned int,               \
+                                          const double,                     \
+                                          const MPI_Comm,                   \
+                                          double &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -48,7 +48,7 @@ namespace PeriDeal
     nlohmann::ordered_json compute(); // the summary at the end
     void                   build();
     void                   build_heat();
-    void                   describe_costs_of_run();
+    void                   describe_costs_of_run(const double memory_before);
     double                 time_of_motion(ElasticRun<dim> &model); // by its first steps
     void                   warm_until(const double t);
     void                   load();

@@ -39,11 +39,12 @@ namespace PeriDeal
 
   /**
    * The last lines of `perideal check` of a scene that has been built: time and memory of a run. @param computing in seconds, negative if it is not
-   * known. Collective.
+   * known. @param memory that the run needs at least, in bytes. Collective.
    */
   template <int dim>
   std::vector<std::string> describe_costs(const Scene<dim>          &scene,
                                           const double               computing,
+                                          const double               memory,
                                           const double               cells,
                                           const std::vector<double> &components,
                                           const MPI_Comm             communicator);

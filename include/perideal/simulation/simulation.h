@@ -54,6 +54,9 @@ namespace PeriDeal
     /** Of the fields of a model, as many as it writes at a time. Collective. */
     unsigned int components_written(const unsigned int number) const;
 
+    /** Seconds that the models of a run take once they are built, as far as that can be told before; negative if not. Collective. */
+    double time_of_run() const;
+
     /** What the user should know. Not collective. */
     const std::vector<std::string> &notes() const;
 
@@ -85,6 +88,7 @@ namespace PeriDeal
     void                   describe(const ModelRun<dim> &model) const;
     std::vector<double>    output_times() const;
     double                 expected_applications(const ModelRun<dim> &model) const;
+    double                 time_of_run(const ModelRun<dim> &model) const;
     double                 time_of_application(const ModelRun<dim> &model) const;
 
     /** The share of the run that is done when the first n models have got to @p t and the others are where they are now, as far as sizes tell it. Collective. */
