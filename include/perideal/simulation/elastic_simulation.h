@@ -48,6 +48,7 @@ namespace PeriDeal
     nlohmann::ordered_json compute(); // the summary at the end
     void                   build();
     void                   build_heat();
+    void                   make_readers();
     void                   describe_costs_of_run();
     double                 time_of_motion(ElasticRun<dim> &model); // by its first steps
     void                   warm_until(const double t);
