@@ -68,6 +68,8 @@ namespace PeriDeal
     void                   note_steps(const ElasticRun<dim> &model);
     void                   note_energy(const ElasticRun<dim> &model);
     void                   note_inversion(const ElasticRun<dim> &model);
+    void                   tell_first_break(const ElasticRun<dim> &model, const double t);
+    void                   note_torn_sides(const ElasticRun<dim> &model);
     void                   write_output(const double t);
     void                   write_state(const double t);
     void                   write_points(const double t);
