@@ -81,7 +81,7 @@ namespace PeriDeal
       "",
       "",
       "Places for conditions that are no whole sides, several separated by `;`: `name: SIDE if FORMULA`, what of a side the formula (of x, y, z) is true or "
-      "> 0 on; `name: region FORMULA`, the nodes where it is; `name: point X, Y[, Z]`, the node nearest to the point, which may lie outside the body by a cell or a horizon at most. The names stand wherever those of sides "
+      "> 0 on; `name: region FORMULA`, the nodes where it is; `name: point X, Y[, Z]`, the node nearest to the point, which may lie outside the body by a cell at most. The names stand wherever those of sides "
       "do. `Flux` and `Traction` act on the area of a part of a side; on a region or a point they are the total power or force (in 2D per thickness), shared by its nodes in "
       "proportion to their volume.");
     declare(

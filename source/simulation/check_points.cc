@@ -114,10 +114,6 @@ namespace PeriDeal
                              std::vector<std::string> &notes)
   {
     constexpr double negligible = 1e-3; // of a cell: that of roundings and of polygons for circles
-    const auto      &models     = scene.general.models;
-    const bool       has_bonds  = std::any_of(models.begin(), models.end(), [](const Model model) {
-      return model != Model::finite_elements;
-    });
     for (const Part &part : scene.boundary_conditions.parts)
       {
         if (part.kind != Part::point)
@@ -130,7 +126,7 @@ namespace PeriDeal
                                   part.name + "': the point " + text_of(p) +
                                   " lies outside the body, " + number_text(near.distance) +
                                   " from the nearest corner of a cell, " + text_of(near.vertex);
-        if (near.distance > std::max(near.diameter, has_bonds ? scene.horizon() : 0.))
+        if (near.distance > near.diameter)
           AssertThrow(
             false,
             UserError(

@@ -27,7 +27,7 @@ namespace PeriDeal
   void check_sides(const Scene<dim> &scene, const dealii::Triangulation<dim> &mesh);
 
   /**
-   * Throws UserError for a point of `Parts` that lies farther outside the body than a cell (with peridynamics, than a horizon if that is more), and appends a note for one that is outside, but
+   * Throws UserError for a point of `Parts` that lies farther outside the body than the cell next to it is large, and appends a note for one that is outside, but
    * nearer. Collective.
    */
   template <int dim>

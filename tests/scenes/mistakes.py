@@ -358,7 +358,7 @@ def scene_mistakes(folder):
         ("probe in the hole, cell centres", {"Domain/Shape": "plate with hole", "Domain/Nodes": "cell centers"}, ["'Probes'", "(0.5, 0.5)"]),
         ("crack not on faces", {"Cracks/Mesh": "faces", "Cracks/Segments": "0.25,0.51 ; 0.75,0.51"},
          ["'Mesh = faces'", "'Cracks'", "'Mesh = pairs'"]),
-        ("hole that leaves nothing", {"Domain/Shape": "plate with hole", "Domain/Hole radius": "3"}, ["'Hole radius'"]),
+        ("hole that leaves nothing", {"Domain/Shape": "plate with hole", "Domain/Hole radius": "3", "Output/Probes": ""}, ["'Hole radius'"]),
         ("probe in the hole", {"Domain/Shape": "plate with hole"}, ["'Probes'", "(0.5, 0.5)"]),
         ("line in the hole", {"Domain/Shape": "plate with hole", "Output/Probes": "", "Output/Line": "0.4,0.5 ; 0.6,0.5 ; 9"},
          ["'Line'", "none of its points"]),
