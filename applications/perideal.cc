@@ -35,6 +35,8 @@ namespace
     for (const std::string &line :
          describe_estimate(estimate_run(scene, communicator), communicator))
       progress.line(line);
+    for (const std::string &note : scene.domain.notes)
+      progress.note(note);
     progress.line("The entries of the scene are valid. Nothing was computed.");
   }
 

@@ -37,7 +37,7 @@ def largest_values(run, index, field, when=""):
         return None
     listed = " and ".join(f"{field.amount(value)} at {place(point)} ({m})"
                           for m, (value, point) in found.items())
-    inside = any(m in found and made_by_surfaces(run, m, field, run.mesh(index, m).nodes).any()
+    inside = any(m in found and made_by_surfaces(run, m, field, run.mesh(index, m)).any()
                  for m in run.models)
     comma = "" if when else ","
     where = f"{comma} of peridynamics more than a horizon inside," if inside else ""

@@ -10,6 +10,7 @@ import fragments
 import loading
 from curves import probe_name, probe_points
 from style import minus, name
+from surfaces import near_surface
 from tables import cell, entry, table
 from words import with_unit
 
@@ -114,18 +115,20 @@ def place(point):
     return probe_name(np.where(np.abs(point) < 1e-12, 0.0, point))
 
 
-def made_by_surfaces(run, model, field, nodes):
-    """Nodes whose stress a surface alone may make: within a horizon of the sides of the body, where
-    families of peridynamics end there."""
+def made_by_surfaces(run, model, field, mesh):
+    """Nodes whose stress a surface alone may make: within a horizon of the surface of the body, its
+    sides, planes of symmetry and holes, where families of peridynamics end there. None if that is the whole body."""
+    none = np.zeros(len(mesh.nodes), dtype=bool)
     if model != PD or not field.name.startswith(("stress", "von_mises")):
-        return np.zeros(len(nodes), dtype=bool)
+        return none
     settings = run.get("models", PD, "settings", default={})
     correction = settings.get("surface correction", "")
     if correction and not correction.startswith(("none", "auto: none")):
-        return np.zeros(len(nodes), dtype=bool)
-    horizon = float(settings.get("horizon", 0))
-    low, high = nodes.min(0), nodes.max(0)
-    return ((nodes < low + horizon) | (nodes > high - horizon))[:, high > low].any(axis=1)
+        return none
+    key = ("near surface", id(mesh))
+    if key not in run.found:
+        run.found[key] = near_surface(mesh, float(settings.get("horizon", 0)))
+    return none if run.found[key].all() else run.found[key]
 
 
 def extreme(run, index, model, field, which, with_surfaces=True, of_body=False):
@@ -141,7 +144,7 @@ def extreme(run, index, model, field, which, with_surfaces=True, of_body=False):
         return None
     mesh = run.mesh(index, model)
     if not with_surfaces:
-        inner = np.where(made_by_surfaces(run, model, field, mesh.nodes), np.nan, values)
+        inner = np.where(made_by_surfaces(run, model, field, mesh), np.nan, values)
         values = inner if np.isfinite(inner).any() else values
     at = int((np.nanargmax if which == "largest" else np.nanargmin)(values))
     point = mesh.nodes[at]

@@ -77,7 +77,8 @@ namespace PeriDeal
                                       const Nodes<dim>                       *nodes,
                                       const Cracks<dim>                      &cracks,
                                       const std::vector<std::vector<double>> &coordinates,
-                                      const std::string                      &entry)
+                                      const std::string                      &entry,
+                                      const Outside                           outside)
     : communicator(dofs.get_communicator())
     , n_points(static_cast<unsigned int>(coordinates.size()))
     , n_slots(1u << dim)
@@ -103,7 +104,7 @@ namespace PeriDeal
       locate_nearest(dofs, *nodes, points);
     else
       locate_in_mesh(dofs, points);
-    require_all_found(coordinates, entry);
+    find_gaps(coordinates, entry, outside);
   }
 
 
@@ -278,23 +279,38 @@ namespace PeriDeal
 
 
   template <int dim>
-  void PointEvaluator<dim>::require_all_found(const std::vector<std::vector<double>> &points,
-                                              const std::string                      &entry) const
+  void PointEvaluator<dim>::find_gaps(const std::vector<std::vector<double>> &points,
+                                      const std::string                      &entry,
+                                      const Outside                           outside)
   {
     std::vector<double> weights(n_points, 0.), sums(n_points);
     for (const Part &part : parts)
       weights[part.slot / n_slots] += part.weight;
     Utilities::MPI::sum(weights, communicator, sums);
     for (unsigned int k = 0; k < n_points; ++k)
-      if (std::abs(sums[k] - 1.) > 1e-6)
-        {
-          std::ostringstream message;
-          message << "'" << entry << "' in section 'Output': the point (";
-          for (std::size_t d = 0; d < points[k].size(); ++d)
-            message << (d > 0 ? ", " : "") << points[k][d];
-          message << ") is not in the body.";
-          AssertThrow(false, UserError(message.str()));
-        }
+      gaps.push_back(std::abs(sums[k] - 1.) > 1e-6);
+    const auto         first = std::find(gaps.begin(), gaps.end(), true);
+    const bool         any   = std::find(gaps.begin(), gaps.end(), false) != gaps.end();
+    std::ostringstream message;
+    message << "'" << entry << "' in section 'Output': ";
+    if (outside == Outside::leave_gaps)
+      {
+        AssertThrow(n_points == 0 || any,
+                    UserError(message.str() + "none of its points is in the body."));
+        parts.erase(std::remove_if(parts.begin(),
+                                   parts.end(),
+                                   [&](const Part &part) { return gaps[part.slot / n_slots]; }),
+                    parts.end());
+        return;
+      }
+    if (first == gaps.end())
+      return;
+    message << "the point (";
+    const std::vector<double> &point = points[first - gaps.begin()];
+    for (std::size_t d = 0; d < point.size(); ++d)
+      message << (d > 0 ? ", " : "") << point[d];
+    message << ") is not in the body. Move it into the body, or leave it out.";
+    AssertThrow(false, UserError(message.str()));
   }
 
 
@@ -313,6 +329,9 @@ namespace PeriDeal
     for (unsigned int k = 0; k < n_points; ++k)
       for (unsigned int v = 0; v < n_slots; ++v)
         values[k] += all[k * n_slots + v];
+    for (unsigned int k = 0; k < n_points; ++k)
+      if (gaps[k])
+        values[k] = std::numeric_limits<double>::quiet_NaN();
     return values;
   }
 

@@ -198,6 +198,7 @@ namespace PeriDeal
     unsigned long long n_ends = breaking.size() + breaking_images.size();
     if (Utilities::MPI::sum(n_ends, all) == 0)
       return 0;
+    keep_places();
     const double before = energy(u);
     for (const auto &[k, ratio] : breaking)
       {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 
 namespace PeriDeal
@@ -26,6 +27,8 @@ namespace PeriDeal
 
   std::string full_precision(const double x)
   {
+    if (std::isnan(x))
+      return "nan"; // whatever its sign
     char text[40];
     std::snprintf(text, sizeof text, "%.15g", x);
     return text;

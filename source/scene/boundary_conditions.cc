@@ -81,7 +81,7 @@ namespace PeriDeal
       "",
       "",
       "Places for conditions that are no whole sides, several separated by `;`: `name: SIDE if FORMULA`, what of a side the formula (of x, y, z) is true or "
-      "> 0 on; `name: region FORMULA`, the nodes where it is; `name: point X, Y[, Z]`, the node nearest to the point. The names stand wherever those of sides "
+      "> 0 on; `name: region FORMULA`, the nodes where it is; `name: point X, Y[, Z]`, the node nearest to the point, which may lie outside the body by a cell at most. The names stand wherever those of sides "
       "do. `Flux` and `Traction` act on the area of a part of a side; on a region or a point they are the total power or force (in 2D per thickness), shared by its nodes in "
       "proportion to their volume.");
     declare(
@@ -106,13 +106,14 @@ namespace PeriDeal
       "`side: coefficient, ambient temperature`, several separated by `;`: the flux "
       "coefficient x (ambient - T) enters. The coefficient may depend on x, y, z, the ambient temperature on t, too. "
       "Adds to a Flux on the same side.");
-    declare("Symmetry",
-            EntryType::list,
-            "",
-            "",
-            "Sides that are symmetry planes, separated by `;` or `,`. Fictitious nodes beyond them "
-            "mirror the "
-            "temperature. With elasticity such a side has no displacement normal to itself.");
+    declare(
+      "Symmetry",
+      EntryType::list,
+      "",
+      "",
+      "Sides that are symmetry planes, separated by `;` or `,`. Fictitious nodes beyond them "
+      "mirror the "
+      "temperature; on meshes from files leave it out for heat, where a side named nowhere is insulated. With elasticity such a side has no displacement normal to itself.");
     declare(
       "Displacement",
       EntryType::list,

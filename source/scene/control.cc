@@ -157,11 +157,12 @@ namespace PeriDeal
             "",
             "length",
             "Points whose values go to probes.csv, separated by `;`.");
-    declare("Line",
-            EntryType::list,
-            "",
-            "length, length, 1",
-            "`start ; end ; number of points`: evenly spaced points whose values go to line.csv.");
+    declare(
+      "Line",
+      EntryType::list,
+      "",
+      "length, length, 1",
+      "`start ; end ; number of points`: evenly spaced points whose values go to line.csv; those that lie in holes or otherwise outside the body are gaps (nan).");
     declare(
       "Grid",
       EntryType::list,

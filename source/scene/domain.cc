@@ -194,7 +194,7 @@ namespace PeriDeal
         if (pieces.size() != dim)
           error("Cells",
                 "needs " + std::to_string(dim) + " numbers, found " +
-                  std::to_string(pieces.size()) + ".");
+                  std::to_string(pieces.size()) + "." + hint_at_commas(text("Cells"), dim));
         for (unsigned int d = 0; d < dim; ++d)
           {
             cells[d] = parse_whole_number(pieces[d], where("Cells"), 1000000000u);

@@ -30,6 +30,10 @@ namespace PeriDeal
     if (peridynamics.surface_correction != SurfaceCorrection::crack_scaling)
       problem->peridynamics.set("Surface correction", "none");
     problem->peridynamics.set("Operator form", "auto"); // that of elastic bonds is meant
+    // Where no lattice mirrors its nodes in it, a plane of symmetry is an insulated side.
+    if (domain.shape == Shape::mesh_file ||
+        (cracks.mesh == CrackMesh::faces && !cracks.cracks.empty()))
+      problem->boundary_conditions.set("Symmetry", "");
     // Both share the mesh.
     problem->cracks.set("Mesh", cracks.mesh == CrackMesh::faces ? "faces" : "removed");
     problem->cracks.set("Nodes on cracks", "left");

@@ -3,6 +3,7 @@
 
 #include <perideal/scene/lists.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iomanip>
@@ -65,6 +66,23 @@ namespace PeriDeal
   }
 
 
+  std::string hint_at_commas(const std::string &text, const unsigned int n)
+  {
+    std::string words = text;
+    std::replace_if(
+      words.begin(),
+      words.end(),
+      [](const char c) { return c == ',' || c == ';'; },
+      ' ');
+    std::istringstream in(words);
+    std::string        with_commas;
+    unsigned int       n_words = 0;
+    for (std::string word; in >> word; ++n_words)
+      with_commas += (with_commas.empty() ? "" : ", ") + word;
+    return n_words == n ? " Commas separate them: " + with_commas : "";
+  }
+
+
   double parse_number(const std::string &text, const std::string &where)
   {
     const std::string word  = trimmed(text);
@@ -102,7 +120,7 @@ namespace PeriDeal
     if (pieces.size() != n)
       entry_error(where,
                   "'" + trimmed(text) + "' needs " + std::to_string(n) + " " + what + ", found " +
-                    std::to_string(pieces.size()) + ".");
+                    std::to_string(pieces.size()) + "." + hint_at_commas(text, n));
     std::vector<double> values;
     for (const std::string &piece : pieces)
       values.push_back(parse_number(piece, where));

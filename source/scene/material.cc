@@ -21,7 +21,7 @@ namespace PeriDeal
       EntryType::formula,
       "1",
       "mass/length^3",
-      "Ignored when steady, and by elasticity unless its solver is `dynamics`; may be 0 then.");
+      "Ignored when steady, and by elasticity unless its solver is `dynamics`; may be 0 then. A motion with the default is told in a note; `1.0` says that 1 is meant.");
     declare(
       "Heat capacity",
       EntryType::formula,

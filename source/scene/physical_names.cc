@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/text_file.h>
+#include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/physical_names.h>
 
@@ -41,16 +42,26 @@ namespace PeriDeal
                                                                 const unsigned int dim,
                                                                 const MPI_Comm     communicator)
   {
-    std::string text;
+    std::string text, message;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      for (const std::filesystem::path &path :
-           {std::filesystem::path(file_name), std::filesystem::path(folder) / file_name})
-        if (std::error_code fault; std::filesystem::is_regular_file(path, fault))
+      {
+        bool found = false;
+        for (const std::filesystem::path &path :
+             {std::filesystem::path(file_name), std::filesystem::path(folder) / file_name})
+          if (std::error_code fault; !found && std::filesystem::is_regular_file(path, fault))
+            {
+              std::ifstream file(path);
+              text  = names_section(file);
+              found = true;
+            }
+        if (!found)
           {
-            std::ifstream file(path);
-            text = names_section(file);
-            break;
+            read_file(file_name, most_bytes_of_data, message);
+            message = "'Mesh file' in section 'Domain': '" + file_name + "' " + message +
+                      places_looked_at(file_name, folder);
           }
+      }
+    throw_on_all_if_any(communicator, message);
     share_text(text, communicator);
 
     std::map<std::string, types::boundary_id> names;

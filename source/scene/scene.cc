@@ -4,8 +4,10 @@
 #include <perideal/scene/lists.h>
 #include <perideal/scene/physical_names.h>
 #include <perideal/scene/scene.h>
+#include <perideal/scene/scene_notes.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace PeriDeal
 {
@@ -106,6 +108,12 @@ namespace PeriDeal
               "'exact'" + needs_lattice);
       require(pd.self_term != SelfTerm::paper, "Self term", "'paper'" + needs_lattice);
       require(pd.form != OperatorForm::lattice, "Operator form", "'lattice'" + needs_lattice);
+      if (scene.general.physics != Physics::elasticity &&
+          !scene.boundary_conditions.symmetry.empty())
+        entry_error(
+          scene.boundary_conditions.where("Symmetry"),
+          "mirrors peridynamics in the sides of a box; this body is from a mesh file. Leave the entry out: "
+          "a side that is named nowhere is insulated, which is what a plane of symmetry is.");
       require(pd.horizon > 0.,
               "Horizon",
               "is empty; a mesh file has no node spacing that 'Horizon ratio' could refer to: give "
@@ -134,7 +142,11 @@ namespace PeriDeal
         entry_error(
           scene.peridynamics.where(scene.peridynamics.horizon > 0. ? "Horizon" : "Horizon ratio"),
           "the horizon, " + number_text(horizon) + ", is longer than the body, " +
-            number_text(longest) + ". Choose a shorter one, or more 'Cells' in section 'Domain'.");
+            number_text(longest) + ". " +
+            (scene.peridynamics.horizon > 0. ?
+               "Choose a shorter one: three spacings of the nodes are " +
+                 number_text(3. * *std::max_element(h.begin_raw(), h.end_raw())) + "." :
+               "Choose a smaller one, or more 'Cells' in section 'Domain'."));
     }
 
 
@@ -164,6 +176,13 @@ namespace PeriDeal
                   "' is named in 'Flux', too, and with 'Flux treatment' in section 'Peridynamics' = extrapolation its values "
                   "follow from the flux alone. Use 'natural' to have both.");
         }
+      if (scene.general.physics != Physics::elasticity && !bc.symmetry.empty() &&
+          scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty() &&
+          (runs(scene, Model::peridynamics) || runs(scene, Model::coupled)))
+        entry_error(
+          bc.where("Symmetry"),
+          "is not for cracks with 'Mesh = faces' in section 'Cracks', where two nodes are at one place. Use 'Mesh = pairs', or leave the entry out: a side that is named nowhere "
+          "is insulated.");
       if (scene.domain.shape == Shape::mesh_file && !(scene.peridynamics.horizon > 0.) &&
           scene.cracks.conduct() && scene.cracks.contact_conductance < 0.)
         entry_error(
@@ -214,6 +233,29 @@ namespace PeriDeal
     }
 
 
+    /** Whether a place of a box is in a cell that no hole has taken; of cells that meet there, in any. */
+    template <int dim>
+    bool is_in_some_cell(const Domain<dim> &domain, const Point<dim> &p)
+    {
+      constexpr double     slack = 1e-6;
+      const Tensor<1, dim> h     = domain.spacing();
+      for (unsigned int k = 0; k < (1u << dim); ++k)
+        {
+          Point<dim> middle;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double s = (p[d] - domain.lower[d]) / h[d] + ((k >> d) & 1 ? slack : -slack);
+              middle[d]      = domain.lower[d] +
+                          h[d] * (0.5 + std::clamp(std::floor(s), 0., domain.cells[d] - 1.));
+            }
+          if (!domain.in_hole(middle))
+            return true;
+        }
+      return false;
+    }
+
+
+    /** What the body shows of its places without its mesh. Those of a line may lie in holes. */
     template <int dim>
     void check_points_of_output(const Scene<dim> &scene)
     {
@@ -230,6 +272,10 @@ namespace PeriDeal
         if (!scene.domain.contains(p))
           entry_error(scene.output.where(entry),
                       "the point (" + coordinates + ") lies outside the body.");
+        if (entry == "Probes" && !is_in_some_cell(scene.domain, p))
+          entry_error(scene.output.where(entry),
+                      "the point (" + coordinates +
+                        ") lies in a hole. Move it into the body, or leave it out.");
       };
       for (const std::vector<double> &probe : scene.output.probes)
         check(probe, "Probes");
@@ -372,6 +418,7 @@ namespace PeriDeal
     crack_history(); // for its errors
     check_image();
     check_points_of_output(*this);
+    note_doubtful_entries(*this);
   }
 
 

@@ -7,6 +7,9 @@
 
 #include <perideal/scene/scene.h>
 
+#include <string>
+#include <vector>
+
 namespace PeriDeal
 {
   /**
@@ -22,4 +25,13 @@ namespace PeriDeal
    */
   template <int dim>
   void check_sides(const Scene<dim> &scene, const dealii::Triangulation<dim> &mesh);
+
+  /**
+   * Throws UserError for a point of `Parts` that lies farther outside the body than the cell next to it is large, and appends a note for one that is outside, but
+   * nearer. Collective.
+   */
+  template <int dim>
+  void check_points_of_parts(const Scene<dim>                 &scene,
+                             const dealii::Triangulation<dim> &mesh,
+                             std::vector<std::string>         &notes);
 } // namespace PeriDeal

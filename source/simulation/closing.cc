@@ -114,6 +114,17 @@ namespace PeriDeal
     }
 
 
+    /** ` at (0.1, 0.2)`, where the first bond broke; nothing if that is not known. */
+    std::string at_place(const json &model)
+    {
+      std::string text;
+      if (model.contains("first broken bond"))
+        for (const json &x : model["first broken bond"])
+          text += (text.empty() ? "" : ", ") + digits(x);
+      return text.empty() ? text : " at (" + text + ")";
+    }
+
+
     void add_breaking(std::vector<std::string> &lines, const json &summary)
     {
       const bool steady = summary.value("steady", false);
@@ -133,7 +144,7 @@ namespace PeriDeal
           return std::string("none");
         return readable_count(static_cast<unsigned long long>(n)) + ", the first " +
                (summary["solver"] == "dynamics" ? "by " : "at ") +
-               at_time(model.value("first broken bonds", 0.), summary);
+               at_time(model.value("first broken bonds", 0.), summary) + at_place(model);
       });
     }
 

@@ -15,8 +15,9 @@ namespace PeriDeal
   void Simulation<dim>::dry_run()
   {
     build();
-    make_steppers();
     make_readers();
+    note_gaps();
+    make_steppers();
     double computing = 0.; // in seconds, negative if it is not known
     for (const auto &model : models)
       {

@@ -9,6 +9,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/operators/elastic_elements.h>
 
+#include <limits>
 #include <optional>
 
 #include "elastic_fields.h"
@@ -100,11 +101,20 @@ namespace PeriDeal
         if (const Vector change(elements->temperature_change()); change.size() > 0)
           changes = reader.evaluate(change);
         else
-          for (const Point<dim> &p : reader.inner_points())
-            changes.push_back(scene.elasticity.temperature_change.value(p));
+          for (unsigned int k = 0; k < points.size(); ++k)
+            changes.push_back(reader.is_gap(k) ? 0. :
+                                                 scene.elasticity.temperature_change.value(
+                                                   reader.inner_points()[k]));
         std::vector<double> rows;
         for (std::size_t k = 0; k < points.size(); ++k)
           {
+            if (reader.is_gap(k)) // where the material may have no moduli
+              {
+                rows.insert(rows.end(),
+                            elastic_columns(scene).size(),
+                            std::numeric_limits<double>::quiet_NaN());
+                continue;
+              }
             Tensor<2, dim> gradient;
             double         values[dim];
             for (unsigned int d = 0; d < dim; ++d)

@@ -32,6 +32,7 @@ namespace PeriDeal
       options);
     model.loading->begin(model.displacement, 0.);
     model.n_iterations = model.loading->n_iterations();
+    tell_first_break(model, 0.);
   }
 
 
@@ -51,7 +52,10 @@ namespace PeriDeal
       {
         write_output(0.);
         for (const auto &model : models)
-          note_inversion(*model);
+          {
+            note_inversion(*model);
+            note_torn_sides(*model);
+          }
         return;
       }
     progress.begin("time");
@@ -77,6 +81,7 @@ namespace PeriDeal
         if (!scene.warms_slowly()) // what warming does to the strain energy is not followed
           note_energy(*model);
         note_inversion(*model);
+        note_torn_sides(*model);
       }
   }
 
@@ -136,6 +141,7 @@ namespace PeriDeal
             Timings::Scope scope(model->timings, "solving");
             model->loading->step(model->displacement, to);
             model->n_iterations = model->loading->n_iterations();
+            tell_first_break(*model, to);
           }
         Timings::Scope scope(timings, "output");
         for (const auto &model : models)

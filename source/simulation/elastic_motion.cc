@@ -118,7 +118,10 @@ namespace PeriDeal
                   model.stepper->advance(model.displacement, model.velocity, from, to);
                   from = to;
                   if (model.op().brittle())
-                    tell_broken_bonds(model.op().n_broken_bonds());
+                    {
+                      tell_broken_bonds(model.op().n_broken_bonds());
+                      tell_first_break(model, to);
+                    }
                   progress.update(share(static_cast<double>(part) / n_parts));
                 }
             }
@@ -133,6 +136,7 @@ namespace PeriDeal
         note_steps(*model);
         note_energy(*model);
         note_inversion(*model);
+        note_torn_sides(*model);
       }
   }
 

@@ -122,6 +122,7 @@ namespace PeriDeal
       set_material_ids(*mesh, scene.material.phases.all());
     }
     check_sides(scene, *mesh);
+    check_points_of_parts(scene, *mesh, record->notes);
     note_own_poisson_ratio(scene, *mesh, record->notes);
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
     for (const Model kind : scene.general.models)
@@ -142,30 +143,38 @@ namespace PeriDeal
           progress.line(certificate_line(*certificate));
       }
     build_heat();
+    make_readers();
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::make_readers()
+  {
+    Timings::Scope scope(timings, "output");
+    probe_readers = make_point_readers<dim>(models, scene.cracks, scene.output.probes, "Probes");
+    line_readers  = make_point_readers<dim>(models, scene.cracks, scene.output.line, "Line");
+    for (const std::string &note : gaps_in_line<dim>(line_readers, scene.output.line))
+      record->notes.push_back(note);
   }
 
 
   template <int dim>
   void ElasticSimulation<dim>::write_points(const double t)
   {
-    const auto add = [&](const std::vector<std::vector<double>>            &points,
-                         const std::string                                 &entry,
-                         const std::string                                 &file,
-                         std::vector<std::unique_ptr<PointEvaluator<dim>>> &readers,
-                         std::unique_ptr<PointTable>                       &table) {
+    const auto add = [&](const std::vector<std::vector<double>> &points,
+                         const std::string                      &file,
+                         const PointReaders<dim>                &readers,
+                         std::unique_ptr<PointTable>            &table) {
       if (points.empty())
         return;
       if (!table)
-        {
-          readers = make_point_readers<dim>(models, scene.cracks, points, entry);
-          table =
-            std::make_unique<PointTable>(files->folder, file, points, dim, elastic_columns(scene));
-        }
+        table =
+          std::make_unique<PointTable>(files->folder, file, points, dim, elastic_columns(scene));
       for (unsigned int k = 0; k < readers.size(); ++k)
         table->add(t, models[k]->name(), models[k]->at_points(*readers[k], points));
     };
-    add(scene.output.probes, "Probes", "probes.csv", probe_readers, probes);
-    add(scene.output.line, "Line", "line.csv", line_readers, line);
+    add(scene.output.probes, "probes.csv", probe_readers, probes);
+    add(scene.output.line, "line.csv", line_readers, line);
   }
 
 

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -97,6 +98,7 @@ namespace PeriDeal
       mesh = build_mesh(scene, communicator, record->notes);
       set_material_ids(*mesh, scene.material.phases.all());
     }
+    check_points_of_parts(scene, *mesh, record->notes);
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
   }
 
@@ -236,6 +238,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Simulation<dim>::note_gaps()
+  {
+    for (const std::string &note : gaps_in_line<dim>(line_readers, scene.output.line))
+      record->notes.push_back(note);
+  }
+
+
+  template <int dim>
   void Simulation<dim>::make_tables()
   {
     const auto make = [&](const std::vector<std::vector<double>> &points, const std::string &name) {
@@ -274,10 +284,14 @@ namespace PeriDeal
   nlohmann::ordered_json Simulation<dim>::compute()
   {
     build();
-    make_steppers();
     {
       Timings::Scope scope(timings, "output");
       make_readers();
+      note_gaps();
+    }
+    make_steppers();
+    {
+      Timings::Scope scope(timings, "output");
       make_tables();
       make_writers();
     }
@@ -364,8 +378,9 @@ namespace PeriDeal
         if (exact && !points.empty())
           {
             std::vector<double> values;
-            for (const auto &point : points)
-              values.push_back(exact->value(point.data(), t));
+            for (unsigned int k = 0; k < points.size(); ++k)
+              values.push_back(readers[0]->is_gap(k) ? std::numeric_limits<double>::quiet_NaN() :
+                                                       exact->value(points[k].data(), t));
             table->add(t, "exact", values);
           }
       };
@@ -474,6 +489,7 @@ namespace PeriDeal
   template const ModelRun<dim>            &Simulation<dim>::model(const unsigned int) const; \
   template const std::vector<std::string> &Simulation<dim>::notes() const;                   \
   template void                            Simulation<dim>::make_readers();                  \
+  template void                            Simulation<dim>::note_gaps();                     \
   template std::vector<double>             Simulation<dim>::output_times() const;            \
   template void                            Simulation<dim>::run();
   PERIDEAL_INSTANTIATE(1)

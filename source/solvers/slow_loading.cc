@@ -16,6 +16,27 @@ namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** `, the first at (0, 1), beside the side 'top', which is loaded: ...`. */
+    std::string where_bonds_broke(const BreakPlaces &places)
+    {
+      if (places.first.empty())
+        return "";
+      std::ostringstream text;
+      text << ", the first at (";
+      for (std::size_t d = 0; d < places.first.size(); ++d)
+        text << (d > 0 ? ", " : "") << places.first[d];
+      text << ")";
+      if (!places.beside_loads.empty())
+        text
+          << ", beside the loaded side '" << places.beside_loads.begin()->first
+          << "': 'Traction layer' in section 'Boundary conditions' spreads what acts on it over a depth";
+      return text.str();
+    }
+  } // namespace
+
+
   SlowLoading::SlowLoading(ElasticOperator              &op,
                            std::unique_ptr<StaticSolver> solver,
                            const StaticOptions          &options)
@@ -46,7 +67,7 @@ namespace PeriDeal
         std::ostringstream message;
         message
           << "No equilibrium was found at t = " << t << ", after " << n_broken
-          << " bonds had broken. "
+          << " bonds had broken" << where_bonds_broke(op.break_places()) << ". "
           << (loaded ?
                 "Nothing may bear the loads any more: pull by 'Displacement' in section 'Boundary conditions' in place of 'Traction', or use 'Solver = dynamics' in section 'Elasticity'. " :
                 "Try a smaller 'Time step' in section 'Time', or another 'Solver' or 'Preconditioner' in section 'Elasticity'. ")

@@ -357,7 +357,7 @@ end
 
     // sides of a mesh file lie anywhere
     const Overrides mesh    = {"Domain/Shape=mesh file",
-                               "Domain/Mesh file=a.msh",
+                               "Domain/Mesh file=" PERIDEAL_SOURCE_DIR "/tests/data/quads.msh",
                                "Peridynamics/Horizon=0.1"};
     const auto      on_mesh = [&](const std::string &grips, const std::string &symmetry = "") {
       Overrides overrides = mesh;

@@ -211,9 +211,9 @@ namespace PeriDeal
 
   TEST(Scenes, peridynamics_errors)
   {
-    const std::string s = "Peridynamics",
-                      mesh =
-                        "subsection Domain\nset Shape = mesh file\nset Mesh file = a.msh\nend\n";
+    const std::string s    = "Peridynamics",
+                      mesh = "subsection Domain\nset Shape = mesh file\nset Mesh file = " +
+                             std::string(PERIDEAL_SOURCE_DIR) + "/tests/data/quads.msh\nend\n";
     const auto on_mesh = [&](const std::string &entry, const std::string &value) {
       return fault(mesh + "subsection Peridynamics\nset Horizon = 0.1\nset " + entry + " = " +
                    value + "\nend\n");
@@ -294,9 +294,10 @@ namespace PeriDeal
 
   TEST(Scenes, storage_is_needed_only_where_something_changes)
   {
-    const std::string m = "Material", steady = "subsection Time\nset Steady = true\nend\n"
-                                               "subsection Boundary conditions\nset Dirichlet = left: 0\nend\n";
-    const auto with = [&](const std::string &head, const std::string &entry) {
+    const std::string m      = "Material",
+                      steady = "subsection Time\nset Steady = true\nend\n"
+                               "subsection Boundary conditions\nset Dirichlet = left: 0\nend\n";
+    const auto with          = [&](const std::string &head, const std::string &entry) {
       return fault(head + "subsection Material\nset " + entry + "\nend\n");
     };
     for (const std::string physics : {"heat", "moisture", "electricity"})

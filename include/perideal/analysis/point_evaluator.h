@@ -21,15 +21,23 @@ namespace PeriDeal
   class PointEvaluator
   {
   public:
+    /** What becomes of points outside the body. */
+    enum class Outside
+    {
+      refuse,
+      leave_gaps // their values are NaN; one point at least has to be in the body
+    };
+
     /**
      * @param nodes the lattice the dofs lie on, or nullptr to look points up in the mesh (finite elements, mesh files).
-     * Throws UserError naming @p entry for points outside the body. Collective.
+     * Throws UserError naming @p entry for points outside the body, where they are refused, or if all are. Collective.
      */
     PointEvaluator(const dealii::DoFHandler<dim>          &dofs,
                    const Nodes<dim>                       *nodes,
                    const Cracks<dim>                      &cracks,
                    const std::vector<std::vector<double>> &points,
-                   const std::string                      &entry);
+                   const std::string                      &entry,
+                   const Outside                           outside = Outside::refuse);
 
     /** One value per point, on all processes, of a component of a vector with several at each node, interleaved. Needs no ghosts. Collective. */
     std::vector<double> evaluate(const Vector      &u,
@@ -40,6 +48,12 @@ namespace PeriDeal
     std::vector<dealii::Tensor<1, dim>> gradients(const Vector      &u,
                                                   const unsigned int n_components = 1,
                                                   const unsigned int component    = 0) const;
+
+    /** Whether a point lies outside the body, so that it has no value. The same on all processes. */
+    bool is_gap(const unsigned int point) const
+    {
+      return gaps[point];
+    }
 
     /** The points; those that were looked up in the mesh moved a little towards the middle of the cell, in whose material they are. */
     const std::vector<dealii::Point<dim>> &inner_points() const;
@@ -67,12 +81,14 @@ namespace PeriDeal
     void locate_nearest(const dealii::DoFHandler<dim>         &dofs,
                         const Nodes<dim>                      &nodes,
                         const std::vector<dealii::Point<dim>> &points);
-    void require_all_found(const std::vector<std::vector<double>> &points,
-                           const std::string                      &entry) const;
+    void find_gaps(const std::vector<std::vector<double>> &points,
+                   const std::string                      &entry,
+                   const Outside                           outside);
 
     MPI_Comm          communicator;
     unsigned int      n_points, n_slots;
     std::vector<Part> parts;
+    std::vector<bool> gaps;
 
     std::vector<dealii::Point<dim>> inner;
   };

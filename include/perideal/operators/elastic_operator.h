@@ -34,6 +34,17 @@ namespace PeriDeal
   };
 
 
+  /** Where the first bonds of a body broke. */
+  struct BreakPlaces
+  {
+    std::vector<double>
+      first; // the middle of the bond that was stretched most of all that broke first; empty: none has broken
+    /** How many bonds within a horizon of a side or part in `Traction` broke, by its name, before any did elsewhere. */
+    std::map<std::string, unsigned long long> beside_loads;
+    bool                                      elsewhere = false; // some broke there, too
+  };
+
+
   /**
    * A body of linear elastic material: M u'' = f(t) - K u, u the displacement. Component c of node i is the unknown dim i + c. K is symmetric and positive
    * semidefinite, its null space the rigid motions of the body and of parts that nothing holds together. C of the interface is the lumped mass M.
@@ -141,6 +152,12 @@ namespace PeriDeal
       return 0;
     }
 
+    /** The same on all processes. */
+    const BreakPlaces &break_places() const
+    {
+      return places;
+    }
+
     bool symmetric() const override
     {
       return true;
@@ -163,6 +180,8 @@ namespace PeriDeal
 
     /** Keeps what temperature_change() gives. Collective. */
     void keep_temperature_change(const Vector &nodal);
+
+    BreakPlaces places;
 
   private:
     Vector nodal_change;

@@ -106,10 +106,7 @@ namespace PeriDeal
 
     const Families<dim> &families() const;
 
-    /**
-     * K of multiply() as a matrix: with full kinematics the tangent of the last linearize(). Rows reach two horizons, some (4m)^dim nodes (bond-based:
-     * one, (2m)^dim): for factorisations, eigenvalues and other programs. Collective.
-     */
+    /** K of multiply() as a matrix, for factorisations, eigenvalues and other programs. Rows reach two horizons, some (4m)^dim nodes (bond-based: one, (2m)^dim). Collective. */
     void matrix(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
     /** How many of this process's bonds are stored, each counted at both ends. */
@@ -187,6 +184,8 @@ namespace PeriDeal
     void     find_thermal_loads();
     void     find_critical_stretches();
     void     find_overstretched(const Vector &u, const double share);
+    void     find_what_is_beside_loads();
+    void     keep_places(); // of what is overstretched
     void     find_diagonal();
     void     find_loads(Vector &loads, const double t) const;
     template <typename Visit>
@@ -253,7 +252,8 @@ namespace PeriDeal
     double n_bonds = 0., released = 0., moments_gap = 0.;
     unsigned long long              n_broken = 0, n_not_corrected = 0;
     std::vector<TractionShare<dim>> tractions;
-    std::vector<double> critical; // stretch, of owned nodes and ghosts; empty: nothing breaks
+    std::vector<double>       critical; // stretch, of owned nodes and ghosts; empty: nothing breaks
+    std::vector<unsigned int> loaded_side; // which in `Traction` is within a horizon of these
     std::vector<std::pair<std::size_t, double>> breaking,
       breaking_images; // overstretched bonds: place, stretch over critical stretch
     bool           breaks = false, loads_vary = false; // some bond may break, on any process

@@ -48,6 +48,7 @@ namespace PeriDeal
     nlohmann::ordered_json compute(); // the summary at the end
     void                   build();
     void                   build_heat();
+    void                   make_readers();
     void                   describe_costs_of_run(const double memory_before);
     double                 time_of_motion(ElasticRun<dim> &model); // by its first steps
     void                   warm_until(const double t);
@@ -67,6 +68,8 @@ namespace PeriDeal
     void                   note_steps(const ElasticRun<dim> &model);
     void                   note_energy(const ElasticRun<dim> &model);
     void                   note_inversion(const ElasticRun<dim> &model);
+    void                   tell_first_break(const ElasticRun<dim> &model, const double t);
+    void                   note_torn_sides(const ElasticRun<dim> &model);
     void                   write_output(const double t);
     void                   write_state(const double t);
     void                   write_points(const double t);

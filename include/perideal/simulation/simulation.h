@@ -67,6 +67,7 @@ namespace PeriDeal
     void                   make_steppers();
     void                   make_stepper_of(ModelRun<dim> &model);
     void                   make_readers();
+    void                   note_gaps();
     void                   solve_models();
     void                   prepare_adaptation();
     bool                   adapt(const double t);

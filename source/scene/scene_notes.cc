@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// What is allowed, but rarely meant.
+
+#include <perideal/scene/lists.h>
+#include <perideal/scene/scene.h>
+#include <perideal/scene/scene_notes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** `5.09e+03 m/s`. */
+    template <int dim>
+    std::string speed_text(const double speed, const Scene<dim> &scene)
+    {
+      std::ostringstream text;
+      text.precision(3);
+      text << speed << " " << scene.units.length << "/" << scene.units.time;
+      return text.str();
+    }
+
+
+    /** Whether an entry of a section has its default. */
+    bool is_left_out(const SceneSection &section, const std::string &name)
+    {
+      return std::any_of(
+        section.entries().begin(),
+        section.entries().end(),
+        [&](const Entry &entry) { return entry.name == name && entry.text == entry.default_text; });
+    }
+
+
+    /** Of waves in a bar of the material in the middle of the box; NaN where a formula has no value there. */
+    template <int dim>
+    double wave_speed(const Scene<dim> &scene, const Point<dim> &middle)
+    {
+      try
+        {
+          return std::sqrt(scene.material.moduli(middle).young() /
+                           scene.material.density.value(middle));
+        }
+      catch (const UserError &)
+        {
+          return std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+
+
+    /** A body in motion whose density nobody has given: bodies without units do well with 1. */
+    template <int dim>
+    void note_density(Scene<dim> &scene, const double speed)
+    {
+      if (scene.material.phases.gives("Density") || !is_left_out(scene.material, "Density"))
+        return;
+      scene.domain.notes.push_back(
+        "'Density' in section 'Material' is 1, its default" +
+        (std::isfinite(speed) ? ", with which waves run at about " + speed_text(speed, scene) :
+                                std::string()) +
+        ". Give that of the material; '1.0' says that 1 is meant.");
+    }
+
+
+    /** The largest speed at which sides are moved or the body begins, as far as it is known at t = 0. */
+    template <int dim>
+    double given_speed(const Scene<dim> &scene, const Point<dim> &middle)
+    {
+      double     largest = 0.;
+      const auto add     = [&](const auto &components) {
+        double square = 0.;
+        for (const std::optional<Expression> &value : components)
+          try
+            {
+              square += value ? std::pow(value->value(middle, 0.), 2) : 0.;
+            }
+          catch (const UserError &) // no number there
+            {}
+        largest = std::max(largest, std::sqrt(square));
+      };
+      for (const VectorCondition &condition : scene.boundary_conditions.displacement)
+        if (condition.rate)
+          add(condition.values);
+      const auto &start = scene.initial_and_source.initial_velocity;
+      add(std::vector<std::optional<Expression>>(start.begin(), start.end()));
+      return largest;
+    }
+
+
+    template <int dim>
+    void note_motion(Scene<dim> &scene)
+    {
+      const Point<dim> middle =
+        scene.domain.lower + 0.5 * (scene.domain.upper - scene.domain.lower);
+      const double waves = wave_speed(scene, middle);
+      note_density(scene, waves);
+      const double given = given_speed(scene, middle);
+      if (given > waves)
+        scene.domain.notes.push_back(
+          "a velocity of " + speed_text(given, scene) + " is given, but waves run at about " +
+          speed_text(waves, scene) +
+          ": nothing is elastic at such speeds. Check the units of 'Velocity', 'Initial velocity', 'Density' and the moduli.");
+    }
+
+
+    /** Wetness is a concentration over the saturated one. */
+    template <int dim>
+    void note_wetness(Scene<dim> &scene)
+    {
+      const auto note = [&](const Expression &value, const std::string &what) {
+        if (!value.is_constant())
+          return;
+        const double wetness = value.value(Point<dim>());
+        if (wetness >= 0. && wetness <= 1.)
+          return;
+        scene.domain.notes.push_back(
+          what + " is a wetness of " + number_text(wetness) +
+          ", but wetness, the concentration over 'Saturated concentration' (section 'Material'), is from 0 to 1 in bodies. Divide concentrations by the saturated one, percent by 100; "
+          "the results are in proportion in any case.");
+      };
+      note(scene.initial_and_source.initial_value, scene.initial_and_source.where("Initial value"));
+      for (const SideCondition &condition : scene.boundary_conditions.dirichlet)
+        note(condition.value,
+             scene.boundary_conditions.where("Dirichlet") + ", side '" + condition.name + "',");
+    }
+
+
+    /** Parts that no condition names. */
+    template <int dim>
+    void note_unused_parts(Scene<dim> &scene)
+    {
+      const BoundaryConditions<dim> &conditions = scene.boundary_conditions;
+      std::vector<std::string>       unused;
+      const auto                     named_in = [](const auto &list, const types::boundary_id id) {
+        return std::any_of(list.begin(), list.end(), [id](const auto &condition) {
+          return condition.id == id;
+        });
+      };
+      for (const Part &part : conditions.parts)
+        if (!named_in(conditions.dirichlet, part.id) && !named_in(conditions.flux, part.id) &&
+            !named_in(conditions.convection, part.id) &&
+            !named_in(conditions.displacement, part.id) && !named_in(conditions.traction, part.id))
+          unused.push_back("'" + part.name + "'");
+      if (!unused.empty())
+        scene.domain.notes.push_back(
+          conditions.where("Parts") + ": no condition is on " + join_names(unused) + ", which " +
+          (unused.size() == 1 ? "has" : "have") + " no effect. Name " +
+          (unused.size() == 1 ? "it" : "them") + " in a condition, or leave " +
+          (unused.size() == 1 ? "it" : "them") + " out.");
+    }
+  } // namespace
+
+
+  template <int dim>
+  void note_doubtful_entries(Scene<dim> &scene)
+  {
+    if (scene.general.physics == Physics::elasticity && !scene.elasticity.is_static())
+      note_motion(scene);
+    if (scene.general.physics == Physics::moisture)
+      note_wetness(scene);
+    note_unused_parts(scene);
+  }
+
+
+  template void note_doubtful_entries(Scene<1> &);
+  template void note_doubtful_entries(Scene<2> &);
+  template void note_doubtful_entries(Scene<3> &);
+} // namespace PeriDeal

@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""What is computed, but told: points outside the body, parts that nothing uses, entries that are rarely meant so, rows that tractions tear off.
+
+    doubts.py gaps | entries | symmetry | torn
+"""
+
+import math
+import os
+import sys
+import tempfile
+
+from scene_test import check, check_close, finish, run_perideal, run_scene
+
+FE, PD = "finite elements", "peridynamics"
+BC = "Boundary conditions/"
+
+PLATE = """
+set Title     = Plate with holes
+set Dimension = 2
+subsection Domain
+  set Cells = 20, 20
+  set Holes = circle: 0.5, 0.5, 0.2 ; rectangle: 0.1, 0.1, 0.2, 0.2
+end
+subsection Boundary conditions
+  set Dirichlet = top: 1 ; bottom: 0
+end
+subsection Time
+  set Steady = true
+end
+subsection Output
+  set Fields = none
+  set Line   = 0,0.5 ; 1,0.5 ; 21
+end
+"""
+ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "200", "Material/Poisson ratio": "0.3", BC + "Dirichlet": "",
+           BC + "Displacement": "bottom: 0, 0", BC + "Traction": "top: 0, 1", "Time/Steady": "false"}
+QUADS = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+1 1 "plane x"
+1 2 "plane y"
+1 3 "skin"
+$EndPhysicalNames
+$Nodes
+{n_nodes}
+{nodes}
+$EndNodes
+$Elements
+{n_elements}
+{elements}
+$EndElements
+"""
+
+
+def quarter_ring(n=6, inner=1.0, outer=2.0):
+    """A quarter of a ring as a Gmsh file, the planes x = 0 and y = 0 and its skin named."""
+    nodes, elements = [], []
+    for j in range(2 * n + 1):
+        for i in range(n + 1):
+            r, angle = inner + (outer - inner) * i / n, 0.5 * math.pi * j / (2 * n)
+            nodes.append(f"{1 + i + j * (n + 1)} {r * math.cos(angle):.15g} {r * math.sin(angle):.15g} 0")
+    at = lambda i, j: 1 + i + j * (n + 1)
+    for i in range(n):
+        elements += [f"1 2 2 2 {at(i, 0)} {at(i + 1, 0)}", f"1 2 1 1 {at(i, 2 * n)} {at(i + 1, 2 * n)}"]
+    for j in range(2 * n):
+        elements += [f"1 2 3 3 {at(i, j)} {at(i, j + 1)}" for i in (0, n)]
+        elements += [f"3 2 9 9 {at(i, j)} {at(i + 1, j)} {at(i + 1, j + 1)} {at(i, j + 1)}" for i in range(n)]
+    elements = [f"{k + 1} {e}" for k, e in enumerate(elements)]
+    return QUADS.format(n_nodes=len(nodes), nodes="\n".join(nodes), n_elements=len(elements), elements="\n".join(elements))
+
+
+def said(run, *words):
+    """The run has one note with all these words."""
+    found = [n for n in run.summary["notes"] if all(w in n for w in words)]
+    check(len(found) == 1, f"{len(found)} notes say {words}: {run.summary['notes']}")
+    return found[0] if found else ""
+
+
+def not_said(run, word):
+    check(not any(word in n for n in run.summary["notes"]), f"a note says '{word}': {run.summary['notes']}")
+
+
+def check_command(folder, text, overrides):
+    """What `perideal check` says of a scene."""
+    path = os.path.join(folder, "checked.prm")
+    with open(path, "w") as file:
+        file.write(text)
+    status, stdout, stderr = run_perideal(["check", path] + [w for e, v in overrides.items() for w in ("-s", f"{e}={v}")])
+    return status, stdout + stderr
+
+
+def gaps():
+    """A line through a hole has gaps, exactly where there is no body, whatever the model, the nodes and the number of processes."""
+    folder = tempfile.mkdtemp(prefix="perideal_")
+    for physics, more in (("heat", {}), ("elasticity", ELASTIC)):
+        column = "value" if physics == "heat" else "uy"
+        for nodes in ("vertices", "cell centers"):
+            settings = {**more, "Domain/Nodes": nodes}
+            runs = [run_scene(PLATE, settings, ranks) for ranks in (1, 2)]
+            said(runs[0], "'Line'", "of its 21 points lie outside the body", "line.csv")
+            for model in (FE, PD):
+                values = [[row[column] for row in run.rows(model, table="line.csv")] for run in runs]
+                xs = [row["x"] for row in runs[0].rows(model, table="line.csv")]
+                missing = [x for x, v in zip(xs, values[0]) if math.isnan(v)]
+                check(len(values[0]) == 21 and missing and 0.25 < min(missing) and max(missing) < 0.75,
+                      f"{physics}, {nodes}, {model}: gaps at {missing}")
+                check(all(not math.isnan(v) for x, v in zip(xs, values[0]) if abs(x - 0.5) > 0.21), f"{physics}, {nodes}, {model}: {values[0]}")
+                check(all(math.isnan(a) == math.isnan(b) and (math.isnan(a) or abs(a - b) < 1e-10) for a, b in zip(*values)),
+                      f"{physics}, {nodes}, {model}: other values on 2 processes")
+            # The points that are in the body have the values of a line that is in it.
+            inside = run_scene(PLATE, {**settings, "Output/Line": "0,0.5 ; 0.25,0.5 ; 6"})
+            not_said(inside, "'Line'")
+            for a, b in zip(inside.rows(PD, table="line.csv"), runs[0].rows(PD, table="line.csv")):
+                check_close(a[column], b[column], absolute=1e-10, what=f"{physics}, {nodes}: value at {a['x']}")
+    status, text = check_command(folder, PLATE, {})
+    check(status == 0 and "outside the body" in text, f"perideal check does not tell of gaps: {text}")
+    for more in ({}, ELASTIC):
+        status, text = check_command(folder, PLATE, {**more, "Output/Line": "", "Output/Probes": "0.3,0.3 ; 0.52,0.48"})
+        check(status == 1 and "'Probes'" in text and "(0.52, 0.48)" in text and "in a hole" in text, f"a probe in a hole: {text}")
+    # Meshes from files: found before anything is computed, by `check`, too.
+    mesh = os.path.join(folder, "ring.msh")
+    with open(mesh, "w") as file:
+        file.write(quarter_ring())
+    ring = {**ELASTIC, "Domain/Holes": "", "Domain/Shape": "mesh file", "Domain/Mesh file": mesh, "Peridynamics/Horizon": "0.5",
+            BC + "Displacement": "plane x: 0, free ; plane y: free, 0", BC + "Traction": "skin: x, y", "Output/Line": "0,0 ; 1.5,1.5 ; 16"}
+    run = run_scene(PLATE, ring)
+    said(run, "'Line'", "9 of its 16 points lie outside", "(0, 0)", "(1.5, 1.5)")
+    status, text = check_command(folder, PLATE, {**ring, "Output/Probes": "0.1,0.1"})
+    check(status == 1 and "'Probes'" in text and "(0.1, 0.1)" in text, f"a probe outside a mesh: {text}")
+    status, text = check_command(folder, PLATE, {**ring, "Output/Line": "0,0 ; 0.1,0.1 ; 3"})
+    check(status == 1 and "'Line'" in text and "none of its points" in text, f"a line outside a mesh: {text}")
+    return folder
+
+
+def entries():
+    """Notes on what is allowed, but rarely meant."""
+    parts = {BC + "Parts": "pin: point 1.02, 0.5 ; spare: left if y > 0.5", BC + "Dirichlet": "top: 1 ; bottom: 0 ; pin: 2"}
+    for ranks in (1, 2):
+        run = run_scene(PLATE, parts, ranks)
+        said(run, "'Parts'", "'pin'", "(1.02, 0.5) lies outside the body, 0.02 from", "(1, 0.5)")
+        said(run, "'Parts'", "no condition is on 'spare'", "has no effect")
+    inside = run_scene(PLATE, {**parts, BC + "Parts": "pin: point 0.99, 0.5"})
+    not_said(inside, "Parts")
+    motion = {**ELASTIC, "Elasticity/Solver": "dynamics", "Time/End time": "0.01", "Output/Line": ""}
+    run = run_scene(PLATE, motion)
+    said(run, "'Density'", "is 1, its default", "waves run at about 14.1 m/s")
+    not_said(run_scene(PLATE, {**motion, "Material/Density": "1.0"}), "'Density'")
+    not_said(run_scene(PLATE, {**ELASTIC, "Output/Line": ""}), "'Density'")
+    fast = {**motion, "Material/Density": "2", BC + "Traction": "", BC + "Velocity": "top: free, if(t < 1, 40, 0)"}
+    said(run_scene(PLATE, fast), "a velocity of 40 m/s", "waves run at about 10 m/s", "'Velocity'")
+    not_said(run_scene(PLATE, {**fast, BC + "Velocity": "top: free, 4"}), "a velocity")
+    wet = {"Physics": "moisture", "Time/Steady": "false", "Time/End time": "0.01", "Output/Line": "", BC + "Dirichlet": "top: 1"}
+    said(run_scene(PLATE, {**wet, "Initial and source/Initial value": "7"}), "'Initial value'", "wetness of 7", "from 0 to 1")
+    not_said(run_scene(PLATE, {**wet, "Initial and source/Initial value": "0.5"}), "wetness")
+
+
+def symmetry():
+    """On a mesh from a file a plane of symmetry is insulated for a computed temperature: as where the same planes are held by displacements."""
+    folder = tempfile.mkdtemp(prefix="perideal_")
+    mesh = os.path.join(folder, "ring.msh")
+    with open(mesh, "w") as file:
+        file.write(quarter_ring())
+    ring = {**ELASTIC, "Domain/Holes": "", "Domain/Shape": "mesh file", "Domain/Mesh file": mesh, "Peridynamics/Horizon": "0.5",
+            "Material/Thermal expansion": "1e-3", "Elasticity/Temperature change": "computed", BC + "Traction": "skin: x, y",
+            BC + "Dirichlet": "skin: if(x^2 + y^2 < 2, 1, 0)", "Time/Steady": "true", "Output/Line": "", "Output/Probes": "1.06,1.06 ; 1.5,0"}
+    held = run_scene(PLATE, {**ring, BC + "Displacement": "plane x: 0, free ; plane y: free, 0"})
+    for ranks in (1, 2):
+        mirrored = run_scene(PLATE, {**ring, BC + "Displacement": "", BC + "Symmetry": "plane x, plane y"}, ranks)
+        for column in ("ux", "uy", "temperature"):
+            check_close(mirrored.probe(FE, (1.06, 1.06), column=column), held.probe(FE, (1.06, 1.06), column=column), relative=1e-9, what=column)
+        check_close(mirrored.probe(PD, (1.5, 0), column="temperature"), held.probe(PD, (1.5, 0), column="temperature"), relative=1e-9,
+                    what="temperature of peridynamics")
+    heat = {"Domain/Holes": "", "Domain/Shape": "mesh file", "Domain/Mesh file": mesh, "Peridynamics/Horizon": "0.5", BC + "Dirichlet": "skin: x",
+            BC + "Symmetry": "plane x", "Output/Line": ""}
+    status, text = check_command(folder, PLATE, heat)
+    check(status == 1 and "'Symmetry'" in text and "Leave the entry out" in text, f"symmetry of heat on a mesh: {text}")
+    run_scene(PLATE, {**heat, "Models": FE})
+    return folder
+
+
+TORN = """
+set Title     = A breakable plate, suddenly pulled
+set Physics   = elasticity
+set Models    = peridynamics
+subsection Domain
+  set Cells = 16, 17
+end
+subsection Material
+  set Young modulus    = 200
+  set Poisson ratio    = 0.3
+  set Density          = 2
+  set Critical stretch = 0.01
+end
+subsection Boundary conditions
+  set Traction = top: 0, 20 ; bottom: 0, -20
+end
+subsection Peridynamics
+  set Surface correction = none
+end
+subsection Elasticity
+  set Solver = dynamics
+end
+subsection Time
+  set End time = 0.02
+end
+subsection Output
+  set Fields = none
+end
+"""
+
+
+def torn():
+    """Rows that tractions tear off: where the first bond broke, and how many did beside which side, the same on any number of processes."""
+    found = []
+    for nodes in ("vertices", "cell centers"):
+        for ranks in (1, 2, 4):
+            run = run_scene(TORN, {"Domain/Nodes": nodes}, ranks)
+            of_model = run.model(PD)
+            beside, n = of_model["broken beside loads"], run.model(PD)["energy balance"]["broken bonds"]
+            note = said(run, "bonds broke beside the loaded sides 'bottom'", "'top'", "before any did elsewhere", "'Traction layer'")
+            found.append((of_model["first broken bond"], beside, note))
+            check(found[-1] == found[3 * (len(found) // 4) if nodes == "vertices" else 3], f"{nodes}: not the same on {ranks} processes: {found}")
+            check(beside["top"] == beside["bottom"] and sum(beside.values()) <= n, f"{nodes}: {beside} of {n}")
+            check(abs(found[-1][0][1] - 0.5) > 0.35, f"{nodes}: the first at {found[-1][0]}")
+            check("first bond broke at (" in run.stdout and "beside the loaded side" in run.stdout, f"no line tells of it: {run.stdout}")
+    # A part of a side, a thin bridge that breaks elsewhere first, and bodies whose loads they bear.
+    part = run_scene(TORN, {BC + "Parts": "middle: top if abs(x - 0.5) < 0.2", BC + "Traction": "middle: 0, 40"})
+    said(part, "broke beside the loaded side 'middle'")
+    waist = run_scene(TORN, {"Domain/Holes": "rectangle: -1, 0.4, 0.4, 0.6 ; rectangle: 0.6, 0.4, 2, 0.6", BC + "Traction layer": "0.1",
+                             BC + "Traction": "top: 0, 0.7*min(t, 1) ; bottom: 0, -0.7*min(t, 1)", "Time/End time": "3", "Time/Time step": "1e-3"})
+    check(abs(waist.model(PD)["first broken bond"][1] - 0.5) < 0.2, f"a waist breaks at {waist.model(PD)['first broken bond']}")
+    not_said(waist, "beside the loaded")
+    whole = run_scene(TORN, {BC + "Traction": "top: 0, 0.2 ; bottom: 0, -0.2"})
+    check("first broken bond" not in whole.model(PD), "a body that holds tells of a first break")
+    not_said(whole, "beside the loaded")
+
+
+DOUBTS = {"gaps": gaps, "entries": entries, "symmetry": symmetry, "torn": torn}
+
+finish(*[folder for folder in [DOUBTS[wanted]() for wanted in sys.argv[1:] or DOUBTS] if folder])
