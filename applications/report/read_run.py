@@ -253,7 +253,8 @@ class Run:
         lower, upper = self.domain
         slack = 1e-9 * (upper - lower)
         sides = self.get("sides", default={})
-        parts = any(text.startswith("Dirichlet") for side, text in sides.items() if side not in BOX_SIDES)
+        parts = any(text.startswith("Dirichlet") for side, text in sides.items()
+                    if side not in BOX_SIDES[:2 * self.dimension])
         within = any(text.startswith("Dirichlet") and self.get("places", side, "kind") in ("region", "point")
                      for side, text in sides.items())
         given = within or any("Dirichlet" in sides.get(BOX_SIDES[2 * d + k], "") or parts

@@ -94,17 +94,9 @@ def draw_outline(axes, mesh):
                                        capstyle="round"))
 
 
-def inwards(way):
-    """The direction of a coordinate axis that is nearest to a way; downwards where there is none."""
-    axis = int(np.abs(way).argmax())
-    direction = np.zeros(2)
-    direction[axis] = np.sign(way[axis])
-    return direction if np.any(direction) else np.array([0.0, -1.0])
-
-
 def draw_places(axes, run, inch, elastic):
     """Parts of sides, regions and points, and the sides of a mesh from a file, in the colours of what holds there."""
-    sides, middle = run.sides(brief=True), np.array(run.domain).mean(axis=0)
+    sides, middle, below = run.sides(brief=True), np.array(run.domain).mean(axis=0), False
     for side, place in run.get("places", default={}).items():
         color = side_color(sides.get(side, ""))
         lines = np.array(place.get("lines", []), float).reshape(-1, 2, 2)
@@ -121,11 +113,20 @@ def draw_places(axes, run, inch, elastic):
             supports.draw_place(axes, run, side, inch)
         normals = np.array(place.get("normals", []), float).reshape(-1, 2)
         k = len(points) // 2
-        away = normals[k] if len(normals) else inwards(middle - points[k])
-        at = points[k] + away * inch * (0.45 if elastic and supports.values_at(run, side, "traction") else 0.22)
-        axes.text(*at, shorten(side, 16), fontsize=8, color=color, clip_on=False, zorder=8,
-                  ha="center" if abs(away[0]) < 0.5 else "left" if away[0] > 0 else "right",
-                  va="center" if abs(away[1]) < 0.5 else "bottom" if away[1] > 0 else "top")
+        if len(normals):
+            far = elastic and supports.longest_of(run, side) > 0
+            name_place(axes, points[k] + normals[k] * inch * (0.45 if far else 0.22), normals[k], side, color)
+        else:  # by turns above and below, so that those of neighbours do not meet
+            below = not below
+            away = np.array([0.0, -1.0 if below else 1.0])
+            name_place(axes, points[k] + away * inch * 0.14, away, side, color, "right" if points[k][0] > middle[0] else "left")
+
+
+def name_place(axes, at, away, side, color, horizontal=None):
+    """The name of a part or side at a point, on that side of it."""
+    axes.text(*at, shorten(side, 16), fontsize=8, color=color, clip_on=False, zorder=8,
+              ha=horizontal or ("center" if abs(away[0]) < 0.5 else "left" if away[0] > 0 else "right"),
+              va="center" if abs(away[1]) < 0.5 else "bottom" if away[1] > 0 else "top")
 
 
 def draw_points(axes, run):
@@ -186,7 +187,7 @@ def sketch_2d(maps, words):
     axes = figure.add_axes([(0.95 + room["left"]) / size[0], (foot + room["bottom"]) / size[1],
                             width / size[0], height / size[1]])
     full = draw_material(axes, maps)
-    sides = run.sides(brief=True)
+    sides = {side: text for side, text in run.sides(brief=True).items() if supports.is_side_of_box(run, side)}
     draw_sides(axes, sides, lower, extent, width, height, room)
     if words.elastic:
         supports.draw_2d(axes, run, lower, extent, extent[0] / width,
@@ -273,6 +274,11 @@ def sketch_3d(run, words):
     if words.elastic:
         axes.apply_aspect()
         supports.draw_3d(axes, run, np.ptp(axes.get_xlim()) / (4.8 * 0.62))
+    for side, place in run.get("places", default={}).items():
+        if place["kind"] == "point":
+            color, at = side_color(sides.get(side, "")), solids.project(np.array(place["at"][0], float))
+            axes.plot(*at, marker="x", markersize=5, color=color, clip_on=False, zorder=8)
+            axes.annotate(shorten(side, 12), at, (3, 3), textcoords="offset points", fontsize=8, color=color, zorder=8)
     names = ("left", "right", "bottom", "top", "back", "front")
     listed = [(n, style.minus(sides[n])) for n in names if n in sides]
     listed += [(n, style.minus(text)) for n, text in sides.items() if n not in names]

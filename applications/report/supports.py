@@ -32,9 +32,14 @@ def names_of(run):
     return list(dict.fromkeys(list(NORMALS) + list(run.get("values on sides", default={}))))
 
 
+def is_side_of_box(run, side):
+    """Whether a name is that of a whole side of a box; parts and sides of meshes may have such names, too."""
+    return side in list(NORMALS)[:2 * run.dimension] and not run.get("places", side)
+
+
 def normals_at(run, side, n):
     """Outward normals at the n points of a side or part; none of a region or a point."""
-    if side in NORMALS:
+    if is_side_of_box(run, side):
         return [normal_of(side, run.dimension)] * n
     found = run.get("places", side, "normals", default=[])
     return np.array(found, float) if len(found) == n else np.zeros((n, run.dimension))
@@ -187,7 +192,7 @@ def draw_3d(axes, run, inch):
     lower, upper = run.domain
     marks = Marks(axes, solids.project, solids.ISOMETRIC, inch)
     for side, (axis, sign) in NORMALS.items():
-        kind = kind_of_support(run, side)
+        kind = kind_of_support(run, side) if is_side_of_box(run, side) else ""
         if kind:
             color = SYMMETRY if "symmetry" in run.sides().get(side, "") else DISPLACEMENT
             corners = []
@@ -215,11 +220,11 @@ def draw_1d(axes, run, inch):
 def room(run):
     """Inches that marks take at each side of a sketch in two dimensions."""
     found = {}
-    apart = any(side not in NORMALS and longest_of(run, side) > 0 for side in run.get("values on sides", default={}))
+    apart = any(not is_side_of_box(run, side) and longest_of(run, side) > 0 for side in run.get("values on sides", default={}))
     for side in ("left", "right", "bottom", "top"):
-        needs = 0.12 if kind_of_support(run, side) else 0.0
+        needs = 0.12 if is_side_of_box(run, side) and kind_of_support(run, side) else 0.0
         for kind in ("displacement", "traction"):
-            values = values_at(run, side, kind)
+            values = values_at(run, side, kind) if is_side_of_box(run, side) else None
             if values is not None and np.abs(np.nan_to_num(values[1])).max(initial=0) > 0:
                 needs = 0.38
         found[side] = max(needs, 0.38 if apart else 0.0)
