@@ -21,6 +21,7 @@ import deformed
 import difference
 import elastic_tables
 import fragments
+import materials
 import sketch
 import style
 import supports
@@ -249,11 +250,11 @@ class Parts(ReportCase):
         names = list(exact)
         for i, a in enumerate(names):
             for b in names[i + 1:]:
-                found = elastic_tables.all_moduli({a: exact[a], b: exact[b]})
+                found = materials.all_moduli({a: exact[a], b: exact[b]})
                 for title, value in exact.items():
                     self.assertAlmostEqual(found[title] / value, 1, delta=1e-11)
-        self.assertEqual(elastic_tables.all_moduli({"Young modulus": 1.0}), {})
-        self.assertEqual(elastic_tables.of_phases("a: f(1; 2) ; b: x > 0 ? 1 : 2"),
+        self.assertEqual(materials.all_moduli({"Young modulus": 1.0}), {})
+        self.assertEqual(materials.of_phases("a: f(1; 2) ; b: x > 0 ? 1 : 2"),
                          {"a": "f(1; 2)", "b": "x > 0 ? 1 : 2"})
 
     def test_difference_of_displacements(self):

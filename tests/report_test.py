@@ -192,7 +192,7 @@ class Pages(ReportCase):
         drawn = sketch.problem_sketch(maps, Words()).axes[0]
         self.assertTrue(np.allclose([drawn.get_xlim(), drawn.get_ylim()], [0, 2], atol=1e-12))
         text = "".join(page.text)
-        self.assertIn("Largest difference: −5 °C at (1.237, 1.237), marked by a circle", text)
+        self.assertIn("Largest difference from finite elements: −5 °C at (1.237, 1.237) (peridynamics), marked by a circle", text)
         self.assertIn("−3", "".join(page.cells))
 
     def test_no_picture_of_zeros(self):
@@ -480,7 +480,8 @@ class Parts(ReportCase):
         make_plate(self.directory, 8)
         run = Run(self.directory)
         self.assertEqual(run.initial_value(np.array([0.5, 0.1])), 7)
-        self.assertIsNone(run.initial_value(np.array([1.0, 0.1])))
+        self.assertEqual(run.initial_value(np.array([1.0, 0.1])), 7)  # an insulated side
+        self.assertIsNone(run.initial_value(np.array([0.5, 1.0])))  # one with a value
         figure, zero = series.probe_figure(run, Words())
         self.assertEqual(zero, [])
         start = figure.axes[0].lines[0]

@@ -10,11 +10,12 @@ import contours
 import fragments
 import style
 from difference import compared, difference_field
-from raster import PixelMap, View, crosses, is_constant_per_cell
+from raster import PixelMap, View, boundary_lines, crosses, is_constant_per_cell
 from read_run import Mesh
 
 SHARE = 0.05  # of the body's extent: how large the largest displacement is drawn
 DAMAGED = fragments.DAMAGED  # share of broken bonds from which the body may be torn
+NEAR = 0.15  # of the body's extent: how far outside it fragments are still in the picture
 TORN = 0.25  # share of a cell that its vertex moves off at a tear
 
 
@@ -68,6 +69,7 @@ class Shape:
                  flying=None):
         self.mesh, self.factor, self.flying = mesh, factor, flying
         self.segments = segments
+        self.is_torn = damage is not None and bool((damage > DAMAGED).any())
         corners = mesh.nodes[mesh.cells]
         shift = 1e-6 * np.ptp(corners, axis=1).max(axis=1)[:, None, None]
         self.centers = corners.mean(axis=1)
@@ -181,12 +183,27 @@ class Shape:
         result[mesh.cells.ravel()] = means[group]
         return result
 
+    def is_whole(self):
+        """Whether all cells hang together as they do at rest."""
+        return len(self.source) == len(self.mesh.cells) and not self.is_torn
+
+    def edge(self):
+        """The edge of a body that is whole, as lines."""
+        places = np.empty_like(self.mesh.nodes)
+        places[self.mesh.cells] = self.deformed.nodes.reshape(-1, 4, 2)
+        return boundary_lines(self.mesh, places)
+
     def bounds(self):
-        """Lower and upper corner of the deformed shape, without fragments."""
+        """Lower and upper corner of the deformed shape, with what of fragments is near it."""
         nodes = self.deformed.nodes
         if self.flying is not None:
-            inside = ~self.flying[self.mesh.cells][self.source].any(axis=1)
-            nodes = nodes.reshape(len(self.source), -1, 2)[inside].reshape(-1, 2)
+            flying = self.flying[self.mesh.cells][self.source].any(axis=1)
+            of_cells = nodes.reshape(len(self.source), -1, 2)
+            body = of_cells[~flying].reshape(-1, 2)
+            low, high = np.nanmin(body, axis=0), np.nanmax(body, axis=0)
+            reach = NEAR * (high - low).max()
+            near = flying & ((of_cells > low - reach) & (of_cells < high + reach)).all(axis=(1, 2))
+            nodes = np.concatenate([body, of_cells[near].reshape(-1, 2)])
         return np.nanmin(nodes, axis=0), np.nanmax(nodes, axis=0)
 
     def draw_on(self, view):
@@ -279,13 +296,15 @@ class Shapes:
         smooth = shape.isoline_picture(values)
         contours.draw_isolines(axes, view, picture if smooth is None else scale.clean(smooth),
                                scale, ())
-        outline(axes, view, np.isfinite(picture), color=style.INK, linewidth=0.7, zorder=5)
+        if shape.is_whole():  # the edge itself, else that of the pixels
+            for line in shape.edge():
+                axes.plot(*line.T, color=style.INK, linewidth=0.7, zorder=5)
+        else:
+            outline(axes, view, np.isfinite(picture), color=style.INK, linewidth=0.7, zorder=5)
         for line in self.faces(index, model):
             axes.plot(*line.T, color="black", linewidth=0.9, zorder=6)
-        undeformed = self.maps.picture(index, model, np.ones(len(values)),
-                                       contours.segments_of(self.run.cracks(index)))
-        outline(axes, self.maps.view(), np.isfinite(undeformed), color="#52606d", linewidth=0.7,
-                linestyle=(0, (4, 3)), zorder=5)
+        for line in boundary_lines(shape.mesh):
+            axes.plot(*line.T, color="#52606d", linewidth=0.7, linestyle=(0, (4, 3)), zorder=5)
         axes.set_xlim(view.extent[:2])
         axes.set_ylim(view.extent[2:])
 

@@ -45,7 +45,7 @@ def without_fragments(run, index, model, values):
     return values if flying is None else np.where(flying.mask, np.nan, values)
 
 
-def compared(run, index, name, of_pd=None):
+def compared(run, index, name, of_pd=None, with_equal=False):
     """[(model, its largest difference or None)] of the models to be drawn minus finite elements.
 
     of_pd: that of peridynamics, where it is known. What agrees to round-off is not drawn.
@@ -54,7 +54,7 @@ def compared(run, index, name, of_pd=None):
         return []
     found = [(m, of_pd if m == PD and of_pd is not None else largest(run, index, name, m))
              for m in (PD, COUPLED) if m in run.models]
-    return [(m, size) for m, size in found if size is None or not size.zero]
+    return [(m, size) for m, size in found if with_equal or size is None or not size.zero]
 
 
 def at_nodes_of(mesh, nodal, values):

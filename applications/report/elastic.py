@@ -37,11 +37,6 @@ class ElasticSections:
         """Units that the page uses: a body at rest has no time."""
         return [u for u in (self.words.length, "" if self.steady else self.words.time) if u]
 
-    def rest_of_problem(self):
-        """The material."""
-        html = elastic_tables.material_table(self.run)
-        return f'<div class="wide">{html}</div>' if html else ""
-
     def sketch_legend(self):
         """What arrows and marks at the sides mean."""
         texts = " ".join(self.run.sides().values())
@@ -201,7 +196,7 @@ class ElasticSections:
         when = "" if self.steady else self.words.at_time(run.written_times()[index])
         heading = ", ".join(part for part in (field.title, when) if part)
         mark = f"{field.name}_{index:04d}" if of_several or not self.steady else field.name
-        caption = [self.picture_caption(largest, field), self.beyond(field, index)]
+        caption = [self.picture_caption(largest, field, index), self.beyond(field, index)]
         self.page.figure(figure, mark, " ".join(filter(None, caption)), False, heading)
 
     def beyond(self, field, index):

@@ -29,14 +29,22 @@ def what_ran(run, words):
     return f"The displacement of {kind}{cracks}{state}{when} was computed by {joined}."
 
 
+def joined(parts):
+    """'a', 'a and b', 'a, b and c'."""
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
+
+
 def largest_values(run, index, field, when=""):
     """The largest value of a field by each model, or None."""
     found = {m: extreme(run, index, m, field, "largest", with_surfaces=False, of_body=True) for m in run.models}
     found = {m: f for m, f in found.items() if f is not None}
     if not found:
         return None
-    listed = " and ".join(f"{field.amount(value)} at {place(point)} ({m})"
-                          for m, (value, point) in found.items())
+    places = {place(run, point) for _, point in found.values()}
+    listed = joined([f"{field.amount(value)}" + (f" at {place(run, point)}" if len(places) > 1 else "") + f" ({m})"
+                     for m, (value, point) in found.items()])
+    if len(places) == 1:
+        listed += f" at {places.pop()}"
     inside = any(m in found and made_by_surfaces(run, m, field, run.mesh(index, m)).any()
                  for m in run.models)
     comma = "" if when else ","
@@ -66,6 +74,9 @@ def intensities(run, words):
                 unit = f" in {words.units.intensity}" if words.units.intensity else ""
                 lines.append(f"The stress intensity factor K_{mode} at {end}{unit} is "
                              f"{' and '.join(listed)}.")
+    missing = run.get("no stress intensity", default="")
+    if missing:
+        lines.append(("About stress intensity factors: " if ends else "There are no stress intensity factors: ") + f"{missing}.")
     if len(ends) > AT_MOST:
         lines.append(f"Those at {len(ends) - AT_MOST} more ends are in totals.csv.")
     return lines

@@ -15,104 +15,12 @@ from tables import cell, entry, table
 from words import with_unit
 
 FEM, PD = "finite elements", "peridynamics"
-MODULI = ("Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio")
-OTHERS = ("Density", "Thermal expansion", "Fracture energy", "Critical stretch")
 
 
-def number(text):
-    """A number, or None for a formula."""
-    try:
-        return float(text)
-    except (TypeError, ValueError):
-        return None
-
-
-def all_moduli(given):
-    """The four moduli that two numbers make; {} unless exactly two are given, as numbers."""
-    bulk, shear, young, poisson = (given.get(m) for m in MODULI)
-    if sum(v is not None for v in (bulk, shear, young, poisson)) != 2:
-        return {}
-    try:
-        if shear is None:
-            if bulk is None:
-                shear = young / (2 * (1 + poisson))
-            elif young is not None:
-                shear = 3 * bulk * young / (9 * bulk - young)
-            else:
-                shear = 3 * bulk * (1 - 2 * poisson) / (2 * (1 + poisson))
-        if young is None:
-            young = 2 * shear * (1 + poisson) if poisson is not None else \
-                9 * bulk * shear / (3 * bulk + shear)
-        if poisson is None:
-            poisson = young / (2 * shear) - 1
-        if bulk is None:
-            bulk = young / (3 * (1 - 2 * poisson)) if poisson != 0.5 else float("inf")
-    except ZeroDivisionError:
-        return {}
-    return {m: float(f"{v:.12g}") for m, v in zip(MODULI, (bulk, shear, young, poisson))}
-
-
-def of_phases(text):
-    """{phase: value} of an entry such as `core: 0.8 ; rim: 2`; separators in parentheses are not."""
-    found, depth, part = {}, 0, ""
-    for letter in text + ";":
-        depth += {"(": 1, ")": -1}.get(letter, 0)
-        if letter == ";" and depth == 0:
-            if ":" in part:
-                phase, value = part.split(":", 1)
-                found[phase.strip()] = value.strip()
-            part = ""
-        else:
-            part += letter
-    return found
-
-
-def materials(run):
-    """[(phase, where, {entry: text})]; the first is that of all that is in no phase."""
-    def texts(section, names):
-        return {n: run.scene_entry(section, n) for n in names}
-
-    base = texts("Material", MODULI + OTHERS)
-    regions = of_phases(run.scene_entry("Material/Phases", "Regions"))
-    special = {n: of_phases(t) for n, t in texts("Material/Phases", MODULI + OTHERS).items()}
-    rows = [("", "", base)]
-    for phase, where in regions.items():
-        rows.append((phase, where, {n: special[n].get(phase, base[n]) for n in base}))
-    return rows
-
-
-def material_table(run):
-    """Moduli, density and what else is given, of each phase; those that follow from two are italic."""
-    rows = materials(run)
-    if not any(values.get(m) for _, _, values in rows for m in MODULI):
-        return ""
-    shown, columns = [], []
-    for phase, where, values in rows:
-        given = {m: number(values[m]) for m in MODULI if values[m]}
-        derived = all_moduli(given) if all(v is not None for v in given.values()) else {}
-        entries = []
-        for title in MODULI + OTHERS:
-            text, value = values[title], number(values[title])
-            if text:
-                entries.append(cell(value, 6) if value is not None else escape(minus(text)))
-            else:
-                entries.append(f"<em>{cell(derived[title], 6)}</em>" if title in derived else "")
-        columns.append(entries)
-        shown.append(escape(phase) if phase else "all else" if len(rows) > 1 else "Value")
-    lines = []
-    for i, title in enumerate(MODULI + OTHERS):
-        trivial = title == "Density" and all(c[i] == "1" for c in columns) or \
-            title == "Thermal expansion" and all(c[i] == "0" for c in columns)
-        if any(c[i] for c in columns) and not trivial:
-            lines.append([title] + [c[i] for c in columns])
-    if len(rows) > 1:
-        lines.append(["Where"] + ["" if not w else escape(minus(w)) for _, w, _ in rows])
-    return table(["Material"] + shown, lines, "numbers")
-
-
-def place(point):
+def place(run, point):
     """(x, y) of a node."""
-    return probe_name(np.where(np.abs(point) < 1e-12, 0.0, point))
+    extent = np.ptp(np.array(run.domain), axis=0).max()
+    return probe_name(np.where(np.abs(point) < 1e-12 * extent, 0.0, point))
 
 
 def made_by_surfaces(run, model, field, mesh):
@@ -162,7 +70,7 @@ def extremes_table(run, index, fields):
             found = [extreme(run, index, m, field, which) for m in run.models]
             if any(f is not None for f in found):
                 rows.append([escape(f"{name(which)} {field.label(field.text)}")] + [
-                    "–" if f is None else f"{cell(f[0], 6)} at {escape(place(f[1]))}"
+                    "–" if f is None else f"{cell(f[0], 6)} at {escape(place(run, f[1]))}"
                     for f in found])
     return table([""] + [name(m) for m in run.models], rows, "numbers") if rows else ""
 

@@ -153,8 +153,9 @@ def what_it_cost(run):
     text = f"The wall time was {listed} {where}"
     if FEM in times and PD in times and min(times[FEM], times[PD]) >= SHORT_TIME:
         ratio = times[PD] / times[FEM]
-        text += f": peridynamics cost {plain(ratio, 2)} times as much" if ratio >= 1 else \
-            f": finite elements cost {plain(1 / ratio, 2)} times as much"
+        more, times_as_much = ("peridynamics", ratio) if ratio >= 1 else ("finite elements", 1 / ratio)
+        text += ": both cost as much" if plain(times_as_much, 2) == "1" else \
+            f": {more} cost {plain(times_as_much, 2)} times as much"
     return text + "."
 
 

@@ -229,3 +229,30 @@ def dual_mesh(mesh):
     i, j = position.T
     quads = np.stack([index[i, j], index[i + 1, j], index[i + 1, j + 1], index[i, j + 1]], axis=1)
     return centers, quads[(quads >= 0).all(axis=1)], mesh.cells[:, 0]
+
+
+def boundary_lines(mesh, where=None):
+    """The edge of a mesh of quadrilaterals as lines of points: (K x 2) each, closed ones end where they begin.
+
+    Cells with vertices of their own at one place are neighbours. where: (N x 2) places to draw the vertices at."""
+    nodes = mesh.nodes if where is None else where
+    lower, extent = mesh.nodes.min(axis=0), max(np.ptp(mesh.nodes, axis=0).max(), 1e-300)
+    place = np.unique(np.round((mesh.nodes - lower) / (1e-7 * extent)).astype(np.int64), axis=0, return_inverse=True)[1].ravel()
+    vertices = np.concatenate([mesh.cells[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 3), (3, 0))])
+    ends = np.sort(place[vertices], axis=1)
+    first, count = np.unique(ends, axis=0, return_index=True, return_counts=True)[1:]
+    edges = vertices[first[count == 1]]
+    leaving = {}
+    for k, a in enumerate(place[edges[:, 0]]):
+        leaving.setdefault(int(a), []).append(k)
+    lines, taken = [], np.zeros(len(edges), bool)
+    for k in range(len(edges)):
+        line = []
+        while not taken[k]:
+            taken[k] = True
+            line += [edges[k, 0]] if not line else []
+            line.append(edges[k, 1])
+            k = next((n for n in leaving.get(int(place[edges[k, 1]]), []) if not taken[n]), k)
+        if line:
+            lines.append(nodes[line])
+    return lines

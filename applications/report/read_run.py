@@ -16,6 +16,8 @@ from words import PHYSICS, Words
 
 MODEL_ORDER = ("finite elements", "peridynamics", "coupled")
 EXACT = "exact"
+ROUND_OFF = 1e-12  # of coordinates, of the largest of them
+BOX_SIDES = ("left", "right", "bottom", "top", "back", "front")
 DIFFERENCE = "peridynamics_minus_finite_elements"
 
 
@@ -75,6 +77,11 @@ class Table:
     def at(self, model, time):
         """(points, values) of one model at one time, or None."""
         return self.data.get(model, {}).get(time)
+
+
+def without_round_off(points):
+    """Coordinates with zeros where they are zero but for the round-off of the others."""
+    return np.where(np.abs(points) <= ROUND_OFF * np.abs(points).max(initial=0), 0.0, points)
 
 
 def read_scene(path):
@@ -204,10 +211,10 @@ class Run:
             for model in entry["files"]:
                 nodes = self.mesh(index, model).nodes
                 if len(nodes):
-                    return nodes.min(axis=0), nodes.max(axis=0)
+                    return without_round_off(np.array([nodes.min(axis=0), nodes.max(axis=0)]))
         lower, upper = self.get("domain", "lower"), self.get("domain", "upper")
         if lower and upper:
-            return np.array(lower, float), np.array(upper, float)
+            return without_round_off(np.array([lower, upper], float))
         raise ReportError(f"'{self.directory / 'summary.json'}' has neither domain nor fields")
 
     def cracks(self, index=None):
@@ -238,15 +245,22 @@ class Run:
                    for entry in self.summary["models"].values())
 
     def initial_value(self, point):
-        """The initial value at an inner point of a box where it is a plain number, else None."""
+        """The initial value at a point of a box where it is a plain number, else None: on sides with given values these hold."""
         try:
             value = float(self.scene_entry("Initial and source", "Initial value"))
         except ValueError:
             return None
         lower, upper = self.domain
         slack = 1e-9 * (upper - lower)
-        inside = np.all((point > lower + slack) & (point < upper - slack))
-        return value if inside and self.get("domain", "shape") == "box" else None
+        sides = self.get("sides", default={})
+        parts = any(text.startswith("Dirichlet") for side, text in sides.items()
+                    if side not in BOX_SIDES[:2 * self.dimension])
+        within = any(text.startswith("Dirichlet") and self.get("places", side, "kind") in ("region", "point")
+                     for side, text in sides.items())
+        given = within or any("Dirichlet" in sides.get(BOX_SIDES[2 * d + k], "") or parts
+                    for d in range(self.dimension) for k, end in enumerate((lower, upper))
+                    if abs(point[d] - end[d]) <= slack[d])
+        return value if not given and self.get("domain", "shape") == "box" else None
 
     # ---- fields ------------------------------------------------------------------------
 
@@ -402,6 +416,7 @@ class Run:
         tables = {header[column]: Table() for column in columns}
         for (of_model, when), numbers in collected.items():
             numbers = np.array(numbers)
+            numbers[:, :len(axes)] = without_round_off(numbers[:, :len(axes)])
             for i, table in enumerate(tables.values(), len(axes)):
                 table.dimension = len(axes)
                 table.data.setdefault(of_model, {})[when] = (numbers[:, :len(axes)], numbers[:, i])

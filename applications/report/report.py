@@ -22,6 +22,7 @@ try:
     import difference
     import findings
     import flux
+    import materials
     import series
     import sketch
     import solids
@@ -99,8 +100,9 @@ class Report:
         return [u for u in (self.words.length, self.words.time, self.words.solution.unit) if u]
 
     def rest_of_problem(self):
-        """What else belongs to the problem, as HTML."""
-        return ""
+        """What else belongs to the problem, as HTML: the material."""
+        html = materials.material_table(self.run)
+        return f'<div class="wide">{html}</div>' if html else ""
 
     def sketch_legend(self):
         """What colours of the sides mean."""
@@ -183,7 +185,7 @@ class Report:
             figure = module.field_figure(self.maps, index, self.words, field, largest, scale)
             heading = self.words.at_time(times[index], self.steady)
             self.page.figure(figure, f"{field.name}_{index:04d}",
-                             self.picture_caption(largest, field), False,
+                             self.picture_caption(largest, field, index), False,
                              name(heading) if self.steady else heading)
         hidden = [plain(t) for i, t in enumerate(times) if i not in self.shown]
         if hidden:
@@ -216,14 +218,18 @@ class Report:
                 "side, never across it."
         return text
 
-    def picture_caption(self, largest, field):
-        """Where the largest difference lies."""
-        if largest is None:
-            return ""
-        if largest.zero:
-            return "Peridynamics and finite elements agree to round-off."
-        circle = ", marked by a circle" if self.run.dimension == 2 else ""
-        return f"Largest difference: {field.amount(largest.value)} {largest.place()}{circle}."
+    def picture_caption(self, largest, field, index=None):
+        """Where the largest difference lies, of each model that is compared with finite elements."""
+        found = [] if largest is None else [("peridynamics", largest)]
+        if index is not None:
+            found = [(m, size) for m, size in
+                     difference.compared(self.run, index, field.name, largest, with_equal=True) if size is not None]
+        text = [f"{name(m)} and finite elements agree to round-off." for m, size in found if size.zero]
+        listed = " and ".join(f"{field.amount(size.value)} {size.place()} ({m})" for m, size in found if not size.zero)
+        if listed:
+            circle = "" if self.run.dimension != 2 else ", marked by a circle" + ("s" if listed.count(" and ") else "")
+            text.append(f"Largest difference from finite elements: {listed}{circle}.")
+        return " ".join(text)
 
     def loading(self):
         """Only elastic bodies are loaded."""
@@ -324,7 +330,14 @@ class Report:
             self.page.section(f"{name(self.words.passing)} through the sides", "sides")
             self.page.add("<p>What enters the body is positive"
                           + (", per unit thickness" if self.run.dimension == 2 else "") + ".</p>")
+            self.moisture()
             self.page.add(f'<div class="wide">{html}</div>')
+
+    def moisture(self):
+        """What flows of moisture are."""
+        text = tables.what_moisture_counts(self.run)
+        if text:
+            self.page.paragraph(text)
 
     def totals(self):
         """Quantities over time."""
@@ -332,6 +345,7 @@ class Report:
         if not html:
             return
         self.page.section("Totals", "totals")
+        self.moisture()
         for quantity in self.words.plotted_apart:
             figure = series.apart_figure(self.run.totals, self.words, quantity)
             if figure is not None:

@@ -3,15 +3,19 @@
 """A small sketch of the problem: the body, what holds on its sides, its cracks, line and probes."""
 
 import numpy as np
+from matplotlib import image
+from matplotlib.collections import LineCollection
+from matplotlib.patches import Rectangle
 
 import contours
 import solids
 import style
 import supports
+from raster import boundary_lines
 
 KIND_COLOR = (("dirichlet", "#c0392b"), ("flux", "#d98200"), ("convection", "#00897b"),
               ("u = ", supports.DISPLACEMENT), ("t = ", supports.TRACTION),
-              ("symmetry", supports.SYMMETRY))
+              ("symmetry", supports.SYMMETRY), ("temperature", "#00897b"))
 CLOSED = "#7b8794"  # insulated, sealed or free
 BODY = "#eef2f6"
 BOX_SIDES = {"bottom": ((0, 0), (1, 0)), "top": ((0, 1), (1, 1)), "left": ((0, 0), (0, 1)),
@@ -44,6 +48,8 @@ def draw_material(axes, maps):
     for model in run.models:
         if run.field_file(0, model) is None:
             continue
+        if draw_image(axes, run):
+            return True
         view = maps.view()
         nodes = run.mesh(0, model).nodes
         picture = maps.picture(0, model, np.ones(len(nodes)), contours.segments_of(run.cracks(0)))
@@ -52,19 +58,75 @@ def draw_material(axes, maps):
         shades[inside] = (0.933, 0.949, 0.965, 1)
         axes.imshow(shades, origin="lower", extent=view.extent, aspect="equal", zorder=1)
         if not inside.all():
-            draw_outline(axes, view, inside)
+            draw_outline(axes, run.mesh(0, model))
         return bool(inside.all())
     return True
 
 
-def draw_outline(axes, view, inside):
-    """The edge of the body, where it meets the edge of the view too."""
-    x, y = view.centers()
-    x, y = (np.concatenate([[v[0] - 0.5 * step], v, [v[-1] + 0.5 * step]])
-            for v, step in zip((x, y), view.pixel))
-    lines = axes.contour(x, y, np.pad(inside.astype(float), 1), levels=[0.5], linewidths=0)
-    for line in lines.allsegs[0]:
-        axes.plot(*np.asarray(line).T, color="#52606d", linewidth=1.0, clip_on=False, zorder=2)
+def draw_image(axes, run):
+    """The phases of a body from an image in paler colours; False where there is no image."""
+    path = run.directory / "image_as_read.png"
+    if not run.get("image", "phases") or not path.is_file():
+        return False
+    lower, upper = run.domain
+    pixels = np.array(image.imread(str(path)), float)[:, :, :4]
+    pixels[:, :, :3] = 1 - 0.55 * (1 - pixels[:, :, :3])
+    axes.imshow(pixels, origin="upper", extent=(lower[0], upper[0], lower[1], upper[1]), aspect="equal",
+                interpolation="nearest", zorder=1)
+    return True
+
+
+def legend_of_phases(figure, run, size):
+    """The colours of the phases of an image in a row at the foot."""
+    phases = run.get("image", "phases", default={}) or {}
+    x = 0.95
+    for phase, about in list(phases.items())[:4]:
+        shade = [1 - 0.55 * (1 - c / 255) for c in about["color"]]
+        figure.add_artist(Rectangle((x / size[0], 0.34 / size[1]), 0.14 / size[0], 0.1 / size[1], facecolor=shade,
+                                    edgecolor="#52606d", linewidth=0.5))
+        text = figure.text((x + 0.2) / size[0], 0.32 / size[1], shorten(phase, 14), fontsize=8, color="#52606d", va="bottom")
+        x += 0.35 + 0.075 * len(text.get_text())
+
+
+def draw_outline(axes, mesh):
+    """The edge of the body."""
+    axes.add_collection(LineCollection(boundary_lines(mesh), colors="#52606d", linewidths=1.0, clip_on=False, zorder=2,
+                                       capstyle="round"))
+
+
+def draw_places(axes, run, inch, elastic):
+    """Parts of sides, regions and points, and the sides of a mesh from a file, in the colours of what holds there."""
+    sides, middle, below = run.sides(brief=True), np.array(run.domain).mean(axis=0), False
+    for side, place in run.get("places", default={}).items():
+        color = side_color(sides.get(side, ""))
+        lines = np.array(place.get("lines", []), float).reshape(-1, 2, 2)
+        points = np.array(place.get("at", []), float).reshape(-1, 2)
+        if not len(points):
+            continue
+        if len(lines):
+            axes.add_collection(LineCollection(lines, colors=color, linewidths=1.4 if color == CLOSED else 3.2,
+                                               clip_on=False, zorder=3.5, capstyle="butt"))
+        else:
+            axes.plot(*points.T, linestyle="none", marker="x" if place["kind"] == "point" else ".", markersize=5, color=color,
+                      clip_on=False, zorder=6)
+        if elastic:
+            supports.draw_place(axes, run, side, inch)
+        normals = np.array(place.get("normals", []), float).reshape(-1, 2)
+        k = len(points) // 2
+        if len(normals):
+            far = elastic and supports.longest_of(run, side) > 0
+            name_place(axes, points[k] + normals[k] * inch * (0.45 if far else 0.22), normals[k], side, color)
+        else:  # by turns above and below, so that those of neighbours do not meet
+            below = not below
+            away = np.array([0.0, -1.0 if below else 1.0])
+            name_place(axes, points[k] + away * inch * 0.14, away, side, color, "right" if points[k][0] > middle[0] else "left")
+
+
+def name_place(axes, at, away, side, color, horizontal=None):
+    """The name of a part or side at a point, on that side of it."""
+    axes.text(*at, shorten(side, 16), fontsize=8, color=color, clip_on=False, zorder=8,
+              ha=horizontal or ("center" if abs(away[0]) < 0.5 else "left" if away[0] > 0 else "right"),
+              va="center" if abs(away[1]) < 0.5 else "bottom" if away[1] > 0 else "top")
 
 
 def draw_points(axes, run):
@@ -116,13 +178,16 @@ def sketch_2d(maps, words):
     height = min(width * extent[1] / extent[0], 3.4)
     height = max(height, 0.35)
     room = supports.room(run) if words.elastic else dict.fromkeys(BOX_SIDES, 0.0)
+    if run.get("places") and run.get("domain", "shape") == "mesh file":
+        room = {side: max(inches, 0.25) for side, inches in room.items()}  # for their names
+    foot = 0.72 + 0.25 * bool(run.get("image", "phases"))  # with the legend of phases
     size = (width + 1.9 + room["left"] + room["right"],
-            height + 1.25 + room["bottom"] + room["top"])
+            height + 0.53 + foot + room["bottom"] + room["top"])
     figure = style.figure(*size)
-    axes = figure.add_axes([(0.95 + room["left"]) / size[0], (0.72 + room["bottom"]) / size[1],
+    axes = figure.add_axes([(0.95 + room["left"]) / size[0], (foot + room["bottom"]) / size[1],
                             width / size[0], height / size[1]])
     full = draw_material(axes, maps)
-    sides = run.sides(brief=True)
+    sides = {side: text for side, text in run.sides(brief=True).items() if supports.is_side_of_box(run, side)}
     draw_sides(axes, sides, lower, extent, width, height, room)
     if words.elastic:
         supports.draw_2d(axes, run, lower, extent, extent[0] / width,
@@ -130,8 +195,10 @@ def sketch_2d(maps, words):
     if not any(side in sides for side in BOX_SIDES) and full:
         axes.plot(*(lower + np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)]) * extent).T,
                   color="#52606d", linewidth=1.2, clip_on=False)
+    draw_places(axes, run, extent[0] / width, words.elastic)
     contours.draw_cracks(axes, contours.segments_of(run.cracks()), 1.8)
     draw_points(axes, run)
+    legend_of_phases(figure, run, size)
     finish_2d(axes, lower, upper, words, size)
     return figure
 
@@ -207,10 +274,17 @@ def sketch_3d(run, words):
     if words.elastic:
         axes.apply_aspect()
         supports.draw_3d(axes, run, np.ptp(axes.get_xlim()) / (4.8 * 0.62))
+    for side, place in run.get("places", default={}).items():
+        if place["kind"] == "point":
+            color, at = side_color(sides.get(side, "")), solids.project(np.array(place["at"][0], float))
+            axes.plot(*at, marker="x", markersize=5, color=color, clip_on=False, zorder=8)
+            axes.annotate(shorten(side, 12), at, (3, 3), textcoords="offset points", fontsize=8, color=color, zorder=8)
     names = ("left", "right", "bottom", "top", "back", "front")
     listed = [(n, style.minus(sides[n])) for n in names if n in sides]
-    for i, (side, text) in enumerate(listed):
-        figure.text(0.63, 0.80 - 0.1 * i, f"{side}: {shorten(text, 20)}", fontsize=8,
+    listed += [(n, style.minus(text)) for n, text in sides.items() if n not in names]
+    step = min(0.1, 0.75 / max(len(listed), 1))
+    for i, (side, text) in enumerate(listed[:14]):
+        figure.text(0.63, 0.80 - step * i, f"{side}: {shorten(text, 20)}", fontsize=8,
                     color=side_color(text))
     return figure
 

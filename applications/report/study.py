@@ -5,13 +5,14 @@
 
     python3 study.py DIRECTORY
 
-Each figure is DIRECTORY/NAME.png and stands in the page, too. A study that names no figures gets one: the error, or
-without a reference the wall time, over the first entry that varies; one of `work_precision` gets charts of accuracy against cost. A fault of the file is told in one line, with
+Each figure is DIRECTORY/NAME.png and stands in the page, too. A study that names no figures gets the error, or
+without a reference what the runs have found and the wall time, over the first entry that varies; one of `work_precision` gets charts of accuracy against cost. A fault of the file is told in one line, with
 exit status 1.
 """
 
 import argparse
 import json
+import re
 import sys
 from html import escape
 from pathlib import Path
@@ -21,7 +22,7 @@ try:
     import work_precision
     from page import Page, paragraphs, write_page
     from style import name, plain, prose
-    from study_figures import ENTRY_MARK, StudyError, draw, label_of, last_lines, number
+    from study_figures import ENTRY_MARK, StudyError, draw, label_of, last_lines, number, title_of
 except ImportError as fault:
     sys.exit(f"study: a Python package is missing ({fault}); the figures need numpy, matplotlib and h5py")
 
@@ -58,10 +59,32 @@ def default_figures(study):
     entries = varying(study)
     if not entries:
         return []
+    over = entries[0].split(ENTRY_MARK)[-1]
     has_error = any(number(line.get("relative l2 error")) is not None for line in study["table"])
-    y = "relative l2 error" if has_error else "wall time"
-    return [{"name": y.replace(" ", "_"), "title": f"{name(y)} over {entries[0].split(ENTRY_MARK)[-1]}", "x": entries[0],
-             "y": y, "log": True, "lines": []}]
+    charted = [("relative l2 error", True)] if has_error else \
+        [(q, False) for q in worth_charting(study)] + [("wall time", True)]
+    return [{"name": file_name(y), "title": f"{title_of(y)} over {over}", "x": entries[0], "y": y, "log": log, "lines": []}
+            for y, log in charted]
+
+
+def file_name(column):
+    """The column with letters and digits alone."""
+    return re.sub(r"[^A-Za-z0-9.]+", "_", column.replace("-", "minus_")).strip("_")
+
+
+def worth_charting(study, at_most=8):
+    """What runs have found, but for what is zero in all of them beside others of its kind."""
+    sizes = {}
+    for quantity in study.get("quantities", []):
+        values = [number(line.get(quantity)) for line in last_lines(study)]
+        sizes[quantity] = max((abs(v) for v in values if v is not None), default=0.0)
+
+    def kind(quantity):
+        first = quantity.split(" at ")[0]
+        return "displacement" if first in ("ux", "uy", "uz") else "intensity" if first.startswith("K_") else quantity
+
+    largest = {k: max(s for q, s in sizes.items() if kind(q) == k) for k in map(kind, sizes)}
+    return [q for q, s in sizes.items() if s > 1e-9 * largest[kind(q)]][:at_most]
 
 
 def rows_table(study):
@@ -70,7 +93,8 @@ def rows_table(study):
     if not lines:
         return ""
     entries = [e for e in varying(study) if e != "Models"]  # the column of the model says it
-    shown = [(c, kind) for c, kind in COLUMNS if any(line.get(c) not in (None, "") for line in lines)]
+    found = [(q, NUMBER) for q in worth_charting(study)]
+    shown = [(c, kind) for c, kind in COLUMNS + tuple(found) if any(line.get(c) not in (None, "") for line in lines)]
     rows = []
     of_row = {row["name"]: row for row in study["rows"]}
     heading = None

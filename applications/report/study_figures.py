@@ -57,13 +57,35 @@ def label_of(study, column, bare=False):
         text = column.split(ENTRY_MARK)[-1]
         lists = any("," in str(row["entries"].get(column)) for row in study["rows"])
         return text if bare or not lists else f"{text} in x" if text in ("Cells", "Upper corner") else f"{text} (first number)"
-    text = style.name(column).replace(" l2 ", " L2 ")
+    text = title_of(column)
     words = words_of(study)
     if bare and column != "maximum error" or words is None and column not in SECONDS + BYTES:
         return text
+    if words is not None and column in study.get("quantities", ()):
+        return with_unit(text, unit_of_quantity(words, column))
     units = {"maximum error": words and words.solution.unit, "time": words and words.time,
              **{c: "s" for c in SECONDS}, **{c: "MB" for c in BYTES}}
     return with_unit(text, units.get(column))
+
+
+def title_of(column):
+    """A column at the start of a line."""
+    first, *place = column.split(" at ")
+    title = {"ux": "displacement in x", "uy": "displacement in y", "uz": "displacement in z",
+             "von_mises": "von Mises stress"}.get(first, first)
+    return style.name(" at ".join([title] + place)).replace(" l2 ", " L2 ")
+
+
+def unit_of_quantity(words, column):
+    """The unit of what runs have found."""
+    first = column.split(" at ")[0]
+    if first in ("K_I", "K_II"):
+        return words.units.intensity
+    if first == "largest force":
+        return words.units.force
+    if " at " in column:
+        return words.column("value" if first == words.solution.name else first).unit
+    return words.units.of_total(column)
 
 
 def value_of(line, column):
@@ -85,8 +107,34 @@ def line_name(key, columns, study):
     parts = []
     for column, value in zip(columns, key):
         brief = column.split(ENTRY_MARK)[-1]
+        if value is None:
+            continue
         parts.append(f"{brief} = {value}" if column in study["entries"] and column not in NO_ENTRIES else str(value))
     return ", ".join(p for p in parts if p) or "all rows"
+
+
+# Sections whose entries a model may not use; whether it does not is seen from its results.
+FOREIGN = {"finite elements": ("Peridynamics/", "Coupling/"), "peridynamics": ("Finite elements/", "Coupling/")}
+COSTS = ("name", "scene", "group", "x", "repeats", "message") + SECONDS + BYTES
+
+
+def without_effect(study):
+    """{model: entries that change nothing in its results}."""
+    found = {}
+    lines = [line for line in last_lines(study) if line.get("model") in FOREIGN]
+    for model, sections in FOREIGN.items():
+        own = [line for line in lines if line["model"] == model]
+        idle = set()
+        for entry in (e for e in study["entries"] if e.startswith(sections)):
+            results = {}
+            for line in own:
+                rest = tuple(str(line.get(e)) for e in study["entries"] if e != entry and e not in idle)
+                told = tuple((c, line.get(c)) for c in sorted(line) if c not in COSTS and c not in study["entries"])
+                results.setdefault(rest + (line["scene"],), set()).add(str(told))
+            if own and all(len(told) == 1 for told in results.values()):
+                idle.add(entry)
+        found[model] = idle
+    return found
 
 
 def collect(study, wanted):
@@ -98,13 +146,23 @@ def collect(study, wanted):
     if any(value_of(line, wanted["x"]) is None for line in lines):
         names = list(dict.fromkeys(str(line[wanted["x"]]) for line in lines))
     apart = line_columns(study, wanted, lines)
-    found = {}
+    found, idle = {}, without_effect(study)
     for line in lines:
-        key = tuple(line.get(c) for c in apart)
+        key = tuple(None if c in idle.get(line.get("model"), ()) else line.get(c) for c in apart)
         x = names.index(str(line[wanted["x"]])) if names else value_of(line, wanted["x"])
         found.setdefault(line_name(key, apart, study), []).append((x, value_of(line, wanted["y"])))
+    if any(idle.values()):
+        found = {n: only_smallest(points) for n, points in found.items()}
     measured = wanted["x"] not in study["entries"] + ["x", "time"]
     return {n: points if measured else sorted(points) for n, points in found.items()}, names
+
+
+def only_smallest(points):
+    """Points of which each x is there once: of what was computed again, the smallest."""
+    smallest = {}
+    for x, y in points:
+        smallest[x] = min(y, smallest.get(x, y))
+    return list(smallest.items())
 
 
 def slope(points):

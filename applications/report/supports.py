@@ -27,6 +27,24 @@ def values_at(run, side, kind):
     return (points, vectors) if vectors.shape == points.shape else None
 
 
+def names_of(run):
+    """All sides and parts that have displacements or tractions."""
+    return list(dict.fromkeys(list(NORMALS) + list(run.get("values on sides", default={}))))
+
+
+def is_side_of_box(run, side):
+    """Whether a name is that of a whole side of a box; parts and sides of meshes may have such names, too."""
+    return side in list(NORMALS)[:2 * run.dimension] and not run.get("places", side)
+
+
+def normals_at(run, side, n):
+    """Outward normals at the n points of a side or part; none of a region or a point."""
+    if is_side_of_box(run, side):
+        return [normal_of(side, run.dimension)] * n
+    found = run.get("places", side, "normals", default=[])
+    return np.array(found, float) if len(found) == n else np.zeros((n, run.dimension))
+
+
 def normal_of(side, dimension):
     """Outward unit normal of a side of a box."""
     axis, sign = NORMALS[side]
@@ -38,8 +56,14 @@ def normal_of(side, dimension):
 def longest(run, kind):
     """Length of the largest vector of a kind on any side."""
     sizes = [np.linalg.norm(np.nan_to_num(found[1]), axis=1).max() for found in
-             (values_at(run, side, kind) for side in NORMALS) if found is not None]
+             (values_at(run, side, kind) for side in names_of(run)) if found is not None]
     return max(sizes, default=0.0)
+
+
+def longest_of(run, side):
+    """Length of the largest vector of all kinds on a side or part."""
+    found = [values_at(run, side, kind) for kind in ("displacement", "traction")]
+    return max((np.linalg.norm(np.nan_to_num(f[1]), axis=1).max() for f in found if f is not None), default=0.0)
 
 
 class Marks:
@@ -60,6 +84,8 @@ class Marks:
         out = normal @ self.directions
         out = out / max(np.linalg.norm(out), 1e-300) * self.inch
         across = vector @ normal / np.linalg.norm(vector)
+        if not np.any(normal):  # of a region or a point: the arrow begins there
+            across = 1.0
         foot = self.to_paper(point)
         if across < -0.2:  # presses: the head is on the side
             start, end = foot - step, foot
@@ -76,8 +102,7 @@ class Marks:
         found = values_at(run, side, kind)
         if found is None or not full > 0:
             return
-        normal = normal_of(side, run.dimension)
-        for point, vector in zip(*found):
+        for point, vector, normal in zip(*found, normals_at(run, side, len(found[0]))):
             vector = np.nan_to_num(vector)
             share = np.linalg.norm(vector) / full
             if share > 1e-9:
@@ -131,12 +156,43 @@ def draw_2d(axes, run, lower, extent, inch, sides):
             marks.arrows(run, side, kind, color, longest(run, kind))
 
 
+def color_of(run, side):
+    """The colour of what holds a side or part of an elastic body, or loads it."""
+    text = run.sides().get(side, "")
+    return SYMMETRY if "symmetry" in text else TRACTION if "traction" in text and "displacement" not in text \
+        else DISPLACEMENT
+
+
+def is_held(run, side):
+    """'held' where no component may move, 'slides' where some may, '' where nothing is held or all is moved."""
+    if "symmetry" in run.sides().get(side, ""):
+        return "slides"
+    found = values_at(run, side, "displacement")
+    if found is None or np.abs(np.nan_to_num(found[1])).max(initial=0) > 0:
+        return ""
+    return "held" if np.isfinite(found[1]).all() else "slides" if np.isfinite(found[1]).any() else ""
+
+
+def draw_place(axes, run, side, inch):
+    """Marks and arrows of a part, or of a side of a mesh from a file, in two dimensions."""
+    marks = Marks(axes, lambda p: np.asarray(p, float), np.eye(2), inch)
+    points = np.array(run.get("places", side, "at", default=[]), float).reshape(-1, 2)
+    kind, color = is_held(run, side), color_of(run, side)
+    for point, normal in zip(points, normals_at(run, side, len(points))):
+        if kind:
+            at = point + 0.07 * inch * (normal if np.any(normal) else np.array([0.0, -1.0]))
+            axes.plot(*at, marker="^" if kind == "held" else "o", markersize=5, markerfacecolor="white",
+                      markeredgecolor=color, markeredgewidth=1.0, clip_on=False, zorder=7)
+    for what, arrow_color in (("displacement", DISPLACEMENT), ("traction", TRACTION)):
+        marks.arrows(run, side, what, arrow_color, longest(run, what))
+
+
 def draw_3d(axes, run, inch):
     """Held sides in colour, arrows at all sides: pale where they are hidden."""
     lower, upper = run.domain
     marks = Marks(axes, solids.project, solids.ISOMETRIC, inch)
     for side, (axis, sign) in NORMALS.items():
-        kind = kind_of_support(run, side)
+        kind = kind_of_support(run, side) if is_side_of_box(run, side) else ""
         if kind:
             color = SYMMETRY if "symmetry" in run.sides().get(side, "") else DISPLACEMENT
             corners = []
@@ -148,6 +204,7 @@ def draw_3d(axes, run, inch):
                 corners.append(solids.project(point))
             axes.fill(*np.array(corners).T, facecolor=color, alpha=0.22 if sign > 0 else 0.14,
                       edgecolor="none", hatch="////" if kind == "held" else "oo", zorder=2)
+    for side in names_of(run):
         for what, color in (("displacement", DISPLACEMENT), ("traction", TRACTION)):
             marks.arrows(run, side, what, color, longest(run, what), 0.22)
 
@@ -163,11 +220,12 @@ def draw_1d(axes, run, inch):
 def room(run):
     """Inches that marks take at each side of a sketch in two dimensions."""
     found = {}
+    apart = any(not is_side_of_box(run, side) and longest_of(run, side) > 0 for side in run.get("values on sides", default={}))
     for side in ("left", "right", "bottom", "top"):
-        needs = 0.12 if kind_of_support(run, side) else 0.0
+        needs = 0.12 if is_side_of_box(run, side) and kind_of_support(run, side) else 0.0
         for kind in ("displacement", "traction"):
-            values = values_at(run, side, kind)
+            values = values_at(run, side, kind) if is_side_of_box(run, side) else None
             if values is not None and np.abs(np.nan_to_num(values[1])).max(initial=0) > 0:
                 needs = 0.38
-        found[side] = needs
+        found[side] = max(needs, 0.38 if apart else 0.0)
     return found

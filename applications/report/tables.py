@@ -141,14 +141,15 @@ def error_rows(run, words):
     errors = model_rows(run, f"Relative L2 error{when}", final("errors", "relative l2"))
     errors += model_rows(run, words.solution.label(f"Largest error{when}"),
                          final("errors", "maximum"))
-    errors += model_rows(run, "Effective conductivity of the whole",
+    errors += model_rows(run, with_unit(f"{name(words.effective)} of the whole",
+                                        words.units.of_total(words.effective)),
                          lambda m: m.get("effective conductivity"))
     for part in ("throughput", "imbalance"):
-        errors += model_rows(run, f"{name(words.quantity)} {part}",
+        errors += model_rows(run, with_unit(f"{name(words.quantity)} {part}", words.units.rate),
                              lambda m, p=part: findings.balance(m, words).get(p))
     for part, title in (("entered", "entered since the start"), ("stored", "stored since the start"),
                         ("imbalance", "missing since the start")):
-        errors += model_rows(run, f"{name(words.quantity)} {title}",
+        errors += model_rows(run, with_unit(f"{name(words.quantity)} {title}", words.units.amount),
                              lambda m, p=part: entry("cumulative", p)(findings.balance(m, words)))
     return errors
 
@@ -194,6 +195,28 @@ def sides_table(run):
     if not sides:
         return ""
     return table(["Side", "Condition"], [[escape(s), escape(minus(c))] for s, c in sides.items()])
+
+
+def what_moisture_counts(run):
+    """What flows and amounts of moisture are, or ''."""
+    counts = run.get("moisture counts", default="")
+    if counts == "mass":
+        return "Flows and stored amounts are those of Density times wetness: masses, if Density is the saturated concentration."
+    if counts != "wetness":
+        return ""
+    saturated = run.scene_entry("Material", "Saturated concentration")
+    try:
+        factor = f"the saturated concentration, {with_its_unit(plain(float(saturated)), run.words.units.of_material('Saturated concentration'))}," \
+            if not run.scene_entry("Material/Phases", "Saturated concentration") else "the saturated concentration"
+    except ValueError:
+        factor = "the saturated concentration"
+    return (f"Flows and stored amounts are those of the wetness times the volume; times {factor} they are masses. "
+            "The weight is a mass already.")
+
+
+def with_its_unit(text, unit):
+    """A number with its unit."""
+    return f"{text} {unit}".strip()
 
 
 def error_table(run, words):

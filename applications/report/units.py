@@ -20,18 +20,28 @@ class Units:
     Numbers of a 2D body are per unit of its thickness, those of a 1D one per unit of its cross section.
     """
 
-    def __init__(self, named, dimension, physics):
+    def __init__(self, named, dimension, physics, counts=""):
+        """counts: 'wetness' where flows of moisture are wetness times volume, else they are masses."""
         named = {key: str(value) for key, value in (named or {}).items() if value}
         self.length, self.time = named.get("length", ""), named.get("time", "")
-        self.dimension, self.physics = dimension, physics
+        self.dimension, self.physics, self.named = dimension, physics, named
         force = named.get("force", "") if physics == "elasticity" else ""
         self.stress = PRESSURES.get((force, self.length), over(force, self.length and f"{self.length}²"))
         self.intensity = f"{self.stress} √{self.length}" if self.stress and self.length else ""
         self.toughness = over(force, self.length)
         self.force = self.per_body(force)
         amount, rate = self.amounts(named, force)
+        self.weight = self.per_body(amount)
+        if counts == "wetness":
+            amount = f"{self.length}³" if self.length else ""
+            rate = over(amount, self.time)
         self.amount, self.rate = self.per_body(amount), self.per_body(rate)
-        self.flux = over(rate, self.length and f"{self.length}²")
+        if counts == "wetness" and dimension < 3 and self.length:  # mm³/mm is mm²
+            power = {1: "", 2: "²"}[dimension]
+            self.amount = self.length + power
+            self.rate = over(self.amount, self.time)
+        self.flux = over(self.length, self.time) if counts == "wetness" \
+            else over(rate, self.length and f"{self.length}²")
 
     def amounts(self, named, force):
         """(unit of what a body holds, unit of what passes its sides in a time)."""
@@ -73,11 +83,41 @@ class Units:
 
     def of_scalar_total(self, quantity):
         """... of heat, moisture or charge."""
-        if quantity.endswith(" since start") or quantity in ("heat content", "weight", "charge",
-                                                             "cumulative imbalance"):
+        if quantity == "weight":
+            return self.weight
+        if quantity.startswith("effective "):
+            return self.of_material("Conductivity")
+        if quantity.endswith(" since start") or quantity in ("heat content", "charge", "cumulative imbalance"):
             return self.amount
         flows = (" through ", " from sources")
         if any(part in quantity for part in flows) or quantity in ("rate of storage", "throughput",
                                                                    "imbalance"):
             return self.rate
         return ""
+
+    def of_material(self, entry):
+        """The unit of an entry of the section Material; empty where it has none or too little is named for it."""
+        length, time = self.length, self.time
+        volume = length and f"{length}³"
+        if self.physics == "elasticity":
+            densities = {("N", "m", "s"): "kg/m³", ("N", "mm", "s"): "t/mm³", ("N", "mm", "ms"): "g/mm³",
+                         ("kN", "mm", "ms"): "kg/mm³"}
+            temperature = self.named.get("temperature", "")
+            degree = {"C": "K", "degC": "K", "F": "°F"}.get(temperature, temperature)
+            return {"Bulk modulus": self.stress, "Shear modulus": self.stress, "Young modulus": self.stress,
+                    "Density": densities.get((self.named.get("force"), length, time), ""),
+                    "Thermal expansion": degree and f"1/{degree}",
+                    "Fracture energy": {"N/m": "J/m²", "kN/m": "kJ/m²"}.get(self.toughness, self.toughness)}.get(entry, "")
+        if self.physics == "moisture":
+            return {"Conductivity": over(length and f"{length}²", time),
+                    "Saturated concentration": over(self.named.get("mass", ""), volume)}.get(entry, "")
+        field = self.named.get("field", "")
+        field = {"C": "K", "degC": "K", "F": "°F"}.get(field, field)
+        amount, rate = self.amounts(self.named, "")
+        per = f"({length} {field})" if length and field else ""
+        if self.physics == "electricity":
+            short = {("A", "V"): f"S/{length}"}
+            return {"Conductivity": short.get((rate, field), over(rate, per)) if length else ""}.get(entry, "")
+        mass = self.named.get("mass", "") if amount else ""
+        return {"Conductivity": over(rate, per), "Density": over(mass, volume),
+                "Heat capacity": over(amount, f"({mass} {field})" if mass and field else "")}.get(entry, "")

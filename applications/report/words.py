@@ -97,7 +97,8 @@ class Words:
         self.time = units.get("time") or ""
         unit = units.get("field", units.get(physics.field)) or ""
         self.solution = Field(physics.field, DEGREES.get(unit, unit), physics.isolines)
-        self.units = Units(units, summary.get("dimension", 3), summary.get("physics") or "heat")
+        self.units = Units(units, summary.get("dimension", 3), summary.get("physics") or "heat",
+                           summary.get("moisture counts", ""))
         self.flux = Field(physics.flux, self.units.flux)
         self.content, self.flow, self.quantity = physics.content, physics.flow, physics.quantity
         self.values, self.also = physics.values, physics.also
@@ -143,13 +144,19 @@ class Words:
             or Field(name)
 
     @property
+    def effective(self):
+        """What the body conducts as a whole is called."""
+        return "effective diffusivity" if self.quantity == "moisture" else "effective conductivity"
+
+    @property
     def passing(self):
         """What passes a side: 'heat', 'moisture', 'current'."""
         return self.flow.removesuffix(" flow")
 
     def total(self, quantity):
         """The title of a quantity of totals.csv, with its unit."""
-        return with_unit(style.name(quantity), self.units.of_total(quantity))
+        unit = self.units.of_total(quantity)
+        return with_unit(style.name(self.effective if quantity == "effective conductivity" else quantity), unit)
 
     def total_amount(self, quantity, value, digits=4):
         """A value of it with few digits and its unit."""

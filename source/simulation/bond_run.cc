@@ -8,6 +8,9 @@
 #include <perideal/operators/bond_operator.h>
 #include <perideal/scene/beyond_sides.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "model_runs.h"
 
 namespace PeriDeal
@@ -16,6 +19,34 @@ namespace PeriDeal
 
   namespace
   {
+    std::string name_of(const InterfaceRule rule)
+    {
+      static const char *const rules[] = {"minimum", "arithmetic", "harmonic"};
+      return rules[static_cast<int>(rule)];
+    }
+
+
+    /** The largest over the smallest conductivity of phases given by numbers; 1 without. */
+    double ratio_of_phases(const Material &material)
+    {
+      const Regions &regions  = material.phases.all();
+      double         smallest = std::numeric_limits<double>::max(), largest = 0.;
+      const auto     add = [&](const Expression &formula) {
+        if (!formula.is_constant())
+          return;
+        const double value = formula.value(Point<1>());
+        smallest           = std::min(smallest, value);
+        largest            = std::max(largest, value);
+      };
+      for (unsigned int k = 0; k < regions.names.size(); ++k)
+        add(material.conductivity.formula(k));
+      // An image leaves no place to what is in no phase.
+      if (!regions.names.empty() && !regions.image)
+        add(material.conductivity.formula(-1));
+      return largest > 0. && smallest > 0. ? largest / smallest : 1.;
+    }
+
+
     template <int dim>
     class BondRun : public ModelRun<dim>
     {
@@ -145,6 +176,8 @@ namespace PeriDeal
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
         auto list = bond_settings(scene, bonds->families());
+        if (!scene.material.uniform_conductivity())
+          list.emplace_back("interface rule", name_of(scene.material.interface_rule));
         list.emplace_back("operator form", bonds->form_note());
         return list;
       }
@@ -166,10 +199,20 @@ namespace PeriDeal
           list.emplace_back(
             "'Boundary treatment = fictitious constant' in section 'Peridynamics' is of first order in the spacing "
             "only; 'fictitious mirror' is of second order.");
+        if (const double ratio = ratio_of_phases(scene.material);
+            ratio >= much && scene.material.interface_rule != InterfaceRule::harmonic)
+          list.push_back(
+            "the phases conduct " + to_text(ratio) + " : 1, and bonds between them have the " +
+            name_of(scene.material.interface_rule) +
+            (scene.material.interface_rule == InterfaceRule::arithmetic ? " mean" : "") +
+            ", which is right for what flows along the interface; 'Interface rule = harmonic' in section "
+            "'Material' is right for what crosses it, as around inclusions.");
         return list;
       }
 
     private:
+      static constexpr double much = 3.;
+
       const Scene<dim>                  &scene;
       DoFHandler<dim>                    handler;
       std::unique_ptr<Nodes<dim>>        node_set;

@@ -111,6 +111,10 @@ namespace PeriDeal
       if (ends.size() > most)
         lines.push_back("stress intensities at " + std::to_string(ends.size() - most) +
                         " more ends of cracks are in totals.csv");
+      if (summary.contains("no stress intensity"))
+        lines.push_back(
+          (ends.empty() ? "no stress intensity factors: " : "stress intensity factors: ") +
+          summary["no stress intensity"].get<std::string>());
     }
 
 
@@ -208,10 +212,15 @@ namespace PeriDeal
       for (const auto &[pair, entries] : summary["comparisons"].items())
         add_difference(lines, pair, entries, unit);
     add_errors(lines, summary);
-    add_of_models(lines, "effective conductivity", summary, [](const json &model) {
-      return model.contains("effective conductivity") ? digits(model["effective conductivity"], 6) :
-                                                        std::string();
-    });
+    const bool moist = summary.value("physics", "") == "moisture";
+    add_of_models(lines,
+                  moist ? "effective diffusivity" : "effective conductivity",
+                  summary,
+                  [](const json &model) {
+                    return model.contains("effective conductivity") ?
+                             digits(model["effective conductivity"], 6) :
+                             std::string();
+                  });
     add_intensities(lines, summary);
     add_breaking(lines, summary);
     return lines;

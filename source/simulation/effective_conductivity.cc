@@ -16,7 +16,7 @@ namespace PeriDeal
     const auto                     vanishes = [](const Expression &formula) {
       return formula.is_constant() && formula.value(Point<dim>()) == 0.;
     };
-    if (scene.domain.shape != Shape::box || bc.dirichlet.size() != 2 || !bc.convection.empty() ||
+    if ((scene.domain.shape != Shape::box && scene.domain.shape != Shape::image) || bc.dirichlet.size() != 2 || !bc.convection.empty() ||
         !vanishes(scene.initial_and_source.source) ||
         !std::all_of(bc.flux.begin(), bc.flux.end(), [&](const SideCondition &side) {
           return vanishes(side.value);
@@ -32,7 +32,7 @@ namespace PeriDeal
     double length_over_area = 1.;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        const double length = scene.domain.upper[d] - scene.domain.lower[d];
+        const double length = scene.domain.body_upper[d] - scene.domain.body_lower[d];
         length_over_area    = d == a.id / 2 ? length_over_area * length : length_over_area / length;
       }
     const double heat = 0.5 * (balance.sides.at(a.name) - balance.sides.at(b.name));

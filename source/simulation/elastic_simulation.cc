@@ -478,7 +478,14 @@ namespace PeriDeal
         upper[d] = summary["domain"]["upper"][d];
       }
     summary["values on sides"] =
-      values_on_sides(scene, lower, upper, scene.time.steady ? 0. : scene.time.end_time);
+      values_on_sides(scene,
+                      lower,
+                      upper,
+                      scene.time.steady ? 0. : scene.time.end_time,
+                      summary.value("places", json::object()));
+    if (const std::string reason = no_stress_intensity(scene, summary["models"]);
+        at_the_end && !reason.empty())
+      summary["no stress intensity"] = reason;
     return summary;
   }
 

@@ -123,30 +123,67 @@ namespace PeriDeal
   json values_on_sides(const Scene<dim> &scene,
                        const Point<dim> &lower,
                        const Point<dim> &upper,
-                       const double      t)
+                       const double      t,
+                       const json       &places)
   {
-    json sides = json::object();
-    if (scene.domain.shape == Shape::mesh_file)
-      return sides;
-    const auto add = [&](const std::vector<VectorCondition> &list, const std::string &kind) {
+    json       sides = json::object();
+    const bool box   = scene.domain.shape != Shape::mesh_file;
+    const auto add   = [&](const std::vector<VectorCondition> &list, const std::string &kind) {
       for (const VectorCondition &condition : list)
-        if (condition.id < 2 * dim)
-          {
-            json at = json::array(), values = json::array();
-            for (const Point<dim> &p : points_on_side<dim>(condition.id, lower, upper))
+        {
+          std::vector<Point<dim>> points;
+          if (box && condition.id < 2 * dim)
+            points = points_on_side<dim>(condition.id, lower, upper);
+          else if (places.contains(condition.name))
+            for (const json &at : places[condition.name]["at"])
               {
-                json coordinates = json::array();
+                points.emplace_back();
                 for (unsigned int d = 0; d < dim; ++d)
-                  coordinates.push_back(p[d]);
-                at.push_back(coordinates);
-                values.push_back(values_at(condition, p, t));
+                  points.back()[d] = at[d];
               }
-            sides[condition.name][kind] = {{"at", at}, {"values", values}};
-          }
+          if (points.empty())
+            continue;
+          json at = json::array(), values = json::array();
+          for (const Point<dim> &p : points)
+            {
+              json coordinates = json::array();
+              for (unsigned int d = 0; d < dim; ++d)
+                coordinates.push_back(p[d]);
+              at.push_back(coordinates);
+              values.push_back(values_at(condition, p, t));
+            }
+          sides[condition.name][kind] = {{"at", at}, {"values", values}};
+        }
     };
     add(scene.boundary_conditions.displacement, "displacement");
     add(scene.boundary_conditions.traction, "traction");
     return sides;
+  }
+
+
+  template <int dim>
+  std::string no_stress_intensity(const Scene<dim> &scene, const json &models)
+  {
+    const Material &material = scene.material;
+    if (scene.cracks.cracks.empty() || !scene.elasticity.is_static() || material.fracture_energy ||
+        material.critical_stretch)
+      return "";
+    if (dim == 3)
+      return "they are computed in two dimensions only";
+    bool found = false, local = false, all = true;
+    for (const auto &[name, model] : models.items())
+      {
+        const bool has = model.contains("stress intensity");
+        found          = found || has;
+        all            = all && has;
+        local          = local || name != to_string(Model::peridynamics);
+      }
+    if (found)
+      return all ? "" : "peridynamics has none: they follow from the local stress of elements";
+    if (!local)
+      return "they follow from the local stress of elements, which peridynamics alone has not: add "
+             "'finite elements' or 'coupled' to 'Models'";
+    return "they need a box or a plate of one material without heating, and room around the end of a crack for some cells";
   }
 
 
@@ -265,19 +302,21 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                              \
-  template Vector component_of(const DoFHandler<dim> &, const Vector &, const unsigned int);   \
-  template json   describe_elastic_sides(const Scene<dim> &);                                  \
-  template json   values_on_sides(const Scene<dim> &,                                          \
-                                  const Point<dim> &,                                          \
-                                  const Point<dim> &,                                          \
-                                  const double);                                               \
-  template double find_force_scale(const ElasticRun<dim> &, const Scene<dim> &, const double); \
-  template void   compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &, \
-                                        const Domain<dim> &,                                   \
-                                        const double,                                          \
-                                        json &,                                                \
-                                        json &);
+#define PERIDEAL_INSTANTIATE(dim)                                                                   \
+  template Vector      component_of(const DoFHandler<dim> &, const Vector &, const unsigned int);   \
+  template json        describe_elastic_sides(const Scene<dim> &);                                  \
+  template json        values_on_sides(const Scene<dim> &,                                          \
+                                       const Point<dim> &,                                          \
+                                       const Point<dim> &,                                          \
+                                       const double,                                                \
+                                       const json &);                                               \
+  template std::string no_stress_intensity(const Scene<dim> &, const json &);                       \
+  template double      find_force_scale(const ElasticRun<dim> &, const Scene<dim> &, const double); \
+  template void        compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &, \
+                                             const Domain<dim> &,                                   \
+                                             const double,                                          \
+                                             json &,                                                \
+                                             json &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

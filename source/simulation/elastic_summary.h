@@ -21,14 +21,22 @@ namespace PeriDeal
   nlohmann::ordered_json describe_elastic_sides(const Scene<dim> &scene);
 
   /**
-   * Side of a box -> `displacement`, `traction` -> `at` (points spread over the side) and `values` (at time @p t, a list of components for each point; null: free),
-   * what arrows in a sketch are drawn from. Sides of other bodies are left out.
+   * Side or part -> `displacement`, `traction` -> `at` (points spread over it) and `values` (at time @p t, a list of components for each point; null: free),
+   * what arrows in a sketch are drawn from. The points of what is no side of a box are those of @p places (places_of_conditions()).
    */
   template <int dim>
-  nlohmann::ordered_json values_on_sides(const Scene<dim>         &scene,
-                                         const dealii::Point<dim> &lower,
-                                         const dealii::Point<dim> &upper,
-                                         const double              t = 0.);
+  nlohmann::ordered_json values_on_sides(const Scene<dim>             &scene,
+                                         const dealii::Point<dim>     &lower,
+                                         const dealii::Point<dim>     &upper,
+                                         const double                  t,
+                                         const nlohmann::ordered_json &places);
+
+  /**
+   * Why some model of a body at rest with whole bonds has no stress intensity factors at the ends of its cracks, or nothing: there are no cracks,
+   * or all models have them. @param models their entries in the summary
+   */
+  template <int dim>
+  std::string no_stress_intensity(const Scene<dim> &scene, const nlohmann::ordered_json &models);
 
   /**
    * The size of forces in the body now, against which a sum of forces that should be zero is small or not: what passes through it (@p throughput), and its mean Young modulus

@@ -21,6 +21,7 @@
 
 #include "check_sides.h"
 #include "closing.h"
+#include "crack_note.h"
 #include "effective_conductivity.h"
 #include "finite_results.h"
 #include "point_readers.h"
@@ -107,7 +108,10 @@ namespace PeriDeal
   void Simulation<dim>::build()
   {
     if (!mesh)
-      build_mesh_of_run();
+      {
+        build_mesh_of_run();
+        note_missing_crack_scaling(scene, record->notes);
+      }
     if (!scene.cracks.tips.empty())
       {
         const CrackHistory<dim> history = scene.crack_history();

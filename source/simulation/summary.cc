@@ -51,6 +51,16 @@ namespace PeriDeal
     }
 
 
+    /** Flows and amounts of moisture are wetness times volume: nothing is given that would make them masses. */
+    bool counts_wetness(const Material &material)
+    {
+      const auto is_one = [](const MaterialProperty &property) {
+        return property.is_constant() && property.value(Point<1>()) == 1.;
+      };
+      return is_one(material.density) && is_one(material.heat_capacity);
+    }
+
+
     template <int dim>
     json describe_model(const ModelRun<dim> &model,
                         const ResultRecord  &record,
@@ -113,6 +123,8 @@ namespace PeriDeal
     json summary = describe_scene(scene, text, *mesh, communicator);
     if (scene.domain.coarsening > 0)
       summary["mesh"] = {{"coarsening", scene.domain.coarsening}, {"adaptations", n_adaptations}};
+    if (scene.general.physics == Physics::moisture)
+      summary["moisture counts"] = counts_wetness(scene.material) ? "wetness" : "mass";
     summary["cracks"]      = corners_of(scene.cracks.pieces(scene.cracks.end_time));
     summary["sides"]       = describe_sides(scene);
     summary["steady"]      = scene.time.steady;

@@ -10,6 +10,8 @@
 #include <limits>
 #include <sstream>
 
+#include "places.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -140,6 +142,8 @@ namespace PeriDeal
                                          {"upper", coordinates(corners.second)},
                                          {"shape", shapes[static_cast<int>(scene.domain.shape)]}};
     summary["cells"]                  = mesh.n_global_active_cells();
+    if (json places = places_of_conditions(scene, mesh, communicator); !places.empty())
+      summary["places"] = std::move(places);
     if (scene.domain.image)
       summary["image"] = describe_image(scene.domain.image_file, scene.domain.image_of_body());
     return summary;

@@ -4,6 +4,7 @@
 #include "study_tables.h"
 
 #include <perideal/output/tables.h>
+#include <perideal/scene/lists.h>
 
 #include <algorithm>
 
@@ -93,11 +94,58 @@ namespace PeriDeal
     }
 
 
+    /** `ux at (80, 0)`: what a column of probes.csv is called here. @param field the name of the solution of what diffuses */
+    std::string name_at_probe(const std::string &column,
+                              const Json        &coordinates,
+                              const std::string &field)
+    {
+      std::string place;
+      for (const Json &x : coordinates)
+        place += (place.empty() ? "" : ", ") + number_text(x.get<double>());
+      return (column == "value" ? field : column) + " at (" + place + ")";
+    }
+
+
+    /** What a model has found in the end, by the names of columns: values at probes, stress intensities, energies, the largest force. */
+    Json quantities_of(const Json &results, const std::string &name)
+    {
+      const Json &model = results["models"][name];
+      Json        found = Json::object();
+      double      end   = 0.;
+      for (const Json &row : results["probes"])
+        end = std::max(end, row.value("time", 0.));
+      const std::string field =
+        results.contains("names") ? results["names"].value("field", "value") : "value";
+      for (const Json &row : results["probes"])
+        if (row.value("model", "") == name && row.value("time", 0.) == end)
+          for (const char *const column : {"value", "ux", "uy", "uz", "von_mises"})
+            if (row.contains(column))
+              found[name_at_probe(column, row["coordinates"], field)] = row[column];
+      if (model.contains("stress intensity"))
+        for (const auto &[crack_end, values] : model["stress intensity"].items())
+          for (const char *const mode : {"I", "II"})
+            found[std::string("K_") + mode + " at " + crack_end] = values[mode];
+      for (const char *const key : {"effective conductivity", "strain energy"})
+        if (model.contains(key))
+          found[key] = model[key];
+      if (model.contains("largest force"))
+        found["largest force"] = model["largest force"]["value"];
+      if (model.contains("energy balance"))
+        for (const auto &[key, title] :
+             {std::pair<const char *, const char *>{"dissipated", "energy dissipated"},
+              {"broken bonds", "broken bonds"}})
+          if (model["energy balance"].contains(key))
+            found[title] = model["energy balance"][key];
+      return found;
+    }
+
+
     /** The lines of study.csv as objects. */
-    void add_lines(Json             &lines,
-                   const Study      &study,
-                   const CheckedRow &checked,
-                   const RowResult  &result)
+    void add_lines(Json                     &lines,
+                   std::vector<std::string> &quantities,
+                   const Study              &study,
+                   const CheckedRow         &checked,
+                   const RowResult          &result)
     {
       if (result.status == RowResult::Status::missing)
         return;
@@ -128,17 +176,24 @@ namespace PeriDeal
                 }
               lines.push_back(line);
             }
+          const Json found = quantities_of(result.results, item.key());
+          lines.back().update(found);
+          for (const auto &quantity : found.items())
+            if (std::find(quantities.begin(), quantities.end(), quantity.key()) == quantities.end())
+              quantities.push_back(quantity.key());
         }
     }
 
 
+    /** @param quantities the names of what rows have found, which are columns behind all others */
     Json all_lines(const Study                   &study,
                    const std::vector<CheckedRow> &rows,
-                   const std::vector<RowResult>  &results)
+                   const std::vector<RowResult>  &results,
+                   std::vector<std::string>      &quantities)
     {
       Json lines = Json::array();
       for (std::size_t k = 0; k < rows.size(); ++k)
-        add_lines(lines, study, rows[k], results[k]);
+        add_lines(lines, quantities, study, rows[k], results[k]);
       return lines;
     }
 
@@ -217,12 +272,14 @@ namespace PeriDeal
                         const std::vector<CheckedRow> &rows,
                         const std::vector<RowResult>  &results)
   {
-    const std::vector<std::string> columns = all_columns(study);
-    std::string                    text;
+    std::vector<std::string> columns = all_columns(study), quantities;
+    const Json               lines   = all_lines(study, rows, results, quantities);
+    columns.insert(columns.end(), quantities.begin(), quantities.end());
+    std::string text;
     for (std::size_t k = 0; k < columns.size(); ++k)
       text += (k > 0 ? "," : "") + csv_cell(columns[k]);
     text += "\n";
-    for (const Json &line : all_lines(study, rows, results))
+    for (const Json &line : lines)
       {
         for (std::size_t k = 0; k < columns.size(); ++k)
           {
@@ -242,17 +299,21 @@ namespace PeriDeal
                          const std::vector<CheckedRow> &rows,
                          const std::vector<RowResult>  &results)
   {
-    Json json;
-    json["title"]   = study.title;
-    json["text"]    = study.text;
-    json["source"]  = study.source;
-    json["program"] = std::string("PeriDeal ") + PERIDEAL_VERSION;
-    json["columns"] = all_columns(study);
-    json["entries"] = study.columns;
-    json["varied"]  = study.varied;
-    json["figures"] = describe_figures(study);
-    json["table"]   = all_lines(study, rows, results);
-    json["rows"]    = Json::array();
+    Json                     json;
+    std::vector<std::string> columns = all_columns(study), quantities;
+    const Json               lines   = all_lines(study, rows, results, quantities);
+    columns.insert(columns.end(), quantities.begin(), quantities.end());
+    json["title"]      = study.title;
+    json["text"]       = study.text;
+    json["source"]     = study.source;
+    json["program"]    = std::string("PeriDeal ") + PERIDEAL_VERSION;
+    json["columns"]    = columns;
+    json["quantities"] = quantities;
+    json["entries"]    = study.columns;
+    json["varied"]     = study.varied;
+    json["figures"]    = describe_figures(study);
+    json["table"]      = lines;
+    json["rows"]       = Json::array();
     for (std::size_t k = 0; k < rows.size(); ++k)
       json["rows"].push_back(describe_row(study, rows[k], results[k]));
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "crack_note.h"
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  template <int dim>
+  void note_missing_crack_scaling(const Scene<dim> &scene, std::vector<std::string> &notes)
+  {
+    const auto &models = scene.general.models;
+    const auto  runs   = [&](const Model model) {
+      return std::find(models.begin(), models.end(), model) != models.end();
+    };
+    const SurfaceCorrection correction = scene.peridynamics.surface_correction;
+    const bool              bonds      = runs(Model::peridynamics) || runs(Model::coupled),
+               pairs                   = scene.cracks.mesh == CrackMesh::pairs;
+    if (dim == 1 || scene.cracks.cracks.empty() || scene.cracks.conduct() || (!bonds && !pairs) ||
+        (correction != SurfaceCorrection::none && correction != SurfaceCorrection::automatic))
+      return;
+    const PhysicsNames &names = names_of(scene.general.physics);
+    notes.push_back(
+      "beside a crack bonds " + std::string(pairs ? "and the pairs of cut cells " : "") +
+      "conduct too little along it, and the jump of the " + names.field +
+      " across it comes out some percent too large: 'Surface correction = crack scaling' in section "
+      "'Peridynamics' makes up for most of that.");
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim) \
+  template void note_missing_crack_scaling(const Scene<dim> &, std::vector<std::string> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
