@@ -100,6 +100,7 @@ namespace PeriDeal
       set_material_ids(*mesh, scene.material.phases.all());
     }
     check_points_of_parts(scene, *mesh, record->notes);
+    note_missing_crack_scaling(scene, record->notes);
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
   }
 
@@ -108,10 +109,7 @@ namespace PeriDeal
   void Simulation<dim>::build()
   {
     if (!mesh)
-      {
-        build_mesh_of_run();
-        note_missing_crack_scaling(scene, record->notes);
-      }
+      build_mesh_of_run();
     if (!scene.cracks.tips.empty())
       {
         const CrackHistory<dim> history = scene.crack_history();
