@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -381,7 +380,7 @@ namespace PeriDeal
           {
             std::vector<double> values;
             for (unsigned int k = 0; k < points.size(); ++k)
-              values.push_back(readers[0]->is_gap(k) ? std::numeric_limits<double>::quiet_NaN() :
+              values.push_back(readers[0]->is_gap(k) ? std::nan("") :
                                                        exact->value(points[k].data(), t));
             table->add(t, "exact", values);
           }
