@@ -264,8 +264,8 @@ def table():
             row = [specimen.gap(specimen.run(n, FE), FE), specimen.gap(specimen.run(n, FE, faces=True), FE),
                    specimen.gap(specimen.run(n, COUPLED), COUPLED), specimen.gap_of_integral(n + 1, PD)]
             print(f"| {specimen.name} | {n} | " + " | ".join(percent(gap) for gap in row) + " |", flush=True)
-    for n in (20, 40):
-        row = [round_crack(n, FE), None, round_crack(n, COUPLED), round_crack(n, PD)]
+    for n in (20, 40, 80):
+        row = [round_crack(n, FE), None, round_crack(n, COUPLED), round_crack(n, PD) if n < 80 else None]
         print(f"| round crack | {n} | " + " | ".join("" if gap is None else percent(gap) for gap in row) + " |", flush=True)
 
 
