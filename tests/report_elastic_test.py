@@ -25,6 +25,7 @@ import materials
 import sketch
 import style
 import supports
+import surfaces
 from raster import View
 from read_run import Mesh, Run
 from report_elastic_cases import COUPLED, FLIGHT, OPENING, column_values, make_broken, make_elastic
@@ -392,6 +393,47 @@ class Slender(ReportCase):
                             self.assertLessEqual(extent.x1, box.x1 + 1, (width, height, n, text.get_text()))
                             self.assertGreaterEqual(extent.y0, box.y0 - 1, (width, height, n, text.get_text()))
                             self.assertLessEqual(extent.y1, box.y1 + 1, (width, height, n, text.get_text()))
+
+
+class SurfaceTest(unittest.TestCase):
+    """What lies within a distance of the surface of a body."""
+
+    @staticmethod
+    def mesh(shape, n=24):
+        """Cells with copies of their vertices: a quarter of a ring from 1 to 2, or a square with a hole."""
+        s = np.linspace(0, 1, n + 1)
+        quads = [np.array([(s[i], s[j]), (s[i + 1], s[j]), (s[i + 1], s[j + 1]), (s[i], s[j + 1])])
+                 for i in range(n) for j in range(n)]
+        if shape == "ring":
+            quads = [np.column_stack(((1 + q[:, 0]) * np.cos(0.5 * np.pi * q[:, 1]),
+                                      (1 + q[:, 0]) * np.sin(0.5 * np.pi * q[:, 1]))) for q in quads]
+        else:
+            quads = [q for q in quads if np.abs(q.mean(axis=0) - 0.5).max() > 0.125]
+        return Mesh(np.concatenate(quads), np.arange(4 * len(quads)).reshape(-1, 4))
+
+    def test_ring(self):
+        mesh = self.mesh("ring")
+        radius = np.hypot(*mesh.nodes.T)
+        depth = np.minimum(np.minimum(radius - 1, 2 - radius), mesh.nodes.min(axis=1))
+        near = surfaces.near_surface(mesh, 0.1)
+        self.assertTrue(near[depth < 0.095].all())
+        self.assertFalse(near[depth > 0.105].any())
+        inner = np.hypot(*(mesh.nodes - 1.05 / np.sqrt(2)).T).argmin()  # far from the box around the ring
+        self.assertTrue(near[inner])
+
+    def test_hole(self):
+        mesh = self.mesh("hole")
+        x = np.abs(mesh.nodes - 0.5).max(axis=1)
+        near = surfaces.near_surface(mesh, 0.06)
+        self.assertTrue(near[(x < 0.125 + 0.05) | (x > 0.45)].all())
+        self.assertFalse(near[(x > 0.125 + 0.07) & (x < 0.43)].any())
+
+    def test_block(self):
+        nodes, cells = box_mesh((0, 0, 0), (2, 1, 1), (16, 8, 8))
+        depth = np.minimum(nodes, (2, 1, 1) - nodes).min(axis=1)
+        near = surfaces.near_surface(Mesh(nodes, cells), 0.2)
+        np.testing.assert_array_equal(near, depth < 0.2)
+
 
 if __name__ == "__main__":
     unittest.main()

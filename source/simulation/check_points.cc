@@ -6,10 +6,10 @@
 #include <deal.II/fe/mapping_q1.h>
 
 #include <perideal/base/user_error.h>
-#include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 
 #include "check_sides.h"
 
@@ -97,12 +97,20 @@ namespace PeriDeal
     }
 
 
+    std::string few_digits(const double x)
+    {
+      std::ostringstream text;
+      text << x;
+      return text.str();
+    }
+
+
     template <int dim>
     std::string text_of(const Point<dim> &p)
     {
       std::string text;
       for (unsigned int d = 0; d < dim; ++d)
-        text += (d > 0 ? ", " : "(") + number_text(p[d]);
+        text += (d > 0 ? ", " : "(") + few_digits(p[d]);
       return text + ")";
     }
   } // namespace
@@ -124,7 +132,7 @@ namespace PeriDeal
           continue;
         const std::string where = scene.boundary_conditions.where("Parts") + ", part '" +
                                   part.name + "': the point " + text_of(p) +
-                                  " lies outside the body, " + number_text(near.distance) +
+                                  " lies outside the body, " + few_digits(near.distance) +
                                   " from the nearest corner of a cell, " + text_of(near.vertex);
         if (near.distance > near.diameter)
           AssertThrow(

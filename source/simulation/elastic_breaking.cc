@@ -6,7 +6,7 @@
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/elastic_simulation.h>
 
-#include <cmath>
+#include <algorithm>
 #include <sstream>
 
 #include "result_record.h"
@@ -66,12 +66,20 @@ namespace PeriDeal
     const std::string layer    = "'Traction layer' in section 'Boundary conditions'",
                       tear_off = "They act on the outermost nodes, and tear them off: ";
     const bool  of_file        = scene.domain.shape == Shape::mesh_file;
-    std::string remedy         = of_file ?
-                                   tear_off + "move the side by 'Displacement' in their place" :
-                                 scene.boundary_conditions.traction_layer > 0. ?
-                                   layer + " is too thin for them: make it deeper" :
-                                   tear_off + "spread them by " + layer + ", over a horizon or more";
-    if (!of_file && scene.peridynamics.surface_correction == SurfaceCorrection::none)
+    const auto &parts          = scene.boundary_conditions.parts;
+    const bool  on_spot        = std::any_of(parts.begin(), parts.end(), [&](const Part &part) {
+      return part.kind != Part::of_side && torn.count(part.name) > 0;
+    });
+    std::string remedy         = tear_off;
+    if (on_spot)
+      remedy += "spread them over a larger region, or a part of a side";
+    else if (of_file)
+      remedy += "move the side by 'Displacement' in their place";
+    else if (scene.boundary_conditions.traction_layer > 0.)
+      remedy = layer + " is too thin for them: make it deeper";
+    else
+      remedy += "spread them by " + layer + ", over a horizon or more";
+    if (!on_spot && !of_file && scene.peridynamics.surface_correction == SurfaceCorrection::none)
       remedy +=
         ", or let families go on beyond the sides by 'Surface correction = auto' in section 'Peridynamics'";
     record->notes.push_back(

@@ -229,6 +229,8 @@ def torn():
     # A part of a side, a thin bridge that breaks elsewhere first, and bodies whose loads they bear.
     part = run_scene(TORN, {BC + "Parts": "middle: top if abs(x - 0.5) < 0.2", BC + "Traction": "middle: 0, 40"})
     said(part, "broke beside the loaded side 'middle'")
+    tip = run_scene(TORN, {BC + "Parts": "tip: point 0.5, 1", BC + "Traction": "tip: 0, 20"})
+    check("Traction layer" not in said(tip, "broke beside the loaded side 'tip'", "larger region"), "a layer is proposed for a point")
     waist = run_scene(TORN, {"Domain/Holes": "rectangle: -1, 0.4, 0.4, 0.6 ; rectangle: 0.6, 0.4, 2, 0.6", BC + "Traction layer": "0.1",
                              BC + "Traction": "top: 0, 0.7*min(t, 1) ; bottom: 0, -0.7*min(t, 1)", "Time/End time": "3", "Time/Time step": "1e-3"})
     check(abs(waist.model(PD)["first broken bond"][1] - 0.5) < 0.2, f"a waist breaks at {waist.model(PD)['first broken bond']}")
