@@ -178,6 +178,7 @@ namespace PeriDeal
         }
       if (scene.general.physics != Physics::elasticity && !bc.symmetry.empty() &&
           scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty() &&
+          scene.domain.nodes == NodePlacement::vertices &&
           (runs(scene, Model::peridynamics) || runs(scene, Model::coupled)))
         entry_error(
           bc.where("Symmetry"),
