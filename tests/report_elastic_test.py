@@ -19,6 +19,7 @@ import animate
 import contours
 import deformed
 import difference
+import elastic_findings
 import elastic_tables
 import fragments
 import materials
@@ -28,6 +29,7 @@ import supports
 import surfaces
 from raster import View
 from read_run import Mesh, Run
+from units import Units
 from report_elastic_cases import COUPLED, FLIGHT, OPENING, column_values, make_broken, make_elastic
 
 
@@ -287,6 +289,50 @@ class Parts(ReportCase):
         figure = sketch.problem_sketch(contours.Maps(run), run.words)
         arrows = [p for p in figure.axes[0].patches if hasattr(p, "get_arrowstyle")]
         self.assertEqual(len(arrows), 2)
+
+    def test_places(self):
+        """Parts of sides, points and sides of meshes are in the sketch, also under the names of sides of a box."""
+        make_elastic(self.directory)
+        run = Run(self.directory)
+        run.summary["sides"].update({"back": "displacement 0, 0", "foot": "traction 0, 5"})
+        run.summary["places"] = {
+            "back": {"kind": "point", "at": [[1.0, 0.0]]},
+            "foot": {"kind": "part of a side", "lines": [[-0.5, -1.0, 0.5, -1.0]], "at": [[0.0, -1.0]], "normals": [[0.0, -1.0]]}}
+        run.summary["values on sides"].update({
+            "back": {"displacement": {"at": [[1.0, 0.0]], "values": [[0.0, 0.0]]}},
+            "foot": {"traction": {"at": [[0.0, -1.0]], "values": [[0.0, 5.0]]}}})
+        figure = sketch.problem_sketch(contours.Maps(run), run.words)
+        axes = figure.axes[0]
+        arrows = [p for p in axes.patches if hasattr(p, "get_arrowstyle")]
+        self.assertEqual(len(arrows), 2)  # of the right side and of the foot
+        self.assertTrue({"back", "foot"} <= {t.get_text() for t in axes.texts})
+        self.assertTrue(any(np.allclose(path.vertices, [[-0.5, -1], [0.5, -1]]) for c in axes.collections for path in c.get_paths()
+                            if len(path.vertices) == 2))
+        held = [line for line in axes.lines if line.get_marker() == "^"]
+        self.assertEqual(len(held), 1)
+        run.summary["domain"]["shape"] = "mesh file"
+        run.summary["places"]["left"] = {"kind": "side", "lines": [[-1.0, 1.0, -1.0, -1.0]], "at": [[-1.0, 0.0]],
+                                         "normals": [[-1.0, 0.0]]}
+        sketch.problem_sketch(contours.Maps(run), run.words)
+
+    def test_one_place_is_named_once(self):
+        make_elastic(self.directory)
+        run = Run(self.directory)
+        text = elastic_findings.largest_values(run, 0, run.words.fields["displacement_x"])
+        self.assertEqual(text.count("at x") + text.count("at ("), 1)
+        self.assertIn("0.001 mm (finite elements) and 0.00102 mm (peridynamics) at (1, ", text)
+        run.summary["no stress intensity"] = "they are computed in two dimensions only"
+        self.assertEqual(elastic_findings.intensities(run, run.words),
+                         ["There are no stress intensity factors: they are computed in two dimensions only."])
+
+    def test_units_of_materials(self):
+        units = Units({"length": "mm", "time": "ms", "force": "N", "temperature": "C"}, 2, "elasticity")
+        self.assertEqual([units.of_material(e) for e in ("Young modulus", "Density", "Thermal expansion", "Fracture energy", "Poisson ratio")],
+                         ["MPa", "g/mm³", "1/K", "N/mm", ""])
+        units = Units({"length": "m", "time": "s", "energy": "J", "field": "K", "mass": "kg"}, 3, "heat")
+        self.assertEqual([units.of_material(e) for e in ("Conductivity", "Density", "Heat capacity")], ["W/(m K)", "kg/m³", "J/(kg K)"])
+        units = Units({"length": "mm", "field": "V", "current": "A"}, 2, "electricity")
+        self.assertEqual(units.of_material("Conductivity"), "S/mm")
 
     def test_outliers_do_not_rule_the_colours(self):
         values = np.concatenate([np.linspace(0, 1, 10_000), [40.0]])

@@ -31,16 +31,19 @@ import curves  # noqa: E402
 import difference  # noqa: E402
 import findings  # noqa: E402
 import flux  # noqa: E402
+import materials  # noqa: E402
+import read_run  # noqa: E402
 import report  # noqa: E402
 import series  # noqa: E402
 import sketch  # noqa: E402
 import solids  # noqa: E402
 import style  # noqa: E402
 from crossings import crossed  # noqa: E402
-from raster import PixelMap, View, crosses  # noqa: E402
+from raster import PixelMap, View, boundary_lines, crosses  # noqa: E402
 from read_run import Mesh, Run  # noqa: E402
 from report_cases import (FEM, HEAT_NAMES, PD, box_mesh, make, make_cube,  # noqa: E402
                           make_plate, make_strip, make_wet_cube)
+from units import Units  # noqa: E402
 from words import Words  # noqa: E402
 
 
@@ -305,6 +308,48 @@ class OtherPhysics(ReportCase):
         self.assertNotIn("()", text)
         self.assertEqual(self.foreign_words(), [])
 
+    def test_units_of_moisture(self):
+        named = {"length": "mm", "time": "h", "mass": "g"}
+        for counts, dimension, rate, amount, flux_unit in (
+                ("wetness", 3, "mm³/h", "mm³", "mm/h"), ("wetness", 2, "mm²/h", "mm²", "mm/h"),
+                ("wetness", 1, "mm/h", "mm", "mm/h"), ("mass", 2, "g/h/mm", "g/mm", "g/h/mm²")):
+            units = Units(named, dimension, "moisture", counts)
+            found = [units.of_total(q) for q in ("moisture flow through left", "throughput", "moisture entered since start",
+                                                 "cumulative imbalance", "weight")]
+            weight = {3: "g", 2: "g/mm", 1: "g/mm²"}[dimension]
+            self.assertEqual(found, [rate, rate, amount, amount, weight])
+            self.assertEqual(units.flux, flux_unit)
+        self.assertEqual(Units({}, 2, "moisture", "wetness").of_total("throughput"), "")
+
+    def test_what_moisture_counts(self):
+        make_plate(self.directory, 8, physics="moisture", saturated=(3.0, 3.0))
+        path = self.directory / "summary.json"
+        summary = json.loads(path.read_text())
+        summary["moisture counts"] = "wetness"
+        summary["units"]["mass"] = "g"
+        path.write_text(json.dumps(summary))
+        (self.directory / "scene.prm").write_text("subsection Material\nset Conductivity = 0.02\nset Density = 1\n"
+                                                  "set Heat capacity = 1\nset Saturated concentration = 12e-6\nend\n")
+        page = self.page("")
+        text = "".join(page.text)
+        self.assertIn("wetness times the volume; times the saturated concentration, 1.2×10⁻⁵ g/mm³, they are masses", text)
+        for cell in ("Diffusivity (mm²/h)", "Saturated concentration (g/mm³)", "Moisture throughput (mm²/h)", "Weight (g/mm)"):
+            self.assertIn(cell, page.cells)
+        self.assertNotIn("Density", page.cells)
+
+    def test_materials_of_an_image(self):
+        make_plate(self.directory, 8, physics="electricity")
+        run = Run(self.directory)
+        (self.directory / "scene.prm").write_text("subsection Material\nset Conductivity = 1\nsubsection Phases\n"
+                                                  "set Conductivity = copper: 20\nend\nend\n")
+        run.summary["image"] = {"phases": {"resin": {"color": [255, 255, 255]}, "copper": {"color": [200, 120, 40]},
+                                           "void": {"color": [0, 0, 0]}}}
+        html = materials.material_table(run).replace("\n", "")
+        self.assertIn('<th scope="col">resin</th><th scope="col">copper</th>', html)
+        self.assertIn('<th scope="row">Conductivity</th><td>1</td><td>20</td>', html)
+        self.assertIn("<td>image, rgb(200, 120, 40)</td>", html)
+        self.assertNotIn("void", html)
+
     def test_concentration_of_two_materials(self):
         figures = self.directory.parent / "figures"
         make_plate(self.directory, 8, physics="moisture", saturated=(2.0, 5.0), title="Wet plate")
@@ -504,6 +549,34 @@ class Parts(ReportCase):
         self.assertEqual(sentence(0.5, 0.01), "The wall time was 0.5 s (finite elements) and less "
                                               "than 0.1 s (peridynamics) on 1 process.")
         self.assertIn("peridynamics cost 4 times as much", sentence(0.5, 2.0))
+        self.assertIn("finite elements cost 2 times as much", sentence(0.5, 0.25))
+        self.assertIn(": both cost as much.", sentence(0.5, 0.51))
+
+    def test_round_off_in_coordinates_is_zero(self):
+        make_plate(self.directory, 8)
+        path = self.directory / "line.csv"
+        header, *rows = path.read_text(encoding="utf-8").splitlines()
+        for i, row in enumerate(rows):
+            cells = row.split(",")
+            cells[2] = "-3.047e-17" if float(cells[2]) == 0 else cells[2]
+            rows[i] = ",".join(cells)
+        path.write_text("\n".join([header] + rows) + "\n", encoding="utf-8")
+        run = Run(self.directory)
+        points = next(iter(run.line.data[FEM].values()))[0]
+        self.assertEqual(curves.line_coordinate(points, run.words)[1], "$y$ (cm)   at x = 0")
+        small = 1e-9 * np.array([[1.0, 0.5], [1e-13, 0.25]])  # of a small body nothing else is lost
+        self.assertEqual(read_run.without_round_off(small).tolist(), [[1e-9, 5e-10], [0.0, 2.5e-10]])
+
+    def test_edge_of_a_mesh(self):
+        nodes, quads = box_mesh([0, 0], [4, 4], [4, 4])
+        around = np.array([q for q in quads if not np.allclose(nodes[q].mean(axis=0), [1.5, 1.5])])
+        lines = boundary_lines(Mesh(nodes, around))
+        self.assertEqual(sorted(len(line) for line in lines), [5, 17])
+        for line in lines:
+            self.assertEqual(list(line[0]), list(line[-1]))
+            self.assertTrue(np.allclose(np.abs(np.diff(line, axis=0)).sum(axis=1), 1))
+        apart = Mesh(nodes[around.ravel()], np.arange(around.size).reshape(-1, 4))  # vertices of their own
+        self.assertEqual(sorted(len(line) for line in boundary_lines(apart)), [5, 17])
 
     def test_slices_of_a_crack(self):
         make_cube(self.directory, 8)  # nodes every 2/9, the crack between two rows

@@ -43,7 +43,7 @@ class ElasticSections:
         legend = []
         if "traction" in texts:
             legend.append("tractions t in orange")
-        if "displacement" in texts:
+        if "displacement" in texts or "velocity" in texts:
             legend.append("displacements u in red (hatched: held, circles: free to slide)")
         if "symmetry" in texts:
             legend.append("symmetry planes in violet")

@@ -14,7 +14,7 @@ import supports
 from raster import boundary_lines
 
 KIND_COLOR = (("dirichlet", "#c0392b"), ("flux", "#d98200"), ("convection", "#00897b"),
-              ("u = ", supports.DISPLACEMENT), ("t = ", supports.TRACTION),
+              ("u = ", supports.DISPLACEMENT), ("velocity", supports.DISPLACEMENT), ("t = ", supports.TRACTION),
               ("symmetry", supports.SYMMETRY), ("temperature", "#00897b"))
 CLOSED = "#7b8794"  # insulated, sealed or free
 BODY = "#eef2f6"
@@ -113,7 +113,9 @@ def draw_places(axes, run, inch, elastic):
             supports.draw_place(axes, run, side, inch)
         normals = np.array(place.get("normals", []), float).reshape(-1, 2)
         k = len(points) // 2
-        if len(normals):
+        if len(normals) and run.get("domain", "shape") != "mesh file":  # outside are the names of whole sides
+            name_place(axes, points[k] - normals[k] * inch * 0.1, -normals[k], side, color)
+        elif len(normals):
             far = elastic and supports.longest_of(run, side) > 0
             name_place(axes, points[k] + normals[k] * inch * (0.45 if far else 0.22), normals[k], side, color)
         else:  # by turns above and below, so that those of neighbours do not meet

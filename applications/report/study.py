@@ -72,8 +72,11 @@ def file_name(column):
     return re.sub(r"[^A-Za-z0-9.]+", "_", column.replace("-", "minus_")).strip("_")
 
 
-def worth_charting(study, at_most=8):
-    """What runs have found, but for what is zero in all of them beside others of its kind."""
+SMALL = {"displacement": 1e-9, "intensity": 0.01}  # beside the largest of the kind
+
+
+def worth_charting(study, at_most=10):
+    """What runs have found, the stresses last, but for what is zero in all of them beside others of its kind."""
     sizes = {}
     for quantity in study.get("quantities", []):
         values = [number(line.get(quantity)) for line in last_lines(study)]
@@ -84,7 +87,8 @@ def worth_charting(study, at_most=8):
         return "displacement" if first in ("ux", "uy", "uz") else "intensity" if first.startswith("K_") else quantity
 
     largest = {k: max(s for q, s in sizes.items() if kind(q) == k) for k in map(kind, sizes)}
-    return [q for q, s in sizes.items() if s > 1e-9 * largest[kind(q)]][:at_most]
+    found = [q for q, s in sizes.items() if s > SMALL.get(kind(q), 0.0) * largest[kind(q)]]
+    return sorted(found, key=lambda q: q.startswith("von_mises"))[:at_most]
 
 
 def rows_table(study):

@@ -11,7 +11,8 @@
 namespace PeriDeal
 {
   /**
-   * Tell of `Surface correction = crack scaling` where something diffuses around insulating cracks without it: bonds and cut cells beside a
+   * Tell of `Surface correction = crack scaling` where something diffuses around insulating cracks
+   * without it: bonds and cut cells beside a
    * crack conduct too little along it.
    */
   template <int dim>

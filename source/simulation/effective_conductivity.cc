@@ -16,7 +16,8 @@ namespace PeriDeal
     const auto                     vanishes = [](const Expression &formula) {
       return formula.is_constant() && formula.value(Point<dim>()) == 0.;
     };
-    if ((scene.domain.shape != Shape::box && scene.domain.shape != Shape::image) || bc.dirichlet.size() != 2 || !bc.convection.empty() ||
+    if ((scene.domain.shape != Shape::box && scene.domain.shape != Shape::image) ||
+        bc.dirichlet.size() != 2 || !bc.convection.empty() ||
         !vanishes(scene.initial_and_source.source) ||
         !std::all_of(bc.flux.begin(), bc.flux.end(), [&](const SideCondition &side) {
           return vanishes(side.value);

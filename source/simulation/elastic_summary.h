@@ -21,8 +21,10 @@ namespace PeriDeal
   nlohmann::ordered_json describe_elastic_sides(const Scene<dim> &scene);
 
   /**
-   * Side or part -> `displacement`, `traction` -> `at` (points spread over it) and `values` (at time @p t, a list of components for each point; null: free),
-   * what arrows in a sketch are drawn from. The points of what is no side of a box are those of @p places (places_of_conditions()).
+   * Side or part -> `displacement`, `traction` -> `at` (points spread over it) and `values` (at
+   * time @p t, a list of components for each point; null: free),
+   * what arrows in a sketch are drawn from. The points of what is no side of a box are those of @p
+   * places (places_of_conditions()).
    */
   template <int dim>
   nlohmann::ordered_json values_on_sides(const Scene<dim>             &scene,
@@ -32,7 +34,8 @@ namespace PeriDeal
                                          const nlohmann::ordered_json &places);
 
   /**
-   * Why some model of a body at rest with whole bonds has no stress intensity factors at the ends of its cracks, or nothing: there are no cracks,
+   * Why some model of a body at rest with whole bonds has no stress intensity factors at the ends
+   * of its cracks, or nothing: there are no cracks,
    * or all models have them. @param models their entries in the summary
    */
   template <int dim>

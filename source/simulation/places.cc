@@ -19,7 +19,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** A piece of a side, or of two dimensions its ends, with the outward normal; of a region a cell. */
+    /**
+     * A piece of a side, or of two dimensions its ends, with the outward normal; of a region a
+     * cell.
+     */
     template <int dim>
     struct Piece
     {
@@ -69,7 +72,10 @@ namespace PeriDeal
     }
 
 
-    /** The pieces of this process on a side, or on a part of one: a face in eighths where it is in part. */
+    /**
+     * The pieces of this process on a side, or on a part of one: a face in eighths where it is in
+     * part.
+     */
     template <int dim>
     void add_faces(const Triangulation<dim> &mesh,
                    const types::boundary_id  side,
@@ -114,7 +120,10 @@ namespace PeriDeal
     }
 
 
-    /** Those of all processes on process 0, in an order that does not depend on their number. Collective. */
+    /**
+     * Those of all processes on process 0, in an order that does not depend on their number.
+     * Collective.
+     */
     template <int dim>
     std::vector<Piece<dim>> gathered(const std::vector<Piece<dim>> &own,
                                      const MPI_Comm                 communicator)

@@ -12,9 +12,12 @@
 namespace PeriDeal
 {
   /**
-   * Where conditions hold that are not on a side of a box, for the sketch of the report: {name: {"kind": "side" | "part of a side" |
-   * "region" | "point", "lines": [[x0, y0, x1, y1], ...] (2D), "at": [[x, y], ...], "normals": [[n_x, n_y], ...]}}. Lines are sides in straight
-   * pieces; `at` are a few places spread over it, with the outward normals of a side. In one dimension and off process 0 it is empty.
+   * Where conditions hold that are not on a side of a box, for the sketch of the report: {name:
+   * {"kind": "side" | "part of a side" |
+   * "region" | "point", "lines": [[x0, y0, x1, y1], ...] (2D), "at": [[x, y], ...], "normals":
+   * [[n_x, n_y], ...]}}. Lines are sides in straight
+   * pieces; `at` are a few places spread over it, with the outward normals of a side. In one
+   * dimension and off process 0 it is empty.
    * Collective.
    */
   template <int dim>

@@ -51,7 +51,10 @@ namespace PeriDeal
     }
 
 
-    /** Flows and amounts of moisture are wetness times volume: nothing is given that would make them masses. */
+    /**
+     * Flows and amounts of moisture are wetness times volume: nothing is given that would make
+     * them masses.
+     */
     bool counts_wetness(const Material &material)
     {
       const auto is_one = [](const MaterialProperty &property) {

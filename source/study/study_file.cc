@@ -254,7 +254,10 @@ namespace PeriDeal
     };
 
 
-    /** A number that runs find, of which only they know whether it is there: values at probes, stress intensities, energies. */
+    /**
+     * A number that runs find, of which only they know whether it is there: values at probes,
+     * stress intensities, energies.
+     */
     bool is_found_by_runs(const std::string &column)
     {
       static const std::vector<std::string> names = {"strain energy",
@@ -267,7 +270,10 @@ namespace PeriDeal
     }
 
 
-    /** A column of a figure: one that every study has, x of the rows, a number that runs find, or an entry of scenes. */
+    /**
+     * A column of a figure: one that every study has, x of the rows, a number that runs find, or
+     * an entry of scenes.
+     */
     void check_column(Study             &study,
                       const std::string &column,
                       const StudyObject &figure,

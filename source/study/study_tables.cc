@@ -94,7 +94,10 @@ namespace PeriDeal
     }
 
 
-    /** `ux at (80, 0)`: what a column of probes.csv is called here. @param field the name of the solution of what diffuses */
+    /**
+     * `ux at (80, 0)`: what a column of probes.csv is called here. @param field the name of the
+     * solution of what diffuses
+     */
     std::string name_at_probe(const std::string &column,
                               const Json        &coordinates,
                               const std::string &field)
@@ -106,7 +109,10 @@ namespace PeriDeal
     }
 
 
-    /** What a model has found in the end, by the names of columns: values at probes, stress intensities, energies, the largest force. */
+    /**
+     * What a model has found in the end, by the names of columns: values at probes, stress
+     * intensities, energies, the largest force.
+     */
     Json quantities_of(const Json &results, const std::string &name)
     {
       const Json &model = results["models"][name];

@@ -187,7 +187,7 @@ def plate():
     check(row[2].startswith(written(float(stress)) + " at "), f"the largest von Mises stress is {stress}: {row}")
     factor = float(re.search("displacements magnified (.*?) times", text)[1].replace("\u202f", ""))
     check(0.03 < factor * largest / 2 < 0.08, f"displacements are drawn {factor} times as large, as {factor * largest / 2} of the body")
-    check(["Young modulus", written(6e4), written(1.2e5)] in rows, "the Young moduli that follow from bulk modulus and Poisson ratio")
+    check(["Young modulus (Pa)", written(6e4), written(1.2e5)] in rows, "the Young moduli that follow from bulk modulus and Poisson ratio")
 
 
 def body():
