@@ -474,6 +474,20 @@ class SurfaceTest(unittest.TestCase):
         self.assertTrue(near[(x < 0.125 + 0.05) | (x > 0.45)].all())
         self.assertFalse(near[(x > 0.125 + 0.07) & (x < 0.43)].any())
 
+    def test_completed_sides(self):
+        """Planes that families go on beyond are no surface; a hole is."""
+        mesh = self.mesh("hole")
+        planes = [(axis, at) for axis in (0, 1) for at in (0.0, 1.0)]
+        x = np.abs(mesh.nodes - 0.5).max(axis=1)
+        near = surfaces.near_surface(mesh, 0.06, planes)
+        self.assertTrue(near[x < 0.125 + 0.05].all())
+        self.assertFalse(near[x > 0.125 + 0.07].any())
+        near = surfaces.near_surface(mesh, 0.06, planes[:1])
+        self.assertFalse(near[np.abs(mesh.nodes[:, 1] - 0.5) + 0.4 * mesh.nodes[:, 0] < 0.1].any())
+        self.assertTrue(near[mesh.nodes[:, 0] > 0.95].all())
+        nodes, cells = box_mesh((0, 0), (1, 1), (8, 8))
+        self.assertFalse(surfaces.near_surface(Mesh(nodes, cells), 0.2, planes).any())
+
     def test_block(self):
         nodes, cells = box_mesh((0, 0, 0), (2, 1, 1), (16, 8, 8))
         depth = np.minimum(nodes, (2, 1, 1) - nodes).min(axis=1)

@@ -2,6 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """The tables of the report that only elastic bodies have."""
 
+import re
 from html import escape
 
 import numpy as np
@@ -23,19 +24,27 @@ def place(run, point):
     return probe_name(np.where(np.abs(point) < 1e-12 * extent, 0.0, point))
 
 
+def side_plane(run, name):
+    """(axis, coordinate) of a side of a box, None for other names."""
+    names = ("left", "right", "bottom", "top", "back", "front")
+    return (names.index(name) // 2, run.domain[names.index(name) % 2][names.index(name) // 2]) if name in names else None
+
+
 def made_by_surfaces(run, model, field, mesh):
     """Nodes whose stress a surface alone may make: within a horizon of the surface of the body, its
-    sides, planes of symmetry and holes, where families of peridynamics end there. None if that is the whole body."""
+    sides, planes of symmetry and holes, as far as families of peridynamics end there. None if that is the whole body."""
     none = np.zeros(len(mesh.nodes), dtype=bool)
     if model != PD or not field.name.startswith(("stress", "von_mises")):
         return none
     settings = run.get("models", PD, "settings", default={})
     correction = settings.get("surface correction", "")
-    if correction and not correction.startswith(("none", "auto: none")):
+    completed = "auto: fictitious nodes beyond "
+    if correction == completed + "the whole boundary" or (correction and not correction.startswith(("none", "auto"))):
         return none
+    planes = [side_plane(run, name) for name in re.split(", | and ", correction[len(completed):])] if correction.startswith(completed) else []
     key = ("near surface", id(mesh))
     if key not in run.found:
-        run.found[key] = near_surface(mesh, float(settings.get("horizon", 0)))
+        run.found[key] = near_surface(mesh, float(settings.get("horizon", 0)), [plane for plane in planes if plane])
     return none if run.found[key].all() else run.found[key]
 
 

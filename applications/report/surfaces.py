@@ -31,8 +31,8 @@ def surface_points(mesh):
                                      corners.mean(axis=1))), axis=0)
 
 
-def near_surface(mesh, distance):
-    """Which nodes lie within a distance of the surface."""
+def near_surface(mesh, distance, planes=()):
+    """Which nodes lie within a distance of the surface, but for planes (axis, coordinate)."""
     near = np.zeros(len(mesh.nodes), dtype=bool)
     if not distance > 0 or not len(near):
         return near
@@ -46,6 +46,11 @@ def near_surface(mesh, distance):
         return {tuple(keys[part[0]]): part for part in np.split(order, cuts)}
 
     surface = surface_points(mesh)
+    slack = 1e-9 * np.ptp(mesh.nodes, axis=0).max()
+    for axis, at in planes:
+        surface = surface[np.abs(surface[:, axis] - at) > slack]
+    if not len(surface):
+        return near
     of_surface = boxes(surface)
     for key, nodes in boxes(mesh.nodes).items():
         around = [of_surface[other] for step in product((-1, 0, 1), repeat=len(key))

@@ -166,8 +166,8 @@ def schemes():
         for row in run.probes:
             if row["x"] == -0.1:
                 opening[row["model"]] = row["uy"] - opening.get(row["model"], 0)
-        # Bodies of peridynamics alone are softer at their sides; measured: 1.7 and 2.1 %.
-        table.add_limit(f"{BLENDED}, {scheme}: opening over that of peridynamics", abs(opening["coupled"] / opening["peridynamics"] - 1), 0.03)
+        # Measured: splice 6e-4, blending 2.9e-3.
+        table.add_limit(f"{BLENDED}, {scheme}: opening over that of peridynamics", abs(opening["coupled"] / opening["peridynamics"] - 1), 4.6e-3)
         table.add_limit(f"{BLENDED}, {scheme}: bonds over those of peridynamics", run.model("coupled")["bonds"] / run.model("peridynamics")["bonds"], 0.12)
         table.add_limit(f"{BLENDED}, {scheme}: imbalance of forces", lost, 1e-3 if scheme == "splice" else 1e-9)
         if scheme == "splice":

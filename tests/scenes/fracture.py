@@ -117,8 +117,8 @@ def bend():
     loads = [-row[1] for row in history(run, "force on load in y")]
     # K = 10.65 P (ASTM E399); the load, spread over 0.12, has the moment of 2 - 0.03 in place of 2.
     expected = math.sqrt(YOUNG * ENERGY) / (10.65 * (1 - 0.06 / 4))
-    table.add("peak over that of linear fracture mechanics", max(loads) / expected, 1, absolute=0.05)  # measured: 1.014; m = 5: 1.069, m = 4: 1.143
-    table.add_limit("force at the end over the peak", loads[-1] / max(loads), 0.95)
+    table.add("peak over that of linear fracture mechanics", max(loads) / expected, 1, absolute=0.0222)  # measured: 1.014; m = 5: 1.069, m = 4: 1.143
+    table.add_limit("force at the end over the peak", loads[-1] / max(loads), 0.9)  # measured: 0.82
     table.show()
 
 
@@ -142,8 +142,8 @@ def mesh():
             rows = history(run, f"force on {side} in y", BROKEN)
             first = next(k for k, row in enumerate(rows) if row[2] > 0)
             found.append((rows[first][0], max(row[1] for row in rows), rows[first - 1][1], rows[-1][2]))
-        for name, on_box, on_mesh, bound in zip(("time of the first break", "strength", "force before"), found[0], found[1], (1e-12, 2.2e-3, 2.2e-3)):
-            table.add(name, on_mesh / on_box, 1, absolute=bound)
+        for name, on_box, on_mesh, bound in zip(("time of the first break", "strength", "force before"), found[0], found[1], (1e-12, 2.1e-3, 2.2e-3)):
+            table.add(name, on_mesh / on_box, 1, absolute=bound)  # measured: 0, 1.3e-3, 1.4e-3
         check_close(found[2], found[1], relative=1e-9, what="two processes")
         check(found[0][3] > 500, f"the plate breaks: {found[0][3]} bonds")
         check("beyond sides with conditions" in runs[0].model(PD)["settings"]["surface correction"], "families go on")
