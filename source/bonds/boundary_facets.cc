@@ -199,7 +199,8 @@ namespace PeriDeal
           if (std::abs(facet.normal[d]) > std::abs(facet.normal[axis]))
             axis = d;
         if (std::none_of(symmetry_planes.begin(), symmetry_planes.end(), [&](const auto &plane) {
-              return plane.side == side;
+              return plane.axis == axis && plane.above == (facet.normal[axis] > 0.) &&
+                     std::abs(plane.at - facet.corners[0][axis]) < 1e-9 * reach;
             }))
           symmetry_planes.push_back({axis, facet.corners[0][axis], facet.normal[axis] > 0., side});
       }

@@ -46,8 +46,7 @@ namespace PeriDeal
       if (scene.domain.shape == Shape::mesh_file)
         if (const std::string obstacle = obstacle_on_mesh(scene); !obstacle.empty())
           return {"on a mesh from a file families do not go on " + obstacle,
-                  "They do beyond the sides of 'Shape = box' (section 'Domain'), which may have "
-                  "'Holes'."};
+                  "They do with 'Nodes = vertices' (section 'Domain')."};
       if (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty())
         return {"cracks are cut into the mesh ('Mesh = faces')",
                 "Families go on with 'Mesh = removed' (section 'Cracks')."};

@@ -43,6 +43,9 @@ namespace PeriDeal
     template <int dim>
     double wave_speed(const Scene<dim> &scene, const Point<dim> &middle)
     {
+      // Of a mesh from a file neither the place nor, in its regions, the material is known yet.
+      if (scene.domain.shape == Shape::mesh_file)
+        return std::numeric_limits<double>::quiet_NaN();
       try
         {
           return std::sqrt(scene.material.moduli(middle).young() /

@@ -168,9 +168,10 @@ namespace PeriDeal
     class Simpson
     {
     public:
-      Simpson(const Function &f, const double largest)
+      Simpson(const Function &f, const double largest, const double length)
         : f(f)
         , largest(largest)
+        , enough(length / most_values)
       {}
 
       double operator()(const double       a,
@@ -186,7 +187,7 @@ namespace PeriDeal
           (b - a) / 12. * (at_a + 4. * of_left + 2. * at_middle + 4. * of_right + at_b);
         largest = std::max({largest, std::abs(of_left), std::abs(of_right)});
         n_values += 2;
-        if (left == 0 || n_values > most_values ||
+        if (left == 0 || (n_values > most_values && b - a < enough) ||
             std::abs(halves - whole) <= 1e-11 * (b - a) * largest)
           return halves + (halves - whole) / 15.;
         return (*this)(a, middle, at_a, of_left, at_middle, left - 1) +
@@ -197,6 +198,7 @@ namespace PeriDeal
       static constexpr unsigned int most_values = 1000;
       const Function               &f;
       double                        largest;
+      const double                  enough; // pieces as long as this are halved in any case
       unsigned int                  n_values = 0;
     };
   } // namespace
@@ -225,7 +227,7 @@ namespace PeriDeal
       }
     for (unsigned int k = 0; k < values.size() - 1; k += 2)
       {
-        Simpson simpson(f, largest);
+        Simpson simpson(f, largest, at(k + 2) - at(k));
         sum += simpson(at(k), at(k + 2), values[k], values[k + 1], values[k + 2], most);
       }
     return sum;

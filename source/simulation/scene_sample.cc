@@ -6,6 +6,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/memory.h>
+#include <perideal/base/user_error.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/elastic_run.h>
@@ -211,7 +212,10 @@ namespace PeriDeal
             model.applications = steps_of_motion(scene, op);
           if (!scene.elasticity.is_static() || scene.elasticity.solver != ElasticSolver::linear)
             continue;
-          model.time_of_solution = time_of_linear_equilibrium(scene.solver, op, 0.);
+          model.time_of_solution =
+            time_of_linear_equilibrium(scene.solver,
+                                       op,
+                                       scene.time.steady ? 0. : scene.time.end_time);
         }
     }
   } // namespace
@@ -269,9 +273,18 @@ namespace PeriDeal
         memory                     = std::max(memory, estimate.memory);
       }
     if (first <= 0. && n_unknowns <= many_unknowns)
-      first = Utilities::MPI::max(
-        time_of_linear_equilibrium(scene.solver, op, scene.time.steady ? 0. : scene.time.end_time),
-        communicator);
+      try
+        {
+          first = Utilities::MPI::max(
+            time_of_linear_equilibrium(scene.solver,
+                                       op,
+                                       scene.time.steady ? 0. : scene.time.end_time),
+            communicator);
+        }
+      catch (const UserError &) // all processes: the run will say why
+        {
+          return -1.;
+        }
     if (first <= 0.)
       return -1.;
     if (op.nonlinear())
