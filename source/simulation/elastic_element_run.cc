@@ -234,8 +234,14 @@ namespace PeriDeal
                               to_text(100. * elements->bonds().zone_share()) + " %");
           }
         if (model != Model::finite_elements)
-          for (const auto &setting : bond_settings(scene, elements->bonds().families()))
-            list.push_back(setting);
+          for (auto setting : bond_settings(scene, elements->bonds().families()))
+            {
+              // Bonds of the zone are not continued beyond sides by themselves.
+              if (setting.first == "surface correction" &&
+                  scene.peridynamics.surface_correction == SurfaceCorrection::automatic)
+                setting.second = "auto: none";
+              list.push_back(setting);
+            }
         if (!scene.cracks.cracks.empty())
           list.emplace_back("cracks", scene.cracks.mesh == CrackMesh::faces ? "faces" : "removed");
         return list;
