@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/point_order.h>
 #include <perideal/operators/state_operator.h>
 
 #include <algorithm>
@@ -23,16 +24,6 @@ namespace PeriDeal
       return std::all_of(traction.values.begin(), traction.values.end(), [](const auto &value) {
         return !value || is_zero(*value);
       });
-    }
-
-
-    template <int dim>
-    bool comes_first(const Point<dim> &a, const Point<dim> &b)
-    {
-      for (unsigned int d = 0; d < dim; ++d)
-        if (a[d] != b[d])
-          return a[d] < b[d];
-      return false;
     }
   } // namespace
 

@@ -5,6 +5,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/mapping_q1.h>
 
+#include <perideal/base/point_order.h>
 #include <perideal/base/user_error.h>
 
 #include <algorithm>
@@ -45,16 +46,6 @@ namespace PeriDeal
         {
           return false;
         }
-    }
-
-
-    template <int dim>
-    bool comes_first(const Point<dim> &a, const Point<dim> &b)
-    {
-      for (unsigned int d = 0; d < dim; ++d)
-        if (a[d] != b[d])
-          return a[d] < b[d];
-      return false;
     }
 
 

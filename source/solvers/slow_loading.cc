@@ -29,9 +29,7 @@ namespace PeriDeal
         text << (d > 0 ? ", " : "") << places.first[d];
       text << ")";
       if (!places.beside_loads.empty())
-        text
-          << ", beside the loaded side '" << places.beside_loads.begin()->first
-          << "': 'Traction layer' in section 'Boundary conditions' spreads what acts on it over a depth";
+        text << ", beside the loaded side '" << places.beside_loads.begin()->first << "'";
       return text.str();
     }
   } // namespace

@@ -41,7 +41,7 @@ namespace PeriDeal
     /**
      * @param goes_on  of a side; feet are on such sides alone
      * @param reach    of searches
-     * Throws UserError for planes of symmetry that are not normal to an axis. Collective.
+     * Planes of symmetry are normal to an axis, which DisplacementConditions checks. Collective.
      */
     BoundaryFacets(const Nodes<dim>                                            &nodes,
                    const std::vector<dealii::types::boundary_id>               &symmetry,

@@ -42,7 +42,7 @@ namespace PeriDeal
    * beyond its middle. At convex edges one side after the other goes on. Images that are nearer to another part of the boundary are left out. Beyond planes of symmetry all is mirrored. A node on
    * a side has an image at its own place, the other part of its volume. Beyond sides that do not go on there are none.
    *
-   * Those of the nodes that this process knows. Collective. Throws UserError for planes of symmetry that are not normal to an axis.
+   * Those of the nodes that this process knows. Planes of symmetry are normal to an axis. Collective.
    */
   template <int dim>
   std::vector<BoundaryImage<dim>> boundary_images(
