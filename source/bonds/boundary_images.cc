@@ -27,10 +27,18 @@ namespace PeriDeal
       /** Add the images of a node through the sides that go on. */
       void find(const unsigned int m, std::vector<BoundaryImage<dim>> &images) const
       {
-        const std::vector<Foot> feet = facets.feet(nodes.position(m));
-        const unsigned int      n    = std::min<std::size_t>(feet.size(), 2 * dim);
+        const std::vector<Foot> feet          = facets.feet(nodes.position(m));
+        const unsigned int      n             = std::min<std::size_t>(feet.size(), 2 * dim);
+        const unsigned int      set_of_corner = reentrant_corner(feet);
+        const double            share         = share_of_corner(feet, set_of_corner);
         for (unsigned int set = 1; set < (1u << n); ++set)
-          add(m, feet, set, images);
+          {
+            const unsigned int common = set & set_of_corner;
+            if (common == 0)
+              add(m, feet, set, 1., images);
+            else if ((common & (common - 1)) == 0) // a single one of these sides
+              add(m, feet, set, share, images);
+          }
       }
 
     private:
@@ -62,6 +70,7 @@ namespace PeriDeal
       void add(const unsigned int               m,
                const std::vector<Foot>         &feet,
                const unsigned int               set,
+               const double                     share,
                std::vector<BoundaryImage<dim>> &images) const
       {
         const auto         m_global = nodes.partitioner()->local_to_global(m);
@@ -69,7 +78,7 @@ namespace PeriDeal
         std::vector<Foot>  through;
         BoundaryImage<dim> image;
         double             farthest = 0.;
-        image.volume                = nodes.volume(m);
+        image.volume                = nodes.volume(m) * share;
         image.origin                = m;
         image.planes.fill(numbers::invalid_boundary_id);
         for (unsigned int k = 0; k < feet.size(); ++k)
@@ -95,7 +104,58 @@ namespace PeriDeal
         images.push_back(image);
       }
 
-      /** What is left at the edge for images through both of its sides: (2 pi - 3 a)/a at an angle a, at most 1. */
+      /** The sides that meet in a reentrant corner in which the node itself lies, a bit for each. */
+      unsigned int reentrant_corner(const std::vector<Foot> &feet) const
+      {
+        const auto at_node  = [&](const Foot &foot) { return foot.distance < 1e-9 * reach; };
+        const auto is_ahead = [&](const Foot &of, const Foot &other) {
+          for (unsigned int k = 0; k < dim; ++k)
+            {
+              const Tensor<1, dim> to_corner = facets.corner(other.facet, k) - of.point;
+              if (to_corner * facets.normal(of.facet) > 1e-3 * to_corner.norm())
+                return true;
+            }
+          return false;
+        };
+        unsigned int set = 0;
+        for (unsigned int a = 0; a < feet.size() && a < 2 * dim && at_node(feet[a]); ++a)
+          for (unsigned int b = 0; b < a; ++b)
+            if (is_ahead(feet[a], feet[b]) && is_ahead(feet[b], feet[a]))
+              set |= (1u << a) | (1u << b);
+        return set;
+      }
+
+      /**
+       * Beyond n sides of a reentrant corner the body lacks a part v of the surroundings of its
+       * node: 1/2 beyond one side, times (2 pi - b)/pi for each other at an angle b in the body.
+       * The image through each side is v/(n (1 - v)) of the node.
+       */
+      double share_of_corner(const std::vector<Foot> &feet, const unsigned int set) const
+      {
+        double       missing = 1.;
+        unsigned int n       = 0;
+        for (unsigned int a = 0; a < feet.size(); ++a)
+          if ((set >> a) & 1)
+            {
+              double part = n == 0 ? 0.5 : 1.;
+              for (unsigned int b = 0; b < a; ++b)
+                if ((set >> b) & 1)
+                  part = std::min(part,
+                                  1. - std::acos(std::clamp(facets.normal(feet[a].facet) *
+                                                              facets.normal(feet[b].facet),
+                                                            -1.,
+                                                            1.)) /
+                                         numbers::PI);
+              missing *= part;
+              ++n;
+            }
+        return n == 0 ? 1. : missing / ((1. - missing) * n);
+      }
+
+      /**
+       * What is left at the edge for images through both of its sides: (2 pi - 3 a)/a at an angle
+       * a, at most 1.
+       */
       double share_of_edge(const Foot &foot, const std::vector<Foot> &through) const
       {
         double share = 1.;

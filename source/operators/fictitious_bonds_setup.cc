@@ -230,8 +230,8 @@ namespace PeriDeal
     for (const Term &term : of_image)
       {
         bool cut = false;
-        if (term.mirrored != 0)
-          cut = is_separated(i, term, twice_planes(term));
+        if (term.mirrored != 0 || !families.nodes().lattice())
+          cut = is_separated(i, term, twice_planes(term)); // beyond the reach, too
         else if (term.node != i)
           families.kept_fraction(i, term.node, cut);
         if (cut)

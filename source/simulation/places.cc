@@ -162,7 +162,8 @@ namespace PeriDeal
     {
       double extent = 0.;
       for (const Piece<2> &piece : pieces)
-        extent = std::max(extent, piece.from.distance(pieces[0].from));
+        for (const Point<2> &end : {piece.from, piece.to})
+          extent = std::max(extent, end.distance(pieces[0].from));
       const double                                    grain = 1e-8 * std::max(extent, 1e-300);
       std::map<std::array<long long, 2>, std::size_t> starting;
       std::map<std::array<long long, 2>, bool>        ending;

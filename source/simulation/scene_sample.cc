@@ -11,6 +11,7 @@
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/elastic_run.h>
 #include <perideal/simulation/simulation.h>
+#include <perideal/solvers/floating_part.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
@@ -119,9 +120,11 @@ namespace PeriDeal
     }
 
 
+    /** -1 where the solver does not get there: the run will say why. */
     double time_of_linear_equilibrium(const SolverControlParameters &control,
                                       ElasticOperator               &op,
-                                      const double                   t)
+                                      const double                   t,
+                                      const bool                     must_be_held)
     {
       const Watch solving;
       Vector      u, r, change;
@@ -130,7 +133,16 @@ namespace PeriDeal
       op.distribute(u, t);
       op.residual(r, u, t);
       LinearSolver solver(op, control.tolerance, control.max_iterations, control.direct_up_to);
-      solver.solve(0., 1., change, r);
+      if (must_be_held && r.l2_norm() > 0.)
+        check_no_loose_part(op, solver.surrogate(), r);
+      try
+        {
+          solver.solve(0., 1., change, r);
+        }
+      catch (const UserError &) // on all processes
+        {
+          return -1.;
+        }
       return solving.seconds();
     }
 
@@ -215,7 +227,8 @@ namespace PeriDeal
           model.time_of_solution =
             time_of_linear_equilibrium(scene.solver,
                                        op,
-                                       scene.time.steady ? 0. : scene.time.end_time);
+                                       scene.time.steady ? 0. : scene.time.end_time,
+                                       false);
         }
     }
   } // namespace
@@ -273,18 +286,12 @@ namespace PeriDeal
         memory                     = std::max(memory, estimate.memory);
       }
     if (first <= 0. && n_unknowns <= many_unknowns)
-      try
-        {
-          first = Utilities::MPI::max(
-            time_of_linear_equilibrium(scene.solver,
-                                       op,
-                                       scene.time.steady ? 0. : scene.time.end_time),
-            communicator);
-        }
-      catch (const UserError &) // all processes: the run will say why
-        {
-          return -1.;
-        }
+      first =
+        Utilities::MPI::max(time_of_linear_equilibrium(scene.solver,
+                                                       op,
+                                                       scene.time.steady ? 0. : scene.time.end_time,
+                                                       !op.nonlinear()),
+                            communicator);
     if (first <= 0.)
       return -1.;
     if (op.nonlinear())

@@ -317,3 +317,56 @@ TEST(BoundaryImages, half_a_body_breaks_as_the_whole_one)
         }
     }
 }
+
+
+namespace
+{
+  /**
+   * In the corner into a square or cube from which a part is cut out, the images of the node there
+   * fill what the body lacks, alone and beside a side that the edge of the corner meets.
+   */
+  template <int dim>
+  void check_reentrant_corner()
+  {
+    Triangulation<dim> mesh;
+    dealii::GridGenerator::hyper_L(mesh, -1., 1., true);
+    mesh.refine_global(dim == 2 ? 4 : 3);
+    const MeshFile<dim> file("reentrant", mesh);
+    const Body<dim>   body(file.settings(dim == 2 ? 0.3 : 0.4), Model::peridynamics, MPI_COMM_SELF);
+    const Nodes<dim> &nodes  = *body.nodes;
+    const double      h      = dim == 2 ? 1. / 16. : 1. / 8.;
+    const auto        images = boundary_images<dim>(
+      nodes,
+      {},
+      [](const dealii::types::boundary_id) { return true; },
+      3. * h);
+    unsigned int n_corners = 0;
+    for (unsigned int m = 0; m < nodes.n_local(); ++m)
+      {
+        // Where all sides of the cut-out meet; in 3D on its edges, too, and where these end.
+        unsigned int n_at_zero = 0;
+        bool         beyond    = false;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            n_at_zero += std::abs(nodes.position(m)[d]) < 1e-9;
+            beyond = beyond || nodes.position(m)[d] < -1e-9;
+          }
+        if (n_at_zero < 2 || beyond)
+          continue;
+        ++n_corners;
+        double volume = nodes.volume(m);
+        for (const BoundaryImage<dim> &image : images)
+          if (image.origin == m && image.place.distance(nodes.position(m)) < 1e-9)
+            volume += image.volume;
+        EXPECT_NEAR(volume / std::pow(h, dim), 1., 1e-9) << nodes.position(m);
+      }
+    EXPECT_EQ(n_corners, dim == 2 ? 1u : 3u * 8u + 1u);
+  }
+} // namespace
+
+
+TEST(BoundaryImages, fill_reentrant_corners)
+{
+  check_reentrant_corner<2>();
+  check_reentrant_corner<3>();
+}

@@ -23,7 +23,8 @@ namespace PeriDeal
 
 
   /**
-   * The boundary of a mesh but for its planes of symmetry, as segments (2D) or triangles (3D) between nodes on its vertices; all of it is known to each process.
+   * The boundary of a mesh but for its planes of symmetry, as segments (2D) or triangles (3D)
+   * between nodes on its vertices; all of it is known to each process.
    */
   template <int dim>
   class BoundaryFacets
@@ -56,12 +57,16 @@ namespace PeriDeal
     const dealii::Tensor<1, dim>   &normal(const unsigned int facet) const;
 
     /**
-     * The points of the boundary within the reach that are nearest to p among those around them, the nearest first, one for each direction: of those whose facets' normals differ by less than
-     * some 37 degrees the nearest.
+     * The points of the boundary within the reach that are nearest to p among those around them,
+     * the nearest first, one for each direction: of those whose facets' normals differ by less
+     * than some 37 degrees the nearest.
      */
     std::vector<Foot> feet(const dealii::Point<dim> &p) const;
 
-    /** The nearest point of facets whose normals differ from @p normal by less than that; false if none is within the reach. */
+    /**
+     * The nearest point of facets whose normals differ from @p normal by less than that; false if
+     * there is none within the reach and a facet's size.
+     */
     bool nearest(const dealii::Point<dim>     &p,
                  const dealii::Tensor<1, dim> &normal,
                  Foot                         &foot) const;
@@ -69,7 +74,10 @@ namespace PeriDeal
     /** Whether a point of the boundary is nearer than that. */
     bool is_nearer(const dealii::Point<dim> &p, const double distance) const;
 
-    /** How much larger the mirror image of a small volume beyond a curved side is; 1 beyond a flat one, 0 where there is none. */
+    /**
+     * How much larger the mirror image of a small volume beyond a curved side is; 1 beyond a flat
+     * one, 0 where there is none.
+     */
     double growth(const Foot &foot) const;
 
   private:

@@ -21,7 +21,8 @@ namespace PeriDeal
     double             volume;
     unsigned int       origin; // the node that it is an image of
 
-    // What its displacement follows from; nodes that this process does not know are numbers::invalid_unsigned_int.
+    // What its displacement follows from; nodes that this process does not know are
+    // numbers::invalid_unsigned_int.
     std::vector<Term>                           terms;
     std::vector<dealii::Point<dim>>             term_places;
     std::array<dealii::types::boundary_id, dim> planes; // of symmetry that it lies beyond, by axis
@@ -29,20 +30,28 @@ namespace PeriDeal
   };
 
 
-  /** How far from a node what its images follow from may lie, for families of a reach: what lies farther has no bond. */
+  /**
+   * How far from a node what its images follow from may lie, for families of a reach: what lies
+   * farther has no bond.
+   */
   double halo_of_images(const double reach);
 
 
   /**
-   * Fictitious nodes beyond the boundary of a mesh, of any shape, for elastic bodies with nodes on vertices. Each node m has an image through its nearest point p of each side within the reach,
+   * Fictitious nodes beyond the boundary of a mesh, of any shape, for elastic bodies with nodes on
+   * vertices. Each node m has an image through its nearest point p of each side within the reach,
    *
    *   x = 2 p - x_m,  u = 2 u(p) - u_m,  V = V_m a(d)/a(-d)
    *
-   * with u(p) of the facet's nodes, and a(d) the area of the facet moved by the distance d of the node along the normals of its vertices: beyond a hole images lie closer than nodes, and none are
-   * beyond its middle. At convex edges one side after the other goes on. Images that are nearer to another part of the boundary are left out. Beyond planes of symmetry all is mirrored. A node on
-   * a side has an image at its own place, the other part of its volume. Beyond sides that do not go on there are none.
+   * with u(p) of the facet's nodes, and a(d) the area of the facet moved by the distance d of the
+   * node along the normals of its vertices: beyond a hole images lie closer than nodes, and none
+   * are beyond its middle. At convex edges one side after the other goes on. Images that are nearer
+   * to another part of the boundary are left out. Beyond planes of symmetry all is mirrored. A node
+   * on a side has images at its own place, the part of its volume that the body lacks there.
+   * Beyond sides that do not go on there are none.
    *
-   * Those of the nodes that this process knows. Planes of symmetry are normal to an axis. Collective.
+   * Those of the nodes that this process knows. Planes of symmetry are normal to an axis.
+   * Collective.
    */
   template <int dim>
   std::vector<BoundaryImage<dim>> boundary_images(
