@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Check the order of the house: who includes whom, how long files are, and that each names its licence.
+"""Check the order of the house: who includes whom, how long files and comments are, and that each file names its licence.
 
 Prints one line for each finding and ends with exit status 1 if there is any.
 """
@@ -12,18 +12,23 @@ import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
-# From the bottom up. A room may include itself and the rooms of lower storeys; rooms of one storey do not know each other.
+# From the bottom up. A room may include itself and the rooms of lower storeys; rooms of one storey
+# do not know each other.
 STOREYS = [["base"], ["scene"], ["mesh", "laws"], ["bonds"], ["operators"], ["solvers", "analysis"], ["output"],
            ["simulation"], ["study"]]
 STOREY = {room: number for number, rooms in enumerate(STOREYS) for room in rooms}
 
 MAX_HEADER, MAX_SOURCE = 300, 500
+MAX_COMMENT = 100
 LICENCE = "SPDX-License-Identifier: LGPL-2.1-or-later"
 COPYRIGHT = "Copyright (C) 2026 the PeriDeal authors"
 
 # Laws are functions of numbers: no mesh, no processes, no parameters.
 LAWS_DEAL_II = {"deal.II/base/point.h", "deal.II/base/tensor.h", "deal.II/base/symmetric_tensor.h",
                 "deal.II/base/exceptions.h", "deal.II/base/numbers.h"}
+
+# The start of a comment, or a string, in which there is none.
+COMMENT = re.compile(r"""//|/\*|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])+'""")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -83,6 +88,29 @@ def check_source(path, lines):
             yield f"{path}:{number}: no 'using namespace' in a header"
 
 
+def check_comments(path, lines):
+    """No comment passes the last column, on a line of its own or behind code."""
+    in_block = False
+    for number, line in enumerate(lines, 1):
+        place, has_comment = 0, in_block
+        while True:
+            if in_block:
+                end = line.find("*/", place)
+                if end < 0:
+                    break
+                place, in_block = end + 2, False
+            match = COMMENT.search(line, place)
+            if not match:
+                break
+            place = match.end()
+            has_comment = has_comment or match[0] in ("//", "/*")
+            in_block = match[0] == "/*"
+            if match[0] == "//":
+                break
+        if has_comment and len(line) > MAX_COMMENT:
+            yield f"{path}:{number}: the comment ends at column {len(line)}; at most {MAX_COMMENT}"
+
+
 def check_room(path):
     room = room_of(path)
     if room is not None and room not in STOREY:
@@ -116,13 +144,14 @@ def main():
             if path.endswith((".h", ".cc")):
                 room_findings = list(check_room(path))
                 findings += room_findings or check_includes(path, lines)
+                findings += check_comments(path, lines)
     findings += check_lists()
     for finding in findings:
         print(finding)
     if findings:
         print(f"{len(findings)} findings in {n_files} files (.ci/check_includes.py).")
         return 1
-    print(f"Include directions, lengths and licence headers: {n_files} files in order.")
+    print(f"Include directions, lengths, comments and licence headers: {n_files} files in order.")
     return 0
 
 

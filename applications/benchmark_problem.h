@@ -26,7 +26,10 @@ namespace PeriDeal
   }
 
 
-  /** Processor time of this process, which other work on the machine lengthens less than the time that passes. */
+  /**
+   * Processor time of this process, which other work on the machine lengthens less than the time
+   * that passes.
+   */
   inline double processor_seconds()
   {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Speed and memory of the operators and steppers on one core, next to what the machine can do, measured in the same run. Timings are
-// never tests: the exit status is 0 whatever comes out. Options are those of Google Benchmark; --quick leaves out the
-// run with four million nodes, --coupling leaves out all but coupled operators, --elasticity all but elastic ones.
+// Speed and memory of the operators and steppers on one core, next to what the machine can do,
+// measured in the same run. Timings are never tests: the exit status is 0 whatever comes out.
+// Options are those of Google Benchmark; --quick leaves out the run with four million nodes,
+// --coupling leaves out all but coupled operators, --elasticity all but elastic ones.
 
 #include <deal.II/base/mpi.h>
 
@@ -57,8 +58,9 @@ namespace PeriDeal
 
 
     /**
-     * Memory traffic of the stored form relative to the triad's: each application is followed by a pass of the triad, so that other work on the
-     * machine hits both alike. The median of some pairs.
+     * Memory traffic of the stored form relative to the triad's: each application is followed by a
+     * pass of the triad, so that other work on the machine hits both alike. The median of some
+     * pairs.
      */
     template <int dim>
     double compare_with_triad(const Problem<dim> &problem, Vector &y, const Vector &x)
@@ -166,7 +168,10 @@ namespace PeriDeal
     }
 
 
-    /** Four million nodes, explicit in time: what PeriDeal holds, by its own count and by the process' growth. */
+    /**
+     * Four million nodes, explicit in time: what PeriDeal holds, by its own count and by the
+     * process' growth.
+     */
     void measure_memory()
     {
       Problem<2>     problem(2000, 6.5, "lattice");

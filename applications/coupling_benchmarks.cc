@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Coupled operators: how long it takes to build them, against the matrix of finite elements on the same mesh, and what a moving zone
-// adds to a transient run. Both sides of each ratio are measured in turn, as processor time.
+// Coupled operators: how long it takes to build them, against the matrix of finite elements on the
+// same mesh, and what a moving zone adds to a transient run. Both sides of each ratio are measured
+// in turn, as processor time.
 
 #include <deal.II/grid/grid_out.h>
 #include <deal.II/grid/grid_tools.h>
@@ -162,7 +163,10 @@ namespace PeriDeal
     };
 
 
-    /** Example 5 of Bobaru and Duangpanya 2012: two cracks that grow and cross, with a zone of one horizon. */
+    /**
+     * Example 5 of Bobaru and Duangpanya 2012: two cracks that grow and cross, with a zone of one
+     * horizon.
+     */
     MovingResult grow(const unsigned int n_cells,
                       const std::string &step,
                       const double       end,
@@ -228,7 +232,8 @@ namespace PeriDeal
                 "<= 15 %",
                 share <= 0.15);
         }
-      // The zone is as many cells wide on any mesh: what an event touches grows with the step over the spacing.
+      // The zone is as many cells wide on any mesh: what an event touches grows with the step over
+      // the spacing.
       for (const std::string step : {"0.01", ""})
         for (const unsigned int n : {120, 240, 480})
           {

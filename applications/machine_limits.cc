@@ -33,7 +33,8 @@ namespace PeriDeal
 #  define PERIDEAL_HOLD(x) asm volatile("" ::: "memory")
 #endif
 
-    /// n times 12 independent chains of multiply-adds. Returns the number of multiply-adds of doubles.
+    /// n times 12 independent chains of multiply-adds. Returns the number of multiply-adds of
+    /// doubles.
     double multiply_add(const long n)
     {
       const D d;

@@ -8,7 +8,10 @@
 
 namespace PeriDeal
 {
-  /** What one core of this machine can do, measured with the instruction set that the stencil kernel uses. */
+  /**
+   * What one core of this machine can do, measured with the instruction set that the stencil kernel
+   * uses.
+   */
   struct MachineLimits
   {
     std::string target;     // name of the instruction set
@@ -34,6 +37,9 @@ namespace PeriDeal
     std::unique_ptr<Arrays> arrays;
   };
 
-  /** Takes about a second. Each number is the best of several trials, and of the limits of an earlier call. */
+  /**
+   * Takes about a second. Each number is the best of several trials, and of the limits of an
+   * earlier call.
+   */
   void measure_machine(MachineLimits &limits);
 } // namespace PeriDeal

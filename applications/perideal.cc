@@ -360,7 +360,10 @@ namespace
   }
 
 
-  /** One message, from rank 0 if everybody has it. The others must not wait forever for a process that failed alone. */
+  /**
+   * One message, from rank 0 if everybody has it. The others must not wait forever for a process
+   * that failed alone.
+   */
   int report(const std::string &message, const bool first_rank, const ExitStatus status)
   {
     const int  number = static_cast<int>(status);
@@ -383,7 +386,10 @@ namespace
 } // namespace
 
 
-/** Trilinos and p4est end the program this way, above all where memory runs out; MPI leaves its names to programs that want to know of it. */
+/**
+ * Trilinos and p4est end the program this way, above all where memory runs out; MPI leaves its
+ * names to programs that want to know of it.
+ */
 extern "C" int MPI_Abort(MPI_Comm communicator, int)
 {
   const int status = PeriDeal::leave_after_abort();
@@ -395,7 +401,10 @@ extern "C" int MPI_Abort(MPI_Comm communicator, int)
 }
 
 
-/** While it lives, exit() is not ours: parts of Trilinos call it without a word where memory runs out. */
+/**
+ * While it lives, exit() is not ours: parts of Trilinos call it without a word where memory runs
+ * out.
+ */
 struct ExitGuard
 {
   ExitGuard()

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Compiled once for all sources (PERIDEAL_PRECOMPILED_HEADERS). Every file still includes what it uses: the debug build
-// has no precompiled header. Only headers of deal.II and of the standard library belong here.
+// Compiled once for all sources (PERIDEAL_PRECOMPILED_HEADERS). Every file still includes what it
+// uses: the debug build has no precompiled header. Only headers of deal.II and of the standard
+// library belong here.
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/parameter_acceptor.h>

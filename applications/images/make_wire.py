@@ -152,7 +152,8 @@ class Wire:
         write_png(path, rows, PALETTE[:2] + [self.options.color])
 
 
-# The images of prm/papers/le_2014, 0.56 micrometres a pixel: filaments of 27 pixels, 15.1 micrometres.
+# The images of prm/papers/le_2014, 0.56 micrometres a pixel: filaments of 27 pixels, 15.1
+# micrometres.
 ALL = {
     "longitudinal": [], "single_filament": ["--filaments", "1"],
     "cross_section": ["--section", "cross", "--bridges", "9", "--thickness", "22", "--roughness", "1"],

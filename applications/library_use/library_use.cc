@@ -2,9 +2,10 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 /*
- * A deal.II program with a mesh and a DoFHandler of its own, which lets PeriDeal build peridynamic bonds on its dofs and
- * uses the resulting operator: applies it, bounds its spectrum, integrates in time and solves a steady state. Each
- * result is compared with one that is known exactly; exit status 1 if one of them is wrong.
+ * A deal.II program with a mesh and a DoFHandler of its own, which lets PeriDeal build peridynamic
+ * bonds on its dofs and uses the resulting operator: applies it, bounds its spectrum, integrates in
+ * time and solves a steady state. Each result is compared with one that is known exactly; exit
+ * status 1 if one of them is wrong.
  */
 
 #include <deal.II/base/conditional_ostream.h>
@@ -88,7 +89,9 @@ namespace
   }
 
 
-  /** Values of a function at the nodes. Node i of this process is the dof nodes.first_owned() + i. */
+  /**
+   * Values of a function at the nodes. Node i of this process is the dof nodes.first_owned() + i.
+   */
   void interpolate(const PeriDeal::Nodes<2>                      &nodes,
                    const std::function<double(const Point<2> &)> &f,
                    Vector                                        &u)
@@ -154,7 +157,10 @@ namespace
   }
 
 
-  /** With mirrored fictitious nodes, products of sines are eigenvectors: spectrum and decay are known. */
+  /**
+   * With mirrored fictitious nodes, products of sines are eigenvectors: spectrum and decay are
+   * known.
+   */
   void decay_of_a_harmonic(Square &square, Checks &checks)
   {
     PeriDeal::Scene<2> scene;

@@ -18,7 +18,8 @@ from words import with_unit
 
 BROKEN, DISSIPATED, RELEASED = "broken bonds", "energy dissipated", "energy released by broken bonds"
 WORK = "work of loads and supports"
-# Colour and dashes of each energy; the work is dashed, as it hides the strain energy of a whole body.
+# Colour and dashes of each energy; the work is dashed, as it hides the strain energy of a whole
+# body.
 ENERGIES = {WORK: ("#000000", (0, (4, 2))), "strain energy": ("#0072b2", "-"),
             "kinetic energy": ("#009e73", "-"), DISSIPATED: ("#d55e00", "-")}
 SIDE_COLORS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")

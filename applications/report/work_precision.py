@@ -15,7 +15,8 @@ from study_figures import StudyError, add_labels
 
 FILE = "work_precision.json"
 
-# What is drawn in full and named at its end; all other families are thin lines of their model's colour.
+# What is drawn in full and named at its end; all other families are thin lines of their model's
+# colour.
 SHOWN = {
     "FEM, crack on faces": ("o", "-"), "FEM, pairs": ("v", "-"), "FEM, pairs, scaled": ("^", "-"), "FEM, cells removed": ("X", "-"),
     "PD raw, m = 2": ("v", "-"), "PD raw, m = 6.5": ("X", "-"), "PD energy-corrected, m = 2": ("P", "-"), "PD exchange, m = 3": ("s", "-"),

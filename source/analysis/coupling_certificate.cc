@@ -77,7 +77,10 @@ namespace PeriDeal
     };
 
 
-    /** Nodes and bonds that the body would have with peridynamics everywhere; a graded mesh would have to be uniform. */
+    /**
+     * Nodes and bonds that the body would have with peridynamics everywhere; a graded mesh would
+     * have to be uniform.
+     */
     template <int dim>
     std::pair<unsigned long long, unsigned long long> count_all_bonds(const Families<dim> &families)
     {
@@ -134,7 +137,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** What is asked of any body; its K with bonds and without are those of the intact one, of n_components unknowns for each node. */
+    /**
+     * What is asked of any body; its K with bonds and without are those of the intact one, of
+     * n_components unknowns for each node.
+     */
     template <int dim, typename OperatorType>
     CouplingCertificate examine(const OperatorType &op,
                                 const Vector       &held,

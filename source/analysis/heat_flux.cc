@@ -45,7 +45,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** On a graded mesh beside larger cells, where rows of K are not those of a lattice, the flux is that of the elements. */
+    /**
+     * On a graded mesh beside larger cells, where rows of K are not those of a lattice, the flux is
+     * that of the elements.
+     */
     template <int dim>
     void take_element_flux_beside_large_cells(const FEMOperator<dim> &op,
                                               const Vector           &u,

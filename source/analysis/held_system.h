@@ -10,7 +10,10 @@
 
 namespace PeriDeal
 {
-  /** A body with and without bonds whose surface is held, and how to invert its K to a few digits. All functions are collective. */
+  /**
+   * A body with and without bonds whose surface is held, and how to invert its K to a few digits.
+   * All functions are collective.
+   */
   class HeldSystem
   {
   public:
@@ -26,13 +29,19 @@ namespace PeriDeal
                const bool                                    symmetric,
                const unsigned int                            n_components);
 
-    /** Largest difference between the solution with bonds and that without for the loads and surface values of u, which is the latter, over the largest value of u. */
+    /**
+     * Largest difference between the solution with bonds and that without for the loads and surface
+     * values of u, which is the latter, over the largest value of u.
+     */
     double patch_error(const Vector &u) const;
 
     /** The largest |(K - K^T) x|/|K x| for some fields x. */
     double asymmetry(const Vector &noise) const;
 
-    /** Of C^{-1} K, by inverse iterations, with the Rayleigh quotient at the end. Infinite if all unknowns are held. */
+    /**
+     * Of C^{-1} K, by inverse iterations, with the Rayleigh quotient at the end. Infinite if all
+     * unknowns are held.
+     */
     double lowest_eigenvalue(const Vector &noise, const Vector &capacity) const;
 
   private:

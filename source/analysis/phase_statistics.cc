@@ -14,7 +14,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Von Mises' stress and volume of all samples of a phase, on every process, in ascending order. Collective. */
+    /**
+     * Von Mises' stress and volume of all samples of a phase, on every process, in ascending order.
+     * Collective.
+     */
     std::vector<std::pair<double, double>> sorted_von_mises(
       const std::vector<StressSample> &samples,
       const int                        phase,

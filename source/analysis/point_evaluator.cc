@@ -174,7 +174,8 @@ namespace PeriDeal
     for (unsigned int k = 0; k < points.size(); ++k)
       here[k] = find_place(search, points[k], place) ? 1 : 0;
     Utilities::MPI::max(here, communicator, in_body);
-    // Ties go to the node that comes first in space, so that the answer does not depend on the partition.
+    // Ties go to the node that comes first in space, so that the answer does not depend on the
+    // partition.
     const auto before = [](const Point<dim> &a, const Point<dim> &b) {
       for (unsigned int d = dim; d-- > 0;)
         if (a[d] != b[d])
@@ -260,7 +261,8 @@ namespace PeriDeal
         }
     for (unsigned int k = 0; k < points.size(); ++k)
       inner[k] += Utilities::MPI::sum(moved[k], communicator);
-    // Each part goes to the owner of its dof: what ghosts a vector has, and in which order, depends on the model.
+    // Each part goes to the owner of its dof: what ghosts a vector has, and in which order, depends
+    // on the model.
     const IndexSet &owned = dofs.locally_owned_dofs();
     for (const std::vector<double> &list : Utilities::MPI::all_gather(communicator, own))
       for (std::size_t i = 0; i < list.size(); i += 3 + dim)

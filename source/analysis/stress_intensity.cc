@@ -20,7 +20,10 @@ namespace PeriDeal
     const double pi = std::acos(-1.);
 
 
-    /** Stresses of the near-tip field of unit intensity (Westergaard, Irwin), in the frame of the crack. */
+    /**
+     * Stresses of the near-tip field of unit intensity (Westergaard, Irwin), in the frame of the
+     * crack.
+     */
     SymmetricTensor<2, 2> near_stress(const unsigned int mode, const double r, const double angle)
     {
       const double          s = std::sin(0.5 * angle), c = std::cos(0.5 * angle);
@@ -45,7 +48,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** From a point to the nearest region or point that is held or loaded; regions are looked at in the centres and corners of cells. */
+    /**
+     * From a point to the nearest region or point that is held or loaded; regions are looked at in
+     * the centres and corners of cells.
+     */
     double distance_to_parts(const Scene<2> &scene, const Point<2> &p)
     {
       const auto &conditions = scene.boundary_conditions;

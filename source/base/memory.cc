@@ -21,7 +21,10 @@ namespace PeriDeal
     constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 
-    /** The number behind a key in a file of lines "key number", or the first one where the key is empty. */
+    /**
+     * The number behind a key in a file of lines "key number", or the first one where the key is
+     * empty.
+     */
     double number_in(const std::string &file_name, const std::string &key, const double otherwise)
     {
       std::ifstream file(file_name);
@@ -38,7 +41,10 @@ namespace PeriDeal
     }
 
 
-    /** What a group may take beyond what it has; the system gives files' pages that it keeps back when they are needed. */
+    /**
+     * What a group may take beyond what it has; the system gives files' pages that it keeps back
+     * when they are needed.
+     */
     double room_of_group(const std::string &folder)
     {
       const double limit = number_in(folder + "/memory.max", "", unlimited); // "max" is no number

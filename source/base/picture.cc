@@ -37,7 +37,9 @@ namespace PeriDeal
     }
 
 
-    /** A head may claim any size; the pixels are asked of the file before there is memory for them. */
+    /**
+     * A head may claim any size; the pixels are asked of the file before there is memory for them.
+     */
     void require_enough(const std::string &name, const std::size_t available, const double needed)
     {
       if (static_cast<double>(available) < needed)
@@ -46,7 +48,8 @@ namespace PeriDeal
     }
 
 
-    // What libpng asks of us. It leaves a broken file by longjmp, so that nothing with a destructor may live in the functions that call it.
+    // What libpng asks of us. It leaves a broken file by longjmp, so that nothing with a destructor
+    // may live in the functions that call it.
 
     struct PNGSource
     {

@@ -20,7 +20,9 @@ namespace PeriDeal
 {
   namespace
   {
-    /** What set_farewell() was given. A handler reads it, so it never changes once it is published. */
+    /**
+     * What set_farewell() was given. A handler reads it, so it never changes once it is published.
+     */
     struct Farewell
     {
       std::string file, part, text, message;

@@ -47,8 +47,9 @@ namespace PeriDeal
     int rank = 0;
     MPI_Comm_rank(communicator, &rank);
     active = rank == 0 && !quiet;
-    // (mpirun gives its processes a terminal as output even where it writes into a file itself, but a pipe for messages.)
-    // A script that passes our output on through a pipe says what is at its end.
+    // (mpirun gives its processes a terminal as output even where it writes into a file itself, but
+    // a pipe for messages.) A script that passes our output on through a pipe says what is at its
+    // end.
     if (const char *wanted = std::getenv("PERIDEAL_PROGRESS"))
       terminal = std::string(wanted) == "bar";
   }

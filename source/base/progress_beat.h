@@ -12,8 +12,8 @@
 namespace PeriDeal
 {
   /**
-   * The thread that tells what a run is at. It allocates nothing and has a small stack, so that a run has the memory that it has without it, and calls neither MPI
-   * nor streams.
+   * The thread that tells what a run is at. It allocates nothing and has a small stack, so that a
+   * run has the memory that it has without it, and calls neither MPI nor streams.
    */
   struct Progress::Beat
   {

@@ -75,7 +75,8 @@ namespace PeriDeal
     const double a = conductivity(node), b = conductivity(neighbor);
     if (material.interface_rule != InterfaceRule::harmonic)
       return interface_conductivity(material.interface_rule, a, b);
-    // From the end that comes first in space, so that both ends of a bond see the same value to the last bit.
+    // From the end that comes first in space, so that both ends of a bond see the same value to the
+    // last bit.
     Point<dim> start = position(node), end = position(neighbor);
     for (unsigned int d = 0; d < dim; ++d)
       if (start[d] != end[d])

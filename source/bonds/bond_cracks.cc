@@ -20,7 +20,8 @@ namespace PeriDeal
                                   const FictitiousNode<dim> &fictitious,
                                   const Test                &test) const
   {
-    // The body and its cracks are mirrored to the outside. Instead of the cracks mirror the bond, about each set of the sides that it passes.
+    // The body and its cracks are mirrored to the outside. Instead of the cracks mirror the bond,
+    // about each set of the sides that it passes.
     const Lattice<dim> &lattice = *own_nodes->lattice();
     const auto          origin  = lattice.index(own_nodes->position(fictitious.mirror));
     for (unsigned int image = 0; image < (1u << dim); ++image)
@@ -30,7 +31,8 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim && mirrored; ++d)
           if ((image >> d) & 1)
             {
-              // The sum of the sites of mirror images of each other is that of the mirror and the fictitious node.
+              // The sum of the sites of mirror images of each other is that of the mirror and the
+              // fictitious node.
               mirrored        = origin[d] != fictitious.site[d];
               const int twice = origin[d] + fictitious.site[d];
               a[d]            = twice - a[d];
@@ -69,7 +71,8 @@ namespace PeriDeal
     cut         = false;
     for (std::size_t k = 0; k < cracks.size();)
       {
-        // A bond may meet several pieces of a crack, or a piece and its mirror image where the crack ends on a side: that is one crossing.
+        // A bond may meet several pieces of a crack, or a piece and its mirror image where the
+        // crack ends on a side: that is one crossing.
         double             fraction = 1.;
         const unsigned int crack    = cracks[k].crack;
         for (; k < cracks.size() && cracks[k].crack == crack; ++k)

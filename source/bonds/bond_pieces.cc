@@ -60,7 +60,8 @@ namespace PeriDeal
       {
         BondPiece<dim> piece;
         piece.length = to->value() - from->value();
-        // The middle lies inside the cells' range of each coordinate; where the bond has no extent, the cells on both sides share it.
+        // The middle lies inside the cells' range of each coordinate; where the bond has no extent,
+        // the cells on both sides share it.
         typename BondPiece<dim>::Site lowest;
         unsigned int                  n_around = 1;
         for (unsigned int d = 0; d < dim; ++d)

@@ -21,7 +21,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Exchanged elastic bonds do better with open tips unless they are scaled; all other elastic ones are cut there. */
+    /**
+     * Exchanged elastic bonds do better with open tips unless they are scaled; all other elastic
+     * ones are cut there.
+     */
     template <int dim>
     bool cuts_at_tips(const Scene<dim> &scene, const HaloAround halo)
     {
@@ -56,7 +59,8 @@ namespace PeriDeal
     if (parameters.across_voids == BondsAcrossVoids::cut && scene.domain.has_voids())
       voids = &scene.domain;
     find_weights();
-    // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away than any bond.
+    // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away
+    // than any bond.
     const double layer  = parameters.flux_treatment == FluxTreatment::layer_extrapolation ?
                             delta + 0.5 * nodes.smallest_spacing() :
                             0.;
@@ -429,7 +433,8 @@ namespace PeriDeal
   template <int dim>
   bool Families<dim>::near_crack(const unsigned int node) const
   {
-    // Crack-side scaling changes the bonds of the nodes that have a bond cut: those reach once farther.
+    // Crack-side scaling changes the bonds of the nodes that have a bond cut: those reach once
+    // farther.
     const double radius = factors.empty() ? farthest : 2. * farthest;
     return voids != nullptr ||
            std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {

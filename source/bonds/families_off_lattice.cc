@@ -48,7 +48,8 @@ namespace PeriDeal
     around.reserve(found.size());
     for (const auto &[neighbor, square] : found)
       around.emplace_back(bond_vector(node, neighbor), neighbor);
-    // In the order of the relative position; of two nodes at the same place the one on the same side of a crack comes first by its crack point.
+    // In the order of the relative position; of two nodes at the same place the one on the same
+    // side of a crack comes first by its crack point.
     std::sort(around.begin(), around.end(), [&](const auto &a, const auto &b) {
       for (unsigned int d = dim; d-- > 0;)
         if (a.first[d] != b.first[d])

@@ -34,7 +34,10 @@ namespace PeriDeal
     }
 
 
-    /** How many spacings a site lies inside a side; 0 for the side's own row of vertices, 1 for the outermost row of cell centres. */
+    /**
+     * How many spacings a site lies inside a side; 0 for the side's own row of vertices, 1 for the
+     * outermost row of cell centres.
+     */
     template <int dim>
     int depth(const Lattice<dim>                 &lattice,
               const typename Lattice<dim>::Index &site,

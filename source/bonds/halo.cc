@@ -26,7 +26,10 @@ namespace PeriDeal
     }
 
 
-    /** Corners of the cells that this process knows; @p margin twice the diagonal of the smallest of them on a lattice, of the largest elsewhere. */
+    /**
+     * Corners of the cells that this process knows; @p margin twice the diagonal of the smallest of
+     * them on a lattice, of the largest elsewhere.
+     */
     template <int dim>
     std::vector<Point<dim>> cell_corners(const Nodes<dim> &nodes, double &margin)
     {

@@ -80,7 +80,8 @@ namespace PeriDeal
                          hn::Add(hn::LoadU(d, p + shift[2]), hn::LoadU(d, p + shift[3])));
       }
 
-      /// sum + w_0 p(y) + sum_b w_b (p(y+b) + p(y-b)) with the window centred at p(y); if odd, sum + sum_b w_b (p(y+b) - p(y-b)).
+      /// sum + w_0 p(y) + sum_b w_b (p(y+b) + p(y-b)) with the window centred at p(y); if odd,
+      /// sum + sum_b w_b (p(y+b) - p(y-b)).
       template <int reach, bool odd>
       HWY_INLINE V filter_point(V sum, const V *weights, const V *centre)
       {
@@ -226,9 +227,9 @@ namespace PeriDeal
             }
       }
 
-      /// to[i] = from[i + shift] + from[i - shift] (odd: their difference), or from[i] if shift is zero, for i < n. Exactly
-      /// the n points are read; those that lie @p later ahead are asked for, as rows are too short
-      /// for the machine to foresee the next one.
+      /// to[i] = from[i + shift] + from[i - shift] (odd: their difference), or from[i] if shift is
+      /// zero, for i < n. Exactly the n points are read; those that lie @p later ahead are asked
+      /// for, as rows are too short for the machine to foresee the next one.
       template <bool odd>
       void fold(const double        *from,
                 const std::ptrdiff_t shift,

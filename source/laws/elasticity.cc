@@ -140,7 +140,8 @@ namespace PeriDeal
   {
     if (dim == 1)
       return moduli.young() / 3.;
-    // The eigenvalues of the remainder are 2 (G - k), and for equal strains dim lambda' + 2 G - (dim + 2) k.
+    // The eigenvalues of the remainder are 2 (G - k), and for equal strains dim lambda' + 2 G -
+    // (dim + 2) k.
     const double equal = dim * lambda_of(moduli, dim, plane) + 2. * moduli.shear;
     return std::min(moduli.shear, equal / (dim + 2.));
   }

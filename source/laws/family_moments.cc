@@ -24,7 +24,10 @@ namespace PeriDeal
     }
 
 
-    /** The square roots of how often each of them occurs: 4! over the factorials of the numbers of equal indices. */
+    /**
+     * The square roots of how often each of them occurs: 4! over the factorials of the numbers of
+     * equal indices.
+     */
     template <int dim>
     FourthMoments<dim> roots_of_multiplicity()
     {

@@ -28,7 +28,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Derivatives of the coordinates along the directions of the unit cell: [coordinate][direction]. */
+    /**
+     * Derivatives of the coordinates along the directions of the unit cell:
+     * [coordinate][direction].
+     */
     template <int dim>
     Tensor<2, dim> jacobian_at(const CellCorners<dim> &corners, const Point<dim> &unit)
     {
@@ -169,7 +172,10 @@ namespace PeriDeal
     };
 
 
-    /** The face (1-u)(1-v) p0 + u (1-v) p1 + (1-u) v p2 + u v p3, and where the line passes it: there the face has the values 0, 0 across. */
+    /**
+     * The face (1-u)(1-v) p0 + u (1-v) p1 + (1-u) v p2 + u v p3, and where the line passes it:
+     * there the face has the values 0, 0 across.
+     */
     void add_face_crossing(const std::array<AcrossLine, 4> &p,
                            const double                     tolerance,
                            std::vector<double>             &places)

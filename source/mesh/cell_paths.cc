@@ -18,7 +18,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Whether a point lies in a cell or on its surface; @p unit is then near that point of the unit cell. */
+    /**
+     * Whether a point lies in a cell or on its surface; @p unit is then near that point of the unit
+     * cell.
+     */
     template <int dim>
     bool is_inside(const CellCorners<dim> &corners, const Point<dim> &p, Point<dim> &unit)
     {
@@ -157,7 +160,8 @@ namespace PeriDeal
     pieces.clear();
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k)
       {
-        // Which side of a crack cut into the mesh a path runs along is told by the crack points of its ends.
+        // Which side of a crack cut into the mesh a path runs along is told by the crack points of
+        // its ends.
         const double      middle = 0.5 * (cuts[k] + cuts[k + 1]);
         const Point<dim>  p      = from.crack_point + middle * (to.crack_point - from.crack_point);
         const std::size_t first  = pieces.size();

@@ -142,7 +142,7 @@ namespace PeriDeal
     }
 
 
-    /** Places u, v at which a path crosses a bilinear face: there the face has the values 0, 0 across it. */
+    /** Places u, v at which a path crosses a bilinear face: its values across it are 0, 0 there. */
     unsigned int find_crossings(const Seen<3>      &seen,
                                 const unsigned int *f,
                                 double (&coordinates)[2][2])
@@ -169,7 +169,7 @@ namespace PeriDeal
     }
 
 
-    /** Faces of a cell that the path may cross, as bits: not those with all corners on one side of it. */
+    /** Faces of a cell that the path may cross, as bits: not with all corners on one side of it. */
     template <int dim>
     unsigned int faces_to_cross(const Seen<dim> &seen, const double tolerance)
     {
@@ -331,7 +331,7 @@ namespace PeriDeal
   }
 
 
-  /** The outer face of the next cell that continues one of this cell; none if the side of the body ends there. */
+  /** The outer face of the next cell that continues one of this cell; none if the side ends. */
   template <int dim>
   unsigned int CellPaths<dim>::outer_beyond(const unsigned int cell,
                                             const unsigned int outer,

@@ -158,7 +158,9 @@ namespace PeriDeal
       return cells;
     }
 
-    /** Group number of each of the cells around one vertex, cells being joined by the given pairs. */
+    /**
+     * Group number of each of the cells around one vertex, cells being joined by the given pairs.
+     */
     std::vector<unsigned int> connected_groups(
       const std::vector<unsigned int>                          &cells,
       const std::vector<std::pair<unsigned int, unsigned int>> &joined)
@@ -188,7 +190,8 @@ namespace PeriDeal
       if (cells.size() == 2 && on_crack(mesh.vertices, key, crack))
         for (unsigned int f = 0; f < GeometryInfo<dim>::faces_per_cell; ++f)
           {
-            // Once more through the cell, since the area needs the vertices in their order around the face.
+            // Once more through the cell, since the area needs the vertices in their order around
+            // the face.
             const FaceKey<dim> ordered = face_vertices<dim>(mesh.cells[cells[0]], f);
             FaceKey<dim>       sorted  = ordered;
             std::sort(sorted.begin(), sorted.end());

@@ -19,8 +19,9 @@ namespace PeriDeal
   namespace
   {
     /**
-     * Times at which a mesh follows cracks and solution: so often that no tip advances more than a horizon in between, and at the start more often than later,
-     * since fields that begin with a jump change fast at first.
+     * Times at which a mesh follows cracks and solution: so often that no tip advances more than a
+     * horizon in between, and at the start more often than later, since fields that begin with a
+     * jump change fast at first.
      */
     template <int dim>
     std::vector<double> adaptation_times(const Scene<dim> &scene, const CrackHistory<dim> &history)
@@ -138,8 +139,9 @@ namespace PeriDeal
   namespace
   {
     /**
-     * Let all processes agree on the marks: those on copies of other processes' cells decide with which of its neighbours a cell may be merged, and the mesh
-     * would depend on how it is dealt out. Collective.
+     * Let all processes agree on the marks: those on copies of other processes' cells decide with
+     * which of its neighbours a cell may be merged, and the mesh would depend on how it is dealt
+     * out. Collective.
      */
     template <int dim>
     void agree_on_marks(Triangulation<dim> &mesh)
@@ -175,7 +177,8 @@ namespace PeriDeal
               else if (mark == merge)
                 cell->set_coarsen_flag();
             });
-          // A family is merged as a whole; of one of another process not all cells may be known here.
+          // A family is merged as a whole; of one of another process not all cells may be known
+          // here.
           for (const auto &cell : mesh.active_cell_iterators())
             if (cell->is_artificial())
               cell->clear_coarsen_flag();

@@ -24,7 +24,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** The lattice of a box, with the cells for which keep(centre) is true. Vertices without cells are left out. */
+    /**
+     * The lattice of a box, with the cells for which keep(centre) is true. Vertices without cells
+     * are left out.
+     */
     template <int dim, typename Keep>
     CoarseMesh<dim> lattice_mesh(const Domain<dim>                   &domain,
                                  const std::array<unsigned int, dim> &n,
@@ -139,7 +142,10 @@ namespace PeriDeal
     }
 
 
-    /** Of the boundary faces of a file, by the number of the cell and of its face; cutting along cracks leaves both as they are. */
+    /**
+     * Of the boundary faces of a file, by the number of the cell and of its face; cutting along
+     * cracks leaves both as they are.
+     */
     using BoundaryIds = std::map<std::pair<unsigned int, unsigned int>, types::boundary_id>;
 
 

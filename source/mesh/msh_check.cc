@@ -158,7 +158,9 @@ namespace PeriDeal
                a[2] * (b[0] * c[1] - b[1] * c[0]);
       }
 
-      /** A corner of a quadrilateral whose edges go on straight, as recombined triangles have it. */
+      /**
+       * A corner of a quadrilateral whose edges go on straight, as recombined triangles have it.
+       */
       bool is_straight(const MshElement &cell, const unsigned int corner) const
       {
         if (dim != 2)

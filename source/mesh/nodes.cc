@@ -47,7 +47,10 @@ namespace PeriDeal
     }
 
 
-    /** Call f(local node, cell, corner number) for each owned dof of each cell this process knows; corner is 0 for cell centres. */
+    /**
+     * Call f(local node, cell, corner number) for each owned dof of each cell this process knows;
+     * corner is 0 for cell centres.
+     */
     template <int dim, typename Visit>
     void for_each_owned_dof(const DoFHandler<dim> &dofs, const Visit &visit)
     {

@@ -52,7 +52,10 @@ namespace PeriDeal
     }
 
 
-    /** A face of a cell that is mapped by its vertices; places on it by dim - 1 coordinates from 0 to 1. */
+    /**
+     * A face of a cell that is mapped by its vertices; places on it by dim - 1 coordinates from 0
+     * to 1.
+     */
     template <int dim>
     class MappedFace
     {

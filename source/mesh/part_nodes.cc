@@ -19,7 +19,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Of this process's nodes the one nearest to a point, if no other process has a nearer one; else invalid. Collective. */
+    /**
+     * Of this process's nodes the one nearest to a point, if no other process has a nearer one;
+     * else invalid. Collective.
+     */
     template <int dim>
     unsigned int nearest_node(const std::vector<Point<dim>> &positions,
                               const Point<dim>              &p,
@@ -188,7 +191,8 @@ namespace PeriDeal
             }
       }
     require_areas(conditions, areas, communicator());
-    // In the order of their places, so that sums are the same to the last bit on any number of processes.
+    // In the order of their places, so that sums are the same to the last bit on any number of
+    // processes.
     std::sort(pieces.begin(), pieces.end(), [](const Piece<dim> &a, const Piece<dim> &b) {
       return a.key() < b.key();
     });
@@ -204,7 +208,8 @@ namespace PeriDeal
             moment += pieces[end].moment;
             share.inside = share.inside || pieces[end].inside;
           }
-        // Of an area that the part cuts, the middle: pieces of one node add up to what it has of a load that is a straight line.
+        // Of an area that the part cuts, the middle: pieces of one node add up to what it has of a
+        // load that is a straight line.
         const types::boundary_id side  = conditions.side_of(share.id);
         const auto               whole = std::lower_bound(
           shares.begin(),

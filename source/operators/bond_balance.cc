@@ -30,7 +30,8 @@ namespace PeriDeal
       const auto number = static_cast<std::size_t>(condition_of.local_element(node));
       return number == 0 ? nullptr : &dirichlet[number - 1];
     };
-    // The side that heat comes through: the one whose value the fictitious node has, be it mirrored at a symmetry side as well.
+    // The side that heat comes through: the one whose value the fictitious node has, be it mirrored
+    // at a symmetry side as well.
     const auto side_of = [&](const FictitiousNode<dim> &node) {
       const SideCondition *const given = node.terms.empty() ? condition(node.mirror) :
                                                               node.terms.back().condition;
@@ -94,7 +95,8 @@ namespace PeriDeal
         for (const auto &bond : family)
           if (bond.cut && bond.weight != 0.)
             {
-              // A bond between two real nodes comes up at both of its ends; with a self term they differ.
+              // A bond between two real nodes comes up at both of its ends; with a self term they
+              // differ.
               const bool   real  = bond.neighbor < nodes.n_local();
               const double other = real ? u.local_element(bond.neighbor) :
                                           outside_values[bond.neighbor - nodes.n_local()];

@@ -16,8 +16,8 @@ namespace PeriDeal
   namespace
   {
     /**
-     * Conductance of a bond between nearest neighbours as a 5 or 7 point scheme has it; zero for longer bonds and cut ones. The same from both ends, so that the
-     * matrix is symmetric.
+     * Conductance of a bond between nearest neighbours as a 5 or 7 point scheme has it; zero for
+     * longer bonds and cut ones. The same from both ends, so that the matrix is symmetric.
      */
     template <int dim>
     double neighbor_conductance(const Families<dim>                &families,
@@ -85,7 +85,8 @@ namespace PeriDeal
                 {
                   if (bond.neighbor >= nodes.n_local())
                     {
-                      // A fictitious node holds its neighbours as far as it does not follow its mirror.
+                      // A fictitious node holds its neighbours as far as it does not follow its
+                      // mirror.
                       outside[i] +=
                         (1. - bonds.fictitious()[bond.neighbor - nodes.n_local()].sign) * c;
                       continue;

@@ -18,7 +18,9 @@ namespace PeriDeal
 
   namespace
   {
-    /** The sum of W xi_a^2 over a family for each direction a, and whether some bond of it is cut. */
+    /**
+     * The sum of W xi_a^2 over a family for each direction a, and whether some bond of it is cut.
+     */
     template <int dim>
     std::pair<Tensor<1, dim>, bool> moments(const Families<dim> &families,
                                             const unsigned int   node,
@@ -37,7 +39,10 @@ namespace PeriDeal
     }
 
 
-    /** Crack-side scaling (doc/theory.md): the trace of a full interior family is 2 d kappa, what a cut family lacks is made up for. */
+    /**
+     * Crack-side scaling (doc/theory.md): the trace of a full interior family is 2 d kappa, what a
+     * cut family lacks is made up for.
+     */
     template <int dim>
     double crack_scaling(const Tensor<1, dim> &sums, const bool cut, const double kappa_volume)
     {
@@ -90,7 +95,8 @@ namespace PeriDeal
           node_factors[0].local_element(i) = crack_scaling(sums, cut, kappa_volume);
         for (unsigned int d = 0; d < n_directions && energy; ++d)
           {
-            // Tan 2020: (kappa/2)/Z, Z = (1/4) sum W xi_a^2 / V the energy of a unit gradient in direction a.
+            // Tan 2020: (kappa/2)/Z, Z = (1/4) sum W xi_a^2 / V the energy of a unit gradient in
+            // direction a.
             node_factors[d].local_element(i) = 2. * kappa_volume / sums[first + d];
             if (!(sums[first + d] > 0.) && message.empty())
               {
@@ -203,7 +209,8 @@ namespace PeriDeal
   template <int dim>
   void BondOperator<dim>::update_crack_sides()
   {
-    // What a contact conductance lets through depends on the bond's conductivity, and so does crack-side scaling.
+    // What a contact conductance lets through depends on the bond's conductivity, and so does
+    // crack-side scaling.
     const bool scaled = !node_factors.empty() && !bonds.corrects_every_bond();
     if (scene.cracks.cracks.empty() || !(scaled || scene.cracks.contact_conductance > 0.))
       return;

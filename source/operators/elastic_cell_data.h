@@ -12,7 +12,9 @@
 
 namespace PeriDeal
 {
-  /** Scratch memory of the cell loops. Rows and columns of a cell are interleaved like the unknowns. */
+  /**
+   * Scratch memory of the cell loops. Rows and columns of a cell are interleaved like the unknowns.
+   */
   template <int dim>
   struct ElasticElements<dim>::CellData
   {
@@ -56,7 +58,10 @@ namespace PeriDeal
   };
 
 
-  /** Call visit(cell, data) with the matrices of each own cell, as they are without bonds and cracks. */
+  /**
+   * Call visit(cell, data) with the matrices of each own cell, as they are without bonds and
+   * cracks.
+   */
   template <int dim>
   template <typename Visit>
   void ElasticElements<dim>::for_each_own_cell(const Visit &visit) const

@@ -15,7 +15,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Part of what bonds could carry that they get in three dimensions: the rest keeps the remainder positive. */
+    /**
+     * Part of what bonds could carry that they get in three dimensions: the rest keeps the
+     * remainder positive.
+     */
     constexpr double kept = 0.95;
 
 
@@ -140,7 +143,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Fields on the corners of a brick: the first columns span the linear ones, the others are orthogonal to these. All are orthonormal. */
+    /**
+     * Fields on the corners of a brick: the first columns span the linear ones, the others are
+     * orthogonal to these. All are orthonormal.
+     */
     template <int dim>
     Eigen::MatrixXd cell_modes()
     {
@@ -157,7 +163,10 @@ namespace PeriDeal
     }
 
 
-    /** The cell matrix of the stiffness dd + dd + dd: int (dd + dd + dd)_cgeh dphi_a/dx_g dphi_b/dx_h. */
+    /**
+     * The cell matrix of the stiffness dd + dd + dd: int (dd + dd + dd)_cgeh dphi_a/dx_g
+     * dphi_b/dx_h.
+     */
     template <int dim>
     Eigen::MatrixXd unit_stiffness(const Tensor<1, dim> &spacing)
     {

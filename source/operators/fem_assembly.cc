@@ -217,7 +217,7 @@ namespace PeriDeal
                                             const std::vector<unsigned int> &nodes,
                                             FactorData                      &factors)
   {
-    // Crack-side scaling (doc/theory.md): g_i = d kappa V_i / (-(1/2) sum_j K_ij r_ij^2) on the vertices of cut cells. The cells are all those around the nodes.
+    // Crack-side scaling: g_i = d kappa V_i / (-(1/2) sum_j K_ij r_ij^2) on vertices of cut cells.
     CellData &data   = *cell_data;
     Vector   &marked = factors.marked, &trace = factors.trace, &expected = factors.expected;
     for (const Cell &cell : cells)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Conductivity and capacity that depend on the temperature, the heat in the body, and what enters it.
+// Conductivity and capacity that depend on the temperature, the heat in the body, and what enters
+// it.
 
 #include <deal.II/base/mpi.h>
 

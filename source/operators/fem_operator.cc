@@ -355,8 +355,8 @@ namespace PeriDeal
     initialize_vector(loads);
     assemble_loads(loads, t);
     multiply(heat, u);
-    heat -=
-      loads; // what leaves each unknown through the body; in a prescribed one it must come from outside
+    // What leaves each unknown through the body; in a prescribed one it must come from outside.
+    heat -= loads;
     Balance     balance;
     const auto &conditions = scene.boundary_conditions;
     for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})

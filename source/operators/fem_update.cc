@@ -31,8 +31,8 @@ namespace PeriDeal
   namespace
   {
     /**
-     * One box for all that joins the zone beside each cut, the same on all processes: a cell may feel what happens a little farther away than its own process
-     * knows of. Collective.
+     * One box for all that joins the zone beside each cut, the same on all processes: a cell may
+     * feel what happens a little farther away than its own process knows of. Collective.
      */
     template <int dim>
     std::vector<BoundingBox<dim>> boxes_beside(const std::vector<BoundingBox<dim>> &cuts,
@@ -106,7 +106,8 @@ namespace PeriDeal
     CellData    &data   = *cell_data;
     const bool   scaled = crack_factors.size() > 0;
     const double reach  = coupling ? coupling->families().reach() : 0.;
-    // The factors of crack-side scaling change at the vertices of the cells whose own matrix does, and of all cells around these.
+    // The factors of crack-side scaling change at the vertices of the cells whose own matrix does,
+    // and of all cells around these.
     const double                    wide = scaled ? search->largest_diameter() : 0.;
     const std::vector<Cell>         near = cells_near(cuts, joins, wide);
     std::vector<FullMatrix<double>> old(near.size());
@@ -199,7 +200,8 @@ namespace PeriDeal
           stiffness_diagonal.local_element(i) = 1.;
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
-    // Pairs of a cell with positive entries off the diagonal (of unequal sides) conduct more than it did as a whole.
+    // Pairs of a cell with positive entries off the diagonal (of unequal sides) conduct more than
+    // it did as a whole.
     const bool stiffer = Utilities::MPI::max(pairs_stiffer ? 1 : 0, dofs.get_communicator()) > 0;
     if (stiffer || zone_moves || crack_factors.size() > 0 || history.may_close())
       {
@@ -215,7 +217,8 @@ namespace PeriDeal
   {
     if (bounds.safe == 0.) // nobody has asked yet
       return;
-    // The fastest field may have changed where the rows have, and only there: iterations that start there see it soon.
+    // The fastest field may have changed where the rows have, and only there: iterations that start
+    // there see it soon.
     const std::vector<unsigned int> &rows  = event->touched.rows();
     double                           local = -1.;
     if (!form && symmetric())

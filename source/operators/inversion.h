@@ -16,9 +16,11 @@
 namespace PeriDeal
 {
   /**
-   * Nodes some corner of which has no volume left in the deformed body, and the place of the worst of them. Collective.
+   * Nodes some corner of which has no volume left in the deformed body, and the place of the worst
+   * of them. Collective.
    *
-   * @param u with up-to-date ghosts; @param counts whether a corner is part of a body that is still whole, asked for those without volume only
+   * @param u with up-to-date ghosts; @param counts whether a corner is part of a body that is still
+   *          whole, asked for those without volume only
    */
   template <int dim, typename Position, typename Counts>
   Inversion find_inverted(const std::vector<CellCorner<dim>> &corners,

@@ -15,7 +15,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** The stencil w kappa on the nonnegative offsets, with the self term as it is inside the body; or ones, which count bonds. */
+    /**
+     * The stencil w kappa on the nonnegative offsets, with the self term as it is inside the body;
+     * or ones, which count bonds.
+     */
     template <int dim>
     StencilKernel make_kernel(const Families<dim> &families, const bool ones)
     {
@@ -89,7 +92,8 @@ namespace PeriDeal
         for (const LatticePiece &piece : layout.pieces)
           for (std::uint32_t k = 0; k < piece.n; ++k)
             sums[piece.node + k] = layout.volume(piece, k) * layout.family_sum(piece, k);
-        // The number of bonds is a convolution of ones with ones. Half a bond is the other node's, but a fictitious one has no own.
+        // The number of bonds is a convolution of ones with ones. Half a bond is the other node's,
+        // but a fictitious one has no own.
         std::vector<double> count(n_owned);
         fill_grid_directly(std::vector<double>(n_local, 0.5),
                            std::vector<double>(families.fictitious().size(), 1.));
@@ -248,7 +252,10 @@ namespace PeriDeal
       }
 
 
-      /** Whether all touching neighbours are there with the node's own volume: then its self term is the template's. */
+      /**
+       * Whether all touching neighbours are there with the node's own volume: then its self term is
+       * the template's.
+       */
       bool self_term_is_regular(const std::uint32_t i) const
       {
         const Nodes<dim> &nodes = families.nodes();

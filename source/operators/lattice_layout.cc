@@ -184,7 +184,10 @@ namespace PeriDeal
   }
 
 
-  /** Put pieces to be filled in the order in which groups first need them; leave out those that none needs. */
+  /**
+   * Put pieces to be filled in the order in which groups first need them; leave out those that none
+   * needs.
+   */
   template <int dim>
   void LatticeLayout<dim>::order_fills()
   {

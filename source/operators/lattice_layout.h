@@ -27,12 +27,12 @@ namespace PeriDeal
 
 
   /**
-   * Where the nodes of a process lie in a padded grid, and in which order they are computed: in groups of a block of rows of one
-   * plane (in 1D a stretch of the bar), so that what a group needs of the grid is filled in just before, and its sums
-   * are finished while they are in cache.
+   * Where the nodes of a process lie in a padded grid, and in which order they are computed: in
+   * groups of a block of rows of one plane (in 1D a stretch of the bar), so that what a group needs
+   * of the grid is filled in just before, and its sums are finished while they are in cache.
    *
-   * Volumes and the sums of families are constant along most of a row. They are kept once for a piece of a row where they are,
-   * and node by node elsewhere: less to store and less to read.
+   * Volumes and the sums of families are constant along most of a row. They are kept once for a
+   * piece of a row where they are, and node by node elsewhere: less to store and less to read.
    */
   template <int dim>
   class LatticeLayout
@@ -58,7 +58,10 @@ namespace PeriDeal
     /** The grid as the stencil wants it. */
     StencilKernel::Grid grid(const double *data) const;
 
-    /** Once the values are known: cut pieces where they change. One volume for each local node, one sum for each owned one. */
+    /**
+     * Once the values are known: cut pieces where they change. One volume for each local node, one
+     * sum for each owned one.
+     */
     void set_values(const std::vector<double> &volumes, const std::vector<double> &family_sums);
 
     double volume(const LatticePiece &piece, const std::uint32_t k) const

@@ -12,9 +12,10 @@
 namespace PeriDeal
 {
   /**
-   * The bound of sharp_bound() for a symmetric matrix K, when iterations start with values in a few rows only. After k of them vectors are zero
-   * farther than k entries of the matrix away from these, and rows beyond are not visited: the numbers are those of iterations on the whole body, but their cost
-   * follows from the number of rows to start with.
+   * The bound of sharp_bound() for a symmetric matrix K, when iterations start with values in a few
+   * rows only. After k of them vectors are zero farther than k entries of the matrix away from
+   * these, and rows beyond are not visited: the numbers are those of iterations on the whole body,
+   * but their cost follows from the number of rows to start with.
    */
   class LocalBound
   {
@@ -25,7 +26,8 @@ namespace PeriDeal
      * @param held   rows that are not free
      * @param first  where iterations start, with the values of @p start
      *
-     * Returns a negative number if an entry needed lies in a column that this process does not know. Collective.
+     * Returns a negative number if an entry needed lies in a column that this process does not
+     * know. Collective.
      */
     double operator()(const dealii::TrilinosWrappers::SparseMatrix &stiffness,
                       const Vector                                 &capacity,

@@ -36,7 +36,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Of the listed sides and parts, the first in the list on which each owned node lies, or (partial) some of its area. */
+    /**
+     * Of the listed sides and parts, the first in the list on which each owned node lies, or
+     * (partial) some of its area.
+     */
     template <int dim>
     std::map<unsigned int, const SideCondition *> first_sides(
       const Nodes<dim>                 &nodes,
@@ -97,7 +100,8 @@ namespace PeriDeal
           }
       }
     else
-      // Beyond the sides of a lattice of cell centres it is the fictitious nodes that have the values.
+      // Beyond the sides of a lattice of cell centres it is the fictitious nodes that have the
+      // values.
       for (const auto &[node, condition] : first_sides(nodes, dirichlet))
         if (!fictitious || !nodes.lattice() || !nodes.lattice()->at_centers ||
             scene.boundary_conditions.side_of(condition->id) >= 2 * dim)
@@ -260,7 +264,8 @@ namespace PeriDeal
       if (flags.local_element(i) > 0.5)
         kinds[i] = slave;
 
-    // Rows (slave, master, coefficient) of all slaves that hang on other slaves, known to everybody.
+    // Rows (slave, master, coefficient) of all slaves that hang on other slaves, known to
+    // everybody.
     std::vector<std::array<double, 3>> rows;
     for (const Slave &entry : slaves)
       for (const auto &[master, coefficient] : entry.masters)

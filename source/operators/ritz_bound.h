@@ -10,7 +10,10 @@
 
 namespace PeriDeal
 {
-  /** What Lanczos iterations tell of the largest eigenvalue: the largest Ritz value plus the larger of its residual and 0.4 %. */
+  /**
+   * What Lanczos iterations tell of the largest eigenvalue: the largest Ritz value plus the larger
+   * of its residual and 0.4 %.
+   */
   class RitzBound
   {
   public:
@@ -21,7 +24,10 @@ namespace PeriDeal
       : enough(enough)
     {}
 
-    /** Take the numbers of one iteration: A q = ... + alpha q + norm q_next. Returns whether the bound is good. */
+    /**
+     * Take the numbers of one iteration: A q = ... + alpha q + norm q_next. Returns whether the
+     * bound is good.
+     */
     bool take(const double new_alpha, const double norm)
     {
       constexpr double margin = 4e-3;
@@ -32,7 +38,8 @@ namespace PeriDeal
       ritz.computeFromTridiagonal(diagonal, side);
       const Eigen::Index end      = diagonal.size() - 1;
       const double       residual = norm * std::abs(ritz.eigenvectors()(end, end));
-      // Some eigenvalue is as near as the residual; where several lie close together the largest may be a little above it.
+      // Some eigenvalue is as near as the residual; where several lie close together the largest
+      // may be a little above it.
       bound = ritz.eigenvalues()[end] + std::max(residual, margin * ritz.eigenvalues()[end]);
       beta.push_back(norm);
       return residual < margin * bound || norm <= 1e-12 * bound || bound <= enough;

@@ -10,7 +10,10 @@
 
 namespace PeriDeal
 {
-  /** Some unknowns. Nothing here takes time that grows with the number of all unknowns but the constructor. */
+  /**
+   * Some unknowns. Nothing here takes time that grows with the number of all unknowns but the
+   * constructor.
+   */
   class RowSet
   {
   public:

@@ -14,8 +14,9 @@ namespace PeriDeal
   namespace
   {
     /**
-     * Largest eigenvalue by Lanczos iterations with the last two vectors only: once an eigenvalue has converged copies of it appear,
-     * but the largest one is as good as with all vectors kept, which would take more memory than all else.
+     * Largest eigenvalue by Lanczos iterations with the last two vectors only: once an eigenvalue
+     * has converged copies of it appear, but the largest one is as good as with all vectors kept,
+     * which would take more memory than all else.
      */
     double lanczos(const Operator &op, Vector &now, const double enough, const Vector &metric)
     {

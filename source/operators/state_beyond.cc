@@ -21,8 +21,9 @@ namespace PeriDeal
   namespace
   {
     /**
-     * A traction acts on the side, where the displacement is 3/2 u_0 - 1/2 u_1 of the cell centres in the two outermost rows: of a whole side or a part of it, each node of the
-     * second row bears -1/2 of what its neighbour in the outermost row does. Collective.
+     * A traction acts on the side, where the displacement is 3/2 u_0 - 1/2 u_1 of the cell centres
+     * in the two outermost rows: of a whole side or a part of it, each node of the second row bears
+     * -1/2 of what its neighbour in the outermost row does. Collective.
      */
     template <int dim>
     void draw_on_to_side(const Families<dim>                   &families,
@@ -84,8 +85,9 @@ namespace PeriDeal
   {
     strains.resize(images.size());
     for_each([&](const Bond &bond) {
-      // What a temperature linear in space does to a free body is no linear displacement. The bond has no force then if its extension is that of what the image follows
-      // from, at r_k from the node: e = sum f_k (s_k M.r_k - r_k^2/2 ds/dM), the mean of both ends for a mirror image.
+      // What a temperature linear in space does to a free body is no linear displacement. The bond
+      // has no force then if its extension is that of what the image follows from, at r_k from the
+      // node: e = sum f_k (s_k M.r_k - r_k^2/2 ds/dM), the mean of both ends for a mirror image.
       const Point<dim>     at  = families.nodes().position(bond.node);
       const Tensor<1, dim> xi  = bond_vector(bond);
       double               own = strain(bond.node), other = 0., mean = 0., half = 0., rest = 1.;
@@ -243,7 +245,8 @@ namespace PeriDeal
   {
     if (!beyond)
       return;
-    // theta_i is a sum over coefficients of displacements. What images change of these, and what was counted without them:
+    // theta_i is a sum over coefficients of displacements. What images change of these, and what
+    // was counted without them:
     Vector                      sum;
     std::vector<Tensor<1, dim>> own(bonds.nodes().n_local()), change(own.size());
     std::vector<unsigned int>   touched;

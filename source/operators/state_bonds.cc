@@ -22,7 +22,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** What a node that bonds do not hold needs: a longer horizon, if this one spans few cells of its size, else other cracks. */
+    /**
+     * What a node that bonds do not hold needs: a longer horizon, if this one spans few cells of
+     * its size, else other cracks.
+     */
     std::string advice_on_horizon(const double horizon, const double volume, const unsigned int dim)
     {
       constexpr double few = 2.5, enough = 3.; // cells in a horizon
@@ -278,7 +281,8 @@ namespace PeriDeal
       }
     for (double &count : counts)
       count = Utilities::MPI::sum(count, all);
-    // s of all others is written as a difference to it, which must not lose digits in the soft ones.
+    // s of all others is written as a difference to it, which must not lose digits in the soft
+    // ones.
     constexpr double most_contrast = 100.;
     const bool       softest       = counts[0] >= counts[1] ||
                          (*limits.second)[0] > most_contrast * (*limits.first)[0];

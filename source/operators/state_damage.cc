@@ -18,12 +18,16 @@ namespace PeriDeal
 
   namespace
   {
-    /** What a plane through the full family of a lattice cuts, mean over its normals along the axes n; lengths. */
+    /**
+     * What a plane through the full family of a lattice cuts, mean over its normals along the axes
+     * n; lengths.
+     */
     struct CrossingSums
     {
       double bonds = 0.; // sum over half the family of omega f V xi_n x^2, over q
-      double dilatations =
-        0.; // h_n times the sum over the layers of nodes on one side of (sum over what crosses of omega f V x^2, over q)^2
+      // h_n times the sum over the layers of nodes on one side of (sum over what crosses of
+      // omega f V x^2, over q)^2
+      double dilatations = 0.;
     };
 
     template <int dim>
@@ -54,8 +58,9 @@ namespace PeriDeal
 
 
     /**
-     * The same for a node's own family, where there is no lattice. Half of what lies on both sides of the node counts for each side, so that
-     * families that end at the surface have no smaller sums than others.
+     * The same for a node's own family, where there is no lattice. Half of what lies on both sides
+     * of the node counts for each side, so that families that end at the surface have no smaller
+     * sums than others.
      */
     template <int dim>
     CrossingSums own_crossing_sums(const Families<dim>                       &bonds,

@@ -15,15 +15,17 @@
 namespace PeriDeal
 {
   /**
-   * Dilatations and forces of the linear peridynamic solid on a lattice, no bond stored. With w = omega f of an offset xi of length x, s = b/q (extension/q) and
-   * tau = c theta/q of StateOperator, both of a node, a node none of whose bonds is cut has
+   * Dilatations and forces of the linear peridynamic solid on a lattice, no bond stored. With w =
+   * omega f of an offset xi of length x, s = b/q (extension/q) and tau = c theta/q of
+   * StateOperator, both of a node, a node none of whose bonds is cut has
    *
    *   tau_i   = c_i d/q_i^2 sum_j V_j w xi . (u_j - u_i)
    *   F_i/V_i = sum_j V_j w xi (tau_i + tau_j) + sum_j (s_i + s_j) V_j w xi xi^T/x^2 (u_j - u_i)
    *
-   * Both are sums of convolutions of V u, V tau and V s u with stencils that are odd or even in each coordinate, whatever s, V and tau: of nodes at the body's
-   * surface, in holes (V = 0) and in several phases. With s_i = s (1 + 2 e_i), s that of a complete family of one phase, e vanishes at most nodes: what has a factor e is
-   * computed only for those in whose families it does not.
+   * Both are sums of convolutions of V u, V tau and V s u with stencils that are odd or even in
+   * each coordinate, whatever s, V and tau: of nodes at the body's surface, in holes (V = 0) and in
+   * several phases. With s_i = s (1 + 2 e_i), s that of a complete family of one phase, e vanishes
+   * at most nodes: what has a factor e is computed only for those in whose families it does not.
    *
    * Evaluation allocates nothing and is not collective.
    */
@@ -48,12 +50,16 @@ namespace PeriDeal
     void dilatation_forces(double *tau, const double *u) const;
 
     /**
-     * -F of the computed nodes. Owned and ghost values; without tau (null) only what the extensions of bonds do. With tau the displacements u have to be those of the last call of
+     * -F of the computed nodes. Owned and ghost values; without tau (null) only what the extensions
+     * of bonds do. With tau the displacements u have to be those of the last call of
      * dilatation_forces().
      */
     void forces(double *y, const double *u, const double *tau) const;
 
-    /** Whether s, c d/q^2, volumes and laws in the family are those of most nodes. For computed nodes. */
+    /**
+     * Whether s, c d/q^2, volumes and laws in the family are those of most nodes. For computed
+     * nodes.
+     */
     bool is_regular(const unsigned int node) const;
 
     std::size_t memory_consumption() const;

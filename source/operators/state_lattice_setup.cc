@@ -230,8 +230,8 @@ namespace PeriDeal
 
 
   /**
-   * Edge runs of a group are computed in rectangles, what lies between them too: cut the group where that saves work. Neither part of a cut shares a row, or
-   * neither a column.
+   * Edge runs of a group are computed in rectangles, what lies between them too: cut the group
+   * where that saves work. Neither part of a cut shares a row, or neither a column.
    */
   template <int dim>
   void StateLattice<dim>::find_clusters(const std::size_t begin, const std::size_t end)

@@ -23,7 +23,8 @@ namespace PeriDeal
    *
    *   K = sum_i c d/(V q^2) g_i g_i^T + sum over bonds of spring (W xi) (W xi)^T (1 -1; -1 1)
    *
-   * so that the visit of node i gives rows of its whole family, also of those nodes that other processes own.
+   * so that the visit of node i gives rows of its whole family, also of those nodes that other
+   * processes own.
    */
   template <int dim>
   void StateOperator<dim>::matrix(TrilinosWrappers::SparseMatrix &matrix) const

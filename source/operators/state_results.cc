@@ -24,7 +24,8 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::find_diagonal()
   {
-    // The energy is 1/4 sum over directed bonds of s (p . eta)^2 + 1/2 sum m_k (sum p . eta)^2 with m = c d/(q^2 V).
+    // The energy is 1/4 sum over directed bonds of s (p . eta)^2 + 1/2 sum m_k (sum p . eta)^2 with
+    // m = c d/(q^2 V).
     const Nodes<dim>   &nodes = bonds.nodes();
     std::vector<double> factor(nodes.n_local());
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
@@ -69,7 +70,8 @@ namespace PeriDeal
   template <int dim>
   Spectrum StateOperator<dim>::spectrum() const
   {
-    // Rows of |K|: twice the springs, and for the dilatations |c_ij| summed over both of their ends.
+    // Rows of |K|: twice the springs, and for the dilatations |c_ij| summed over both of their
+    // ends.
     const Nodes<dim> &nodes = bonds.nodes();
     source.zero_out_ghost_values();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
@@ -243,7 +245,8 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    // Springs between the nearest nodes, diagonals of cells included, as stiff as the bond-based solid.
+    // Springs between the nearest nodes, diagonals of cells included, as stiff as the bond-based
+    // solid.
     const Nodes<dim>         &nodes = bonds.nodes();
     const IndexSet            owned = unknowns->locally_owned_range();
     std::vector<std::size_t>  first{0};

@@ -17,8 +17,8 @@ namespace PeriDeal
   namespace
   {
     /**
-     * sum_b w_b (u - values[column_b]) in four partial sums, so that additions need not wait for each other. The order is a row's own:
-     * the same on any number of processes.
+     * sum_b w_b (u - values[column_b]) in four partial sums, so that additions need not wait for
+     * each other. The order is a row's own: the same on any number of processes.
      */
     inline double row_sum(const double *__restrict__ weights,
                           const std::uint32_t *__restrict__ columns,
@@ -41,7 +41,10 @@ namespace PeriDeal
     }
 
 
-    /** Ask for large pages: the bonds are streamed through, and the walk through small pages costs a tenth of the speed. */
+    /**
+     * Ask for large pages: the bonds are streamed through, and the walk through small pages costs a
+     * tenth of the speed.
+     */
     void prefer_large_pages(void *begin, const std::size_t bytes)
     {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
@@ -72,7 +75,8 @@ namespace PeriDeal
         const unsigned int n_rows = families.nodes().n_owned();
         row_starts.reserve(n_rows + 1);
         row_starts.push_back(0);
-        // On a lattice a little more than enough, in one go: what is not written to takes no memory.
+        // On a lattice a little more than enough, in one go: what is not written to takes no
+        // memory.
         reserve(families.lattice_members().size() * n_rows);
         for (unsigned int i = 0; i < n_rows; ++i)
           {

@@ -31,8 +31,8 @@ namespace PeriDeal
 
 
     /**
-     * What a complete family sums, visit(xi, w V), over w V of unit conductivity; on a lattice. Off it sums are those of a ball: sum w V xi_a^2 = 2, as the
-     * calibration has it.
+     * What a complete family sums, visit(xi, w V), over w V of unit conductivity; on a lattice. Off
+     * it sums are those of a ball: sum w V xi_a^2 = 2, as the calibration has it.
      */
     template <int dim, typename Visit>
     void for_each_member(const Families<dim> &bonds, const Visit &visit)
@@ -296,8 +296,11 @@ namespace PeriDeal
       }
 
       /**
-       * The c of all nodes by Chebyshev's iteration with the nodes' own matrices, which needs no sums over all nodes, so that numbers do not depend on the processes. Eigenvalues lie
-       * between 0 and 2, the lowest near 0.04 for m = 2; modes below 0.02 would take longer. Stops when the largest gap is below the tolerance times a complete family's moments, and returns 0, or what is left of it after as many steps as are allowed. Collective.
+       * The c of all nodes by Chebyshev's iteration with the nodes' own matrices, which needs no
+       * sums over all nodes, so that numbers do not depend on the processes. Eigenvalues lie
+       * between 0 and 2, the lowest near 0.04 for m = 2; modes below 0.02 would take longer. Stops
+       * when the largest gap is below the tolerance times a complete family's moments, and returns
+       * 0, or what is left of it after as many steps as are allowed. Collective.
        */
       double iterate(const double tolerance)
       {
@@ -343,8 +346,9 @@ namespace PeriDeal
       }
 
       /**
-       * Leave the nodes to whom the bonds with the most negative factors owe them, those within a half of the lowest: without these others may become positive. Returns whether
-       * there are any. Collective.
+       * Leave the nodes to whom the bonds with the most negative factors owe them, those within a
+       * half of the lowest: without these others may become positive. Returns whether there are
+       * any. Collective.
        */
       bool leave_negative()
       {

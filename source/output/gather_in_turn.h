@@ -12,8 +12,9 @@
 namespace PeriDeal
 {
   /**
-   * Hand the numbers or bytes of each process to rank 0, one process after the other in their order, so that it never holds those of two. @p use is
-   * called there with each. Container: contiguous, of a type that may be copied byte by byte. Collective.
+   * Hand the numbers or bytes of each process to rank 0, one process after the other in their
+   * order, so that it never holds those of two. @p use is called there with each. Container:
+   * contiguous, of a type that may be copied byte by byte. Collective.
    */
   template <typename Container, typename Use>
   void gather_in_turn(const Container &own, const MPI_Comm communicator, const Use &use)

@@ -11,8 +11,10 @@
 namespace PeriDeal
 {
   /**
-   * A new HDF5 file with tables at its root, written by one process, a table after the other, rows in order. After the first failure nothing more is tried,
-   * and close() tells why. (The wrappers of deal.II throw then, and say nothing of a failure to close, which is when a full disk may show.)
+   * A new HDF5 file with tables at its root, written by one process, a table after the other, rows
+   * in order. After the first failure nothing more is tried, and close() tells why. (The wrappers
+   * of deal.II throw then, and say nothing of a failure to close, which is when a full disk may
+   * show.)
    */
   class Hdf5File
   {
@@ -33,7 +35,10 @@ namespace PeriDeal
     template <typename number>
     void append(const number *values, const std::size_t n_rows);
 
-    /** Close everything. Returns 0, or the error number of the first failure (-1 if the system gave none). */
+    /**
+     * Close everything. Returns 0, or the error number of the first failure (-1 if the system gave
+     * none).
+     */
     int close();
 
   private:

@@ -74,7 +74,10 @@ namespace PeriDeal
     }
 
 
-    /** Move what there is of these files from one folder into another; of unfinished ones nothing is kept. */
+    /**
+     * Move what there is of these files from one folder into another; of unfinished ones nothing is
+     * kept.
+     */
     void move_files(const std::set<std::string> &names, const fs::path &from, const fs::path &to)
     {
       for (const std::string &name : names)
@@ -218,7 +221,8 @@ namespace PeriDeal
     aside = true;
     if (!fs::exists(mark))
       {
-        // The list, moved last, marks that all is there: a run that is killed before is gone on with by the next one.
+        // The list, moved last, marks that all is there: a run that is killed before is gone on
+        // with by the next one.
         if (!earlier.empty())
           {
             move_files(earlier, path, previous);
@@ -226,7 +230,8 @@ namespace PeriDeal
           }
         return;
       }
-    // The run before had no results. Those of the one before it are kept, also where it was killed while it put them back.
+    // The run before had no results. Those of the one before it are kept, also where it was killed
+    // while it put them back.
     const std::set<std::string> kept = read_list(mark);
     std::set<std::string>       back, useless;
     for (const std::string &name : earlier)

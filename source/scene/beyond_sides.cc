@@ -30,7 +30,10 @@ namespace PeriDeal
     }
 
 
-    /** Families end at free sides: bonds there break as those of their own families, and nodes that others follow are stiff, so that explicit steps would be short. */
+    /**
+     * Families end at free sides: bonds there break as those of their own families, and nodes that
+     * others follow are stiff, so that explicit steps would be short.
+     */
     template <int dim>
     bool ends_at_free_sides(const Scene<dim> &scene)
     {
@@ -60,7 +63,10 @@ namespace PeriDeal
     }
 
 
-    /** Sides and parts of sides where one row of nodes bears what acts, of the conditions that no layer spreads. */
+    /**
+     * Sides and parts of sides where one row of nodes bears what acts, of the conditions that no
+     * layer spreads.
+     */
     template <int dim>
     std::vector<std::string> single_rows(const Scene<dim>                   &scene,
                                          const std::vector<VectorCondition> &list,

@@ -16,8 +16,11 @@ namespace PeriDeal
     /** Fraction of a crack's size within which a point counts as lying on it. */
     constexpr double on_crack = 1e-10;
 
-    /** Fraction of a crack's size: closer to an end counts as being at it. Far more than on_crack, so that bonds through the very tip are
-     * treated alike whichever way they lean and on whichever side of the nodes the crack runs. */
+    /**
+     * Fraction of a crack's size: closer to an end counts as being at it. Far more than on_crack,
+     * so that bonds through the very tip are treated alike whichever way they lean and on whichever
+     * side of the nodes the crack runs.
+     */
     constexpr double edge = 1e-7;
 
     /** Newell's vector: twice the area of a planar polygon times its right-hand normal. */
@@ -89,7 +92,8 @@ namespace PeriDeal
       }
     else if constexpr (dim == 3)
       {
-        // Crossing number of a ray along the first axis; what is within the margin of an edge lies at it.
+        // Crossing number of a ray along the first axis; what is within the margin of an edge lies
+        // at it.
         const double x = from_start * first_axis, y = from_start * second_axis;
         bool         inside = false, at_closed = false, at_tip = false;
         for (std::size_t i = 0; i < corner_points.size(); ++i)

@@ -118,7 +118,9 @@ namespace PeriDeal
     }
 
 
-    /** The first piece (of those across an axis, if that is given) that runs along a row of nodes. */
+    /**
+     * The first piece (of those across an axis, if that is given) that runs along a row of nodes.
+     */
     template <int dim>
     const CrackGeometry<dim> *first_along_row(const std::vector<CrackGeometry<dim>> &pieces,
                                               const Domain<dim>                     &domain,

@@ -51,7 +51,10 @@ namespace PeriDeal
     }
 
 
-    /** Without points that repeat the one before, and without those in the middle of a straight line. */
+    /**
+     * Without points that repeat the one before, and without those in the middle of a straight
+     * line.
+     */
     template <int dim>
     std::vector<Point<dim>> simplified(const std::vector<Point<dim>> &line)
     {

@@ -116,7 +116,8 @@ namespace PeriDeal
           entry_error(pd.where(entry), what + " with 'Physics = elasticity'; " + remedy);
       };
       const std::string no_effect = "has no effect";
-      // On square cells any factor cancels; on others the factors of `discrete` make theta exact (doc/elasticity.md).
+      // On square cells any factor cancels; on others the factors of `discrete` make theta exact
+      // (doc/elasticity.md).
       refuse(pd.calibration != Calibration::discrete,
              "Calibration",
              "'analytic' is not for use",
@@ -253,7 +254,10 @@ namespace PeriDeal
     }
 
 
-    /** The width of the body behind a flat side; an error for others, and for a layer that is deeper. */
+    /**
+     * The width of the body behind a flat side; an error for others, and for a layer that is
+     * deeper.
+     */
     template <int dim>
     void check_layer(const Scene<dim>      &scene,
                      const VectorCondition &condition,

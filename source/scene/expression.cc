@@ -71,7 +71,10 @@ namespace PeriDeal
     }
 
 
-    /** `&&` and `||` as the operators `&` and `|` and a blank, so that columns stay: muparser reads its own as two of ours. */
+    /**
+     * `&&` and `||` as the operators `&` and `|` and a blank, so that columns stay: muparser reads
+     * its own as two of ours.
+     */
     std::string with_single_signs(std::string formula)
     {
       for (std::size_t i = 0; i + 1 < formula.size(); ++i)

@@ -51,7 +51,10 @@ namespace PeriDeal
     }
 
 
-    /** Half of the offsets between cells that are connected: those with a common face; for bonds alone that may cross voids, all that they reach. */
+    /**
+     * Half of the offsets between cells that are connected: those with a common face; for bonds
+     * alone that may cross voids, all that they reach.
+     */
     std::vector<Offset> connections(const Scene<2> &scene)
     {
       std::vector<Offset> list{{{1, 0}}, {{0, 1}}};
@@ -71,7 +74,10 @@ namespace PeriDeal
     }
 
 
-    /** What holds on a side of the body or a part of it: components of the displacement, or in component 0 a value of what diffuses. */
+    /**
+     * What holds on a side of the body or a part of it: components of the displacement, or in
+     * component 0 a value of what diffuses.
+     */
     std::array<bool, 2> held_on_side(const Scene<2> &scene, const types::boundary_id side)
     {
       const auto         &conditions = scene.boundary_conditions;
@@ -125,7 +131,9 @@ namespace PeriDeal
     }
 
 
-    /** Whether the sides that a part touches hold it against all rigid motions, or give its value. */
+    /**
+     * Whether the sides that a part touches hold it against all rigid motions, or give its value.
+     */
     class Holding
     {
     public:
@@ -149,7 +157,9 @@ namespace PeriDeal
       }
 
     private:
-      /** Call visit(side, face number, place of the cell) for the faces of a part that end the body. */
+      /**
+       * Call visit(side, face number, place of the cell) for the faces of a part that end the body.
+       */
       template <typename Visit>
       void for_each_face(const Part &part, const Visit &visit) const
       {
@@ -231,7 +241,10 @@ namespace PeriDeal
     }
 
 
-    /** Hold an island at points that no other part shares: one of them in both directions, and against turning the one farthest from it. */
+    /**
+     * Hold an island at points that no other part shares: one of them in both directions, and
+     * against turning the one farthest from it.
+     */
     void pin(Scene<2> &scene, const std::vector<int> &part_of, const Part &island)
     {
       const PhaseMap &map    = *scene.domain.image;

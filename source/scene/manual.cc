@@ -90,7 +90,10 @@ namespace PeriDeal
     }
 
 
-    /** What is known of an entry, of `Section/Entry`, or of all entries of a section; empty if there is no such name. */
+    /**
+     * What is known of an entry, of `Section/Entry`, or of all entries of a section; empty if there
+     * is no such name.
+     */
     std::string explanation(const std::vector<SceneSection *> &sections, const std::string &name)
     {
       std::string text;

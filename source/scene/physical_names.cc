@@ -18,7 +18,9 @@ namespace PeriDeal
 
   namespace
   {
-    /** The lines of the section of physical names, which stands before those of nodes and elements. */
+    /**
+     * The lines of the section of physical names, which stands before those of nodes and elements.
+     */
     std::string names_section(std::ifstream &file)
     {
       std::string text, line;

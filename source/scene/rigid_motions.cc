@@ -67,8 +67,9 @@ namespace PeriDeal
 
 
     /**
-     * Some of the places of a lattice, at most 40 along each direction, where a condition on a part, or one that is free elsewhere, holds a
-     * component. If it holds in none of them: corners of the body, since what is not seen is not to be refused.
+     * Some of the places of a lattice, at most 40 along each direction, where a condition on a
+     * part, or one that is free elsewhere, holds a component. If it holds in none of them: corners
+     * of the body, since what is not seen is not to be refused.
      */
     template <int dim>
     std::vector<Point<dim>> held_points(const Scene<dim> &scene, const Held &held)
@@ -145,7 +146,10 @@ namespace PeriDeal
     }
 
 
-    /** Whether some vector of the space that the columns span has the unit vector @p k in its rows from @p first on. */
+    /**
+     * Whether some vector of the space that the columns span has the unit vector @p k in its rows
+     * from @p first on.
+     */
     bool spans(const Eigen::MatrixXd &columns, const unsigned int first, const unsigned int k)
     {
       if (columns.cols() == 0)

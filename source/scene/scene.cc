@@ -234,7 +234,10 @@ namespace PeriDeal
     }
 
 
-    /** Whether a place of a box is in a cell that no hole has taken; of cells that meet there, in any. */
+    /**
+     * Whether a place of a box is in a cell that no hole has taken; of cells that meet there, in
+     * any.
+     */
     template <int dim>
     bool is_in_some_cell(const Domain<dim> &domain, const Point<dim> &p)
     {
@@ -374,7 +377,8 @@ namespace PeriDeal
     finite_elements.parse();
     check_elasticity();
     make_heat_problem();
-    // a conductor without capacitance is always in its steady state, and an equilibrium has a time only where its loads have
+    // a conductor without capacitance is always in its steady state, and an equilibrium has a time
+    // only where its loads have
     time.steady =
       (time.steady && !elasticity.computes_temperature) || !material.stores ||
       (general.physics == Physics::elasticity && elasticity.is_static() && !is_loaded_slowly());

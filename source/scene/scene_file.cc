@@ -155,7 +155,10 @@ namespace PeriDeal
     }
 
 
-    /** The path as it is, or beside the scene file if there is nothing at that path but something there. */
+    /**
+     * The path as it is, or beside the scene file if there is nothing at that path but something
+     * there.
+     */
     std::string found_near(const std::string &path, const std::string &scene_file)
     {
       namespace fs          = std::filesystem;
@@ -172,7 +175,10 @@ namespace PeriDeal
     }
 
 
-    /** The text with `\n` at the end of each line, wherever it was written: `\r\n` and `\r` alone are line ends, too. */
+    /**
+     * The text with `\n` at the end of each line, wherever it was written: `\r\n` and `\r` alone
+     * are line ends, too.
+     */
     std::string with_plain_line_ends(const std::string &text)
     {
       std::string plain;

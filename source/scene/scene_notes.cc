@@ -39,7 +39,10 @@ namespace PeriDeal
     }
 
 
-    /** Of waves in a bar of the material in the middle of the box; NaN where a formula has no value there. */
+    /**
+     * Of waves in a bar of the material in the middle of the box; NaN where a formula has no value
+     * there.
+     */
     template <int dim>
     double wave_speed(const Scene<dim> &scene, const Point<dim> &middle)
     {
@@ -72,7 +75,10 @@ namespace PeriDeal
     }
 
 
-    /** The largest speed at which sides are moved or the body begins, as far as it is known at t = 0. */
+    /**
+     * The largest speed at which sides are moved or the body begins, as far as it is known at t
+     * = 0.
+     */
     template <int dim>
     double given_speed(const Scene<dim> &scene, const Point<dim> &middle)
     {

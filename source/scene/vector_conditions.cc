@@ -163,7 +163,11 @@ namespace PeriDeal
 
   namespace
   {
-    /** Simpson's rule, halved until two halves agree with the whole to 1e-11 of the largest value given; values that are round-off of larger ones, as 1 - cos(t) near 0, never do: so many at most. */
+    /**
+     * Simpson's rule, halved until two halves agree with the whole to 1e-11 of the largest value
+     * given; values that are round-off of larger ones, as 1 - cos(t) near 0, never do: so many at
+     * most.
+     */
     template <typename Function>
     class Simpson
     {

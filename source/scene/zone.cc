@@ -23,7 +23,10 @@ namespace PeriDeal
     }
 
 
-    /** Whether the foot of the perpendicular from p lies within a planar polygon: it is seen under a winding angle that is not zero. */
+    /**
+     * Whether the foot of the perpendicular from p lies within a planar polygon: it is seen under a
+     * winding angle that is not zero.
+     */
     bool foot_inside(const std::vector<Point<3>> &corners,
                      const Tensor<1, 3>          &normal,
                      const Point<3>              &p)

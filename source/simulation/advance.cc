@@ -21,7 +21,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Refuse what a stepper would never finish. @p stiffness is the end time times the largest eigenvalue. */
+    /**
+     * Refuse what a stepper would never finish. @p stiffness is the end time times the largest
+     * eigenvalue.
+     */
     void check_stepper(const std::string &name, const TimeControl &time, const double stiffness)
     {
       constexpr double   longest = 1e12, finest = 1e-11;

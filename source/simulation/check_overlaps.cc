@@ -58,7 +58,10 @@ namespace PeriDeal
     }
 
 
-    /** Whether two claims that meet in a place cannot both hold, and the list does not say which of them does. */
+    /**
+     * Whether two claims that meet in a place cannot both hold, and the list does not say which of
+     * them does.
+     */
     template <int dim>
     bool contradict(const Claim                   &a,
                     const Claim                   &b,

@@ -71,7 +71,9 @@ namespace PeriDeal
     }
 
 
-    /** One number of some or all models in one line: `what: 1.23 (finite elements), 1.24 (coupled)`. */
+    /**
+     * One number of some or all models in one line: `what: 1.23 (finite elements), 1.24 (coupled)`.
+     */
     void add_of_models(std::vector<std::string>                               &lines,
                        const std::string                                      &what,
                        const json                                             &summary,
@@ -169,7 +171,10 @@ namespace PeriDeal
     }
 
 
-    /** The script that draws reports: beside an installed program, or in the tree that it was built in; empty if it is in neither. */
+    /**
+     * The script that draws reports: beside an installed program, or in the tree that it was built
+     * in; empty if it is in neither.
+     */
     std::string report_script()
     {
       char          path[PATH_MAX];

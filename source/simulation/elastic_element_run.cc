@@ -25,7 +25,10 @@ namespace PeriDeal
     class ElementRun : public ElasticRun<dim>
     {
     public:
-      /** @param model finite elements, coupled, or peridynamics with fictitious nodes, which has elements for what is beside bonds: loads, masses, stresses */
+      /**
+       * @param model finite elements, coupled, or peridynamics with fictitious nodes, which has
+       *              elements for what is beside bonds: loads, masses, stresses
+       */
       ElementRun(const Model model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
         : scene(scene)
         , model(model)
@@ -263,7 +266,9 @@ namespace PeriDeal
       }
 
     private:
-      /** Exchange that is not exact must not run; of the others the user is told how wrong they are. */
+      /**
+       * Exchange that is not exact must not run; of the others the user is told how wrong they are.
+       */
       void examine()
       {
         Timings::Scope scope(this->timings, "certificate");
@@ -279,7 +284,10 @@ namespace PeriDeal
         return model == Model::finite_elements ? scene.finite_elements.degree : 1;
       }
 
-      /** Call visit(values, point, indices of the nodes, gradient of the displacement) at the points of all own cells. */
+      /**
+       * Call visit(values, point, indices of the nodes, gradient of the displacement) at the points
+       * of all own cells.
+       */
       template <typename Visit>
       void visit_cells(const Quadrature<dim> &points, const Visit &visit) const
       {
@@ -324,7 +332,10 @@ namespace PeriDeal
         return stress_of_strain(symmetrize(gradient), scene, p, change);
       }
 
-      /** Means over the cells around each node, by their volumes. Each cell's own material counts, so that a jump is smeared over one row of cells. */
+      /**
+       * Means over the cells around each node, by their volumes. Each cell's own material counts,
+       * so that a jump is smeared over one row of cells.
+       */
       void find_nodal_tensors(std::vector<SymmetricTensor<2, 3>>   &stress,
                               std::vector<SymmetricTensor<2, dim>> &strain) const
       {

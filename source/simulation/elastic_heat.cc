@@ -14,8 +14,9 @@ namespace PeriDeal
   namespace
   {
     /**
-     * The temperature above the reference at the nodes of the elastic model. Both models have the same element on the same mesh, but may number its nodes
-     * differently; each node has the same owner in both.
+     * The temperature above the reference at the nodes of the elastic model. Both models have the
+     * same element on the same mesh, but may number its nodes differently; each node has the same
+     * owner in both.
      */
     template <int dim>
     void find_temperature_change(const ModelRun<dim>   &heat,

@@ -11,7 +11,10 @@
 
 namespace PeriDeal
 {
-  /** The statistics of a model's phases for summary.json, at the end of the run; their rows are appended to those of totals.csv. Empty without phases. Collective. */
+  /**
+   * The statistics of a model's phases for summary.json, at the end of the run; their rows are
+   * appended to those of totals.csv. Empty without phases. Collective.
+   */
   template <int dim>
   nlohmann::ordered_json describe_phases(const ElasticRun<dim> &model,
                                          const Scene<dim>      &scene,

@@ -18,7 +18,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Area and the integral of the displacement of each side of a mesh, by its boundary id, of this process. */
+    /**
+     * Area and the integral of the displacement of each side of a mesh, by its boundary id, of this
+     * process.
+     */
     template <int dim>
     std::map<types::boundary_id, std::pair<double, Tensor<1, dim>>> integrals_over_sides(
       const ElasticRun<dim> &model)

@@ -14,7 +14,8 @@
 namespace PeriDeal
 {
   /**
-   * The mean displacement, by area, of each side that has a condition on its displacement or traction, with the name that the user gave it: of a body with nodes at cell centres that of its
+   * The mean displacement, by area, of each side that has a condition on its displacement or
+   * traction, with the name that the user gave it: of a body with nodes at cell centres that of its
    * outermost nodes. Collective.
    */
   template <int dim>
@@ -23,8 +24,9 @@ namespace PeriDeal
     const Scene<dim>      &scene);
 
   /**
-   * Keep in @p extremes the largest component of a force on any side so far, as `largest force` (`value`, `side`, `direction`, `time`). Of a pull and a support that
-   * are equal but for round-off the pull counts.
+   * Keep in @p extremes the largest component of a force on any side so far, as `largest force`
+   * (`value`, `side`, `direction`, `time`). Of a pull and a support that are equal but for
+   * round-off the pull counts.
    */
   void keep_largest_force(const ForceBalance     &balance,
                           const double            t,

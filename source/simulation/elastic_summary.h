@@ -12,19 +12,24 @@
 
 namespace PeriDeal
 {
-  /** One component of a vector with dim of them at each node, as a vector of the nodes with the ghosts of their cells. */
+  /**
+   * One component of a vector with dim of them at each node, as a vector of the nodes with the
+   * ghosts of their cells.
+   */
   template <int dim>
   Vector component_of(const dealii::DoFHandler<dim> &dofs, const Vector &u, const unsigned int d);
 
-  /** Side -> what holds there in words: `displacement 0, free`, `traction 1, 0`, `symmetry`, several separated by `; `, else `free`. */
+  /**
+   * Side -> what holds there in words: `displacement 0, free`, `traction 1, 0`, `symmetry`, several
+   * separated by `; `, else `free`.
+   */
   template <int dim>
   nlohmann::ordered_json describe_elastic_sides(const Scene<dim> &scene);
 
   /**
    * Side or part -> `displacement`, `traction` -> `at` (points spread over it) and `values` (at
-   * time @p t, a list of components for each point; null: free),
-   * what arrows in a sketch are drawn from. The points of what is no side of a box are those of @p
-   * places (places_of_conditions()).
+   * time @p t, a list of components for each point; null: free), what arrows in a sketch are drawn
+   * from. The points of what is no side of a box are those of @p places (places_of_conditions()).
    */
   template <int dim>
   nlohmann::ordered_json values_on_sides(const Scene<dim>             &scene,
@@ -42,9 +47,11 @@ namespace PeriDeal
   std::string no_stress_intensity(const Scene<dim> &scene, const nlohmann::ordered_json &models);
 
   /**
-   * The size of forces in the body now, against which a sum of forces that should be zero is small or not: what passes through it (@p throughput), and its mean Young modulus
-   * times the area of a cube on its shortest edge times the strain by which displacements differ over that edge: a body that is free to expand bears
-   * nothing but round-off, which is small against the latter. Collective.
+   * The size of forces in the body now, against which a sum of forces that should be zero is small
+   * or not: what passes through it (@p throughput), and its mean Young modulus times the area of a
+   * cube on its shortest edge times the strain by which displacements differ over that edge: a body
+   * that is free to expand bears nothing but round-off, which is small against the latter.
+   * Collective.
    */
   template <int dim>
   double find_force_scale(const ElasticRun<dim> &model,
@@ -52,9 +59,11 @@ namespace PeriDeal
                           const double           throughput);
 
   /**
-   * Append to `relative l2` and `maximum` of @p comparison the pair [t, value]: peridynamics minus the interpolant of finite elements at its nodes. The norm of the
-   * displacement vectors, weighted by nodal volumes, over that of the finite elements; and the largest length of a difference. Nothing where one
-   * of the models is absent. Likewise the coupled model minus each of the others, as `coupled minus ...` of @p comparisons. Collective.
+   * Append to `relative l2` and `maximum` of @p comparison the pair [t, value]: peridynamics minus
+   * the interpolant of finite elements at its nodes. The norm of the displacement vectors, weighted
+   * by nodal volumes, over that of the finite elements; and the largest length of a difference.
+   * Nothing where one of the models is absent. Likewise the coupled model minus each of the others,
+   * as `coupled minus ...` of @p comparisons. Collective.
    */
   template <int dim>
   void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &models,

@@ -26,7 +26,10 @@ namespace PeriDeal
     class FEMRun : public ModelRun<dim>
     {
     public:
-      /** @param model finite elements, coupled, or peridynamics by exchange, which is `coupled` with the zone everywhere */
+      /**
+       * @param model finite elements, coupled, or peridynamics by exchange, which is `coupled` with
+       *              the zone everywhere
+       */
       FEMRun(const Model model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
         : scene(scene)
         , model(model)
@@ -72,8 +75,9 @@ namespace PeriDeal
 
       void set_initial_value(Vector &u) const override
       {
-        // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for higher degrees, which it would spoil, and for
-        // peridynamics, whose values are those of points.
+        // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for
+        // higher degrees, which it would spoil, and for peridynamics, whose values are those of
+        // points.
         const auto initial = [&](const Point<dim> &p) {
           return scene.initial_and_source.initial_value.value(p);
         };
@@ -190,7 +194,8 @@ namespace PeriDeal
         if (scene.cracks.cracks.empty() || scene.cracks.mesh == CrackMesh::faces ||
             element.degree > 1)
           return element_difference(handler, u, exact);
-        // Inside a cut cell the interpolant runs across the crack: only the values at the nodes are the model's.
+        // Inside a cut cell the interpolant runs across the crack: only the values at the nodes are
+        // the model's.
         Vector expected(u), volumes(u);
         for_each_node(
           [&](const unsigned int i, const Point<dim> &p) { expected.local_element(i) = exact(p); });
@@ -251,8 +256,9 @@ namespace PeriDeal
 
 
       /**
-       * Where sizes of cells meet, the mean around a node is that of a place beside it, which shifts smooth fields: correct by the difference of the values there.
-       * On the surface of the body the mean stays, as on uniform meshes.
+       * Where sizes of cells meet, the mean around a node is that of a place beside it, which
+       * shifts smooth fields: correct by the difference of the values there. On the surface of the
+       * body the mean stays, as on uniform meshes.
        */
       void move_to_nodes(const std::function<double(const Point<dim> &)> &initial,
                          const Vector                                    &volumes,
@@ -296,8 +302,9 @@ namespace PeriDeal
 
 
       /**
-       * Where cells have been merged the interpolant holds a little more or less heat than the finer field did. The difference goes to the nodes of merged cells,
-       * each by the same temperature.
+       * Where cells have been merged the interpolant holds a little more or less heat than the
+       * finer field did. The difference goes to the nodes of merged cells, each by the same
+       * temperature.
        */
       void give_heat(const double lost, const double t)
       {
@@ -344,7 +351,9 @@ namespace PeriDeal
       }
 
 
-      /** Exchange that is not exact must not run; of the others the user is told how wrong they are. */
+      /**
+       * Exchange that is not exact must not run; of the others the user is told how wrong they are.
+       */
       void examine()
       {
         Timings::Scope scope(this->timings, "certificate");
@@ -391,7 +400,10 @@ namespace PeriDeal
       }
 
 
-      /** Integral of f times the shape function of each owned unknown, with two Gauss points along each direction. Collective. */
+      /**
+       * Integral of f times the shape function of each owned unknown, with two Gauss points along
+       * each direction. Collective.
+       */
       void integrate(const std::function<double(const Point<dim> &)> &f, Vector &integrals) const
       {
         FEValues<dim>                        values(element,

@@ -182,7 +182,8 @@ namespace PeriDeal
     OutputEstimate result;
     for (const double n : components)
       {
-        // Each process makes its own part; one writes, and keeps what it gets from one of the others.
+        // Each process makes its own part; one writes, and keeps what it gets from one of the
+        // others.
         result.time +=
           n_times * corners * n *
           ((output.hdf5 ? time_of_hdf5 : 0.) + (output.vtu ? time_of_vtu / n_processes : 0.));

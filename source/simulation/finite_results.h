@@ -10,7 +10,8 @@
 namespace PeriDeal
 {
   /**
-   * Throws the UserError of the first of these values that is not finite: a result with infinities or NaN must not pass for one.
+   * Throws the UserError of the first of these values that is not finite: a result with infinities
+   * or NaN must not pass for one.
    *
    * @param values name and value, causes before what follows from them; the same on all processes
    * @param remedy the entries whose sizes decide, as a sentence

@@ -14,7 +14,10 @@
 
 namespace PeriDeal
 {
-  /** Finite elements, the model `coupled`, or peridynamics by exchange, which is `coupled` with the zone everywhere. */
+  /**
+   * Finite elements, the model `coupled`, or peridynamics by exchange, which is `coupled` with the
+   * zone everywhere.
+   */
   template <int dim>
   std::unique_ptr<ModelRun<dim>> make_element_run(const Model                       model,
                                                   const dealii::Triangulation<dim> &mesh,

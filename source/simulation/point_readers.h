@@ -17,7 +17,10 @@ namespace PeriDeal
   using PointReaders = std::vector<std::unique_ptr<PointEvaluator<dim>>>;
 
 
-  /** One for each model, or none without points. @p entry names the points in messages; those of a `Line` may lie outside the body. Collective. */
+  /**
+   * One for each model, or none without points. @p entry names the points in messages; those of a
+   * `Line` may lie outside the body. Collective.
+   */
   template <int dim, typename Models>
   PointReaders<dim> make_point_readers(const Models                           &models,
                                        const Cracks<dim>                      &cracks,

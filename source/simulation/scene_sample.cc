@@ -147,7 +147,9 @@ namespace PeriDeal
     }
 
 
-    /** Components of the fields of a model of what diffuses, with its difference from the others. */
+    /**
+     * Components of the fields of a model of what diffuses, with its difference from the others.
+     */
     template <int dim>
     double components_of(const Simulation<dim> &simulation, const unsigned int model)
     {
@@ -270,7 +272,8 @@ namespace PeriDeal
                             const MPI_Comm     communicator,
                             double            &memory)
   {
-    // Larger ones take longer than one likes to wait for a check; where there is no coarse lattice one waits some more.
+    // Larger ones take longer than one likes to wait for a check; where there is no coarse lattice
+    // one waits some more.
     constexpr double few_unknowns = 5e4, many_unknowns = 3e5;
     // Iterations of other solvers over those of the linear one, where these are alike.
     constexpr double of_full_kinematics = 3.;

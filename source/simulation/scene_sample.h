@@ -47,9 +47,11 @@ namespace PeriDeal
   Sample take_sample(const Scene<dim> &scene, const MPI_Comm communicator);
 
   /**
-   * Seconds that the equilibria of an elastic body take, negative if that is not known: a linear one is solved, of a large body on a coarser lattice. Bonds that break take more. @param model number of the
-   * model in the scene. @param n_steps of loading
-   * @param memory raised to what the run of a large body takes at least beyond what is there before it. Collective.
+   * Seconds that the equilibria of an elastic body take, negative if that is not known: a linear
+   * one is solved, of a large body on a coarser lattice. Bonds that break take more. @param model
+   * number of the model in the scene. @param n_steps of loading
+   * @param memory raised to what the run of a large body takes at least beyond what is there before
+   *               it. Collective.
    */
   template <int dim>
   double time_of_equilibria(const Scene<dim>  &scene,

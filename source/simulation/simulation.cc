@@ -158,7 +158,7 @@ namespace PeriDeal
       }
     catch (const UserError &)
       {
-        // The cause, if the error follows from a formula's value. Not if this process failed alone: the others wait elsewhere.
+        // The cause, if it is a formula's value; not of this process alone: others wait elsewhere.
         if (all_processes_arrive(communicator))
           errors.throw_if_any(communicator);
         throw;

@@ -83,7 +83,8 @@ namespace PeriDeal
         std::vector<std::vector<double>> columns;
         for (unsigned int d = 0; d < dim; ++d)
           columns.push_back(reader.evaluate(this->displacement, dim, d));
-        // Von Mises' stress of interpolated components would be smaller than that of the nodes: it is interpolated itself.
+        // Von Mises' stress of interpolated components would be smaller than that of the nodes: it
+        // is interpolated itself.
         for (unsigned int k = 0; k <= n_stresses; ++k)
           {
             Vector values(node_set->partitioner());

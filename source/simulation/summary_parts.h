@@ -13,7 +13,10 @@
 
 namespace PeriDeal
 {
-  /** What summary.json says of any scene at its start: title, program, units, names; no models and no fields yet. Not collective. */
+  /**
+   * What summary.json says of any scene at its start: title, program, units, names; no models and
+   * no fields yet. Not collective.
+   */
   template <int dim>
   nlohmann::ordered_json describe_start(const Scene<dim> &scene,
                                         const SceneText  &text,
@@ -26,7 +29,10 @@ namespace PeriDeal
                                         const dealii::Triangulation<dim> &mesh,
                                         const MPI_Comm                    communicator);
 
-  /** With `Shape = image` write image_as_read.png: one pixel per cell in the colours of the phases. Not collective. */
+  /**
+   * With `Shape = image` write image_as_read.png: one pixel per cell in the colours of the phases.
+   * Not collective.
+   */
   template <int dim>
   void write_image_as_read(const Scene<dim> &scene, ResultFolder &folder);
 

@@ -11,13 +11,17 @@ namespace PeriDeal
   namespace
   {
     /**
-     * Adaptive dynamic relaxation (Underwood 1983, Kilic and Madenci 2010): a motion with a fictitious diagonal mass Lambda and damping c Lambda, central
-     * differences and a step of one. Lambda = kappa/4 diag K makes that step stable, kappa (with a margin) the largest eigenvalue of diag(K)^-1 K; c = 2 omega
-     * damps critically what moves: omega^2 = v.Kv/v.Lambda v, the Rayleigh quotient of the last step, K v from the residuals before and after. (The
-     * published quotient, of u and a diagonal local stiffness, takes more iterations.) Iterations go with L/h.
+     * Adaptive dynamic relaxation (Underwood 1983, Kilic and Madenci 2010): a motion with a
+     * fictitious diagonal mass Lambda and damping c Lambda, central differences and a step of one.
+     * Lambda = kappa/4 diag K makes that step stable, kappa (with a margin) the largest eigenvalue
+     * of diag(K)^-1 K; c = 2 omega damps critically what moves: omega^2 = v.Kv/v.Lambda v, the
+     * Rayleigh quotient of the last step, K v from the residuals before and after. (The published
+     * quotient, of u and a diagonal local stiffness, takes more iterations.) Iterations go with
+     * L/h.
      *
-     * A deformed body may be stiffer than kappa, which is that of the body at rest, allows: then a motion that turns round at each step comes up, whose quotient is 4 or more, and
-     * Lambda is raised.
+     * A deformed body may be stiffer than kappa, which is that of the body at rest, allows: then a
+     * motion that turns round at each step comes up, whose quotient is 4 or more, and Lambda is
+     * raised.
      */
     class AdaptiveDynamicRelaxation : public StaticSolver
     {

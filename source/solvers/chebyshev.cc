@@ -26,8 +26,8 @@ namespace PeriDeal
 
 
     /**
-     * Chebyshev coefficients of x -> phi_1(z (x - 1) / 2) on [-1, 1], cut where the sum of the rest is below the tolerance. The degree
-     * grows like sqrt(z log(1/tolerance)).
+     * Chebyshev coefficients of x -> phi_1(z (x - 1) / 2) on [-1, 1], cut where the sum of the rest
+     * is below the tolerance. The degree grows like sqrt(z log(1/tolerance)).
      */
     std::vector<double> expansion(const double z, const double tolerance)
     {
@@ -61,8 +61,9 @@ namespace PeriDeal
 
 
     /**
-     * Chebyshev coefficients of phi_2 = (phi_1 - 1)/z at z (x - 1) / 2 from those of phi_1, one less: the coefficients of both sides of (z/2)(x - 1) phi_2 = phi_1 - 1,
-     * from the highest one downwards.
+     * Chebyshev coefficients of phi_2 = (phi_1 - 1)/z at z (x - 1) / 2 from those of phi_1, one
+     * less: the coefficients of both sides of (z/2)(x - 1) phi_2 = phi_1 - 1, from the highest one
+     * downwards.
      */
     std::vector<double> next_expansion(const std::vector<double> &of_phi1, const double z)
     {
@@ -77,8 +78,9 @@ namespace PeriDeal
 
 
     /**
-     * Exponential integrator for constant loads: u(t + tau) = u + tau phi_1(tau A) C^{-1} (f - K u), A = -C^{-1} K, with phi_1 expanded in Chebyshev
-     * polynomials over the spectrum of A. Exact in time up to the tolerance, for any tau; needs a symmetric K.
+     * Exponential integrator for constant loads: u(t + tau) = u + tau phi_1(tau A) C^{-1} (f - K
+     * u), A = -C^{-1} K, with phi_1 expanded in Chebyshev polynomials over the spectrum of A. Exact
+     * in time up to the tolerance, for any tau; needs a symmetric K.
      */
     class Chebyshev : public Stepper
     {
@@ -153,8 +155,9 @@ namespace PeriDeal
 
 
       /**
-       * About the number of coefficients of one expansion. There may be a million spans of time between events, most of them alike, so that few are found, and those only where that
-       * is fast: beyond, the number grows like the root of z.
+       * About the number of coefficients of one expansion. There may be a million spans of time
+       * between events, most of them alike, so that few are found, and those only where that is
+       * fast: beyond, the number grows like the root of z.
        */
       double expected_size(const double z) const
       {
@@ -187,7 +190,8 @@ namespace PeriDeal
         const std::vector<double> coefficients =
           expansion(bound * tau, std::clamp(tolerance * level / change, 1e-17, 0.1));
         const std::vector<double> of_heat = next_expansion(coefficients, bound * tau);
-        // The argument B = 1 + 2 A / bound of the polynomials has its spectrum in [-1, 1]: T_0 v = last, T_1 v = now.
+        // The argument B = 1 + 2 A / bound of the polynomials has its spectrum in [-1, 1]: T_0 v =
+        // last, T_1 v = now.
         const double scale = 2. / bound;
         op.apply_then(image, last, [&](const unsigned int begin, const unsigned int end) {
           for (unsigned int i = begin; i < end; ++i)

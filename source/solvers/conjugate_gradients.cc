@@ -12,8 +12,9 @@ namespace PeriDeal
   namespace
   {
     /**
-     * Nonlinear conjugate gradients (Polak-Ribiere, restarted where beta would be negative; Le 2014 eqs 2.45 to 2.49) with line searches for the zero of the
-     * force along the line by the secant method. Where forces are linear one secant step is exact and gives the new residual, too: one
+     * Nonlinear conjugate gradients (Polak-Ribiere, restarted where beta would be negative; Le 2014
+     * eqs 2.45 to 2.49) with line searches for the zero of the force along the line by the secant
+     * method. Where forces are linear one secant step is exact and gives the new residual, too: one
      * application an iteration.
      */
     class ConjugateGradients : public StaticSolver
@@ -36,7 +37,8 @@ namespace PeriDeal
 
       void operator_changed() override
       {
-        // It moves nodes that few bonds are left of far: line searches of large displacements do not get on with that.
+        // It moves nodes that few bonds are left of far: line searches of large displacements do
+        // not get on with that.
         if (op.nonlinear())
           preconditioner.reset();
         else if (preconditioner)
@@ -82,7 +84,10 @@ namespace PeriDeal
           correction = residual;
       }
 
-      /** Go along the direction to where no force along it is left; residual becomes that of the new u. */
+      /**
+       * Go along the direction to where no force along it is left; residual becomes that of the new
+       * u.
+       */
       void search(Vector &u, const double t, const unsigned int n)
       {
         constexpr unsigned int refresh = 50; // sums of residuals lose digits

@@ -12,10 +12,12 @@ namespace PeriDeal
   namespace
   {
     /**
-     * The motion of the body itself, from rest, with velocity Verlet and a viscosity parallel to the bonds (Le 2014 eq 2.43; with finite elements proportional to
-     * the stiffness) until it has come to rest. The viscosity gamma damps the slowest motion critically: with d the displacement of the last steps, in
-     * which fast motions have died away, gamma = 2 sqrt(d.Kd d.Md)/(d.Dd). The step keeps dt^2 omega^2 + 2 gamma dt D below 4, and grows as the square of the
-     * spacing: steps go with (L/h)^2.
+     * The motion of the body itself, from rest, with velocity Verlet and a viscosity parallel to
+     * the bonds (Le 2014 eq 2.43; with finite elements proportional to the stiffness) until it has
+     * come to rest. The viscosity gamma damps the slowest motion critically: with d the
+     * displacement of the last steps, in which fast motions have died away, gamma = 2 sqrt(d.Kd
+     * d.Md)/(d.Dd). The step keeps dt^2 omega^2 + 2 gamma dt D below 4, and grows as the square of
+     * the spacing: steps go with (L/h)^2.
      */
     class DynamicRelaxation : public StaticSolver
     {

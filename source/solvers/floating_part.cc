@@ -24,7 +24,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Sets of connected unknowns of this process and its ghosts; the root of a set is its lowest member. */
+    /**
+     * Sets of connected unknowns of this process and its ghosts; the root of a set is its lowest
+     * member.
+     */
     class ConnectedSets
     {
     public:
@@ -76,8 +79,9 @@ namespace PeriDeal
 
 
     /**
-     * For each owned free unknown the number of its connected part, the lowest global index in it; 0 on others. Each sweep joins the
-     * parts within the processes, so that few are needed: about as many as a part visits processes.
+     * For each owned free unknown the number of its connected part, the lowest global index in it;
+     * 0 on others. Each sweep joins the parts within the processes, so that few are needed: about
+     * as many as a part visits processes.
      */
     Vector number_parts(const Operator &op, const TrilinosWrappers::SparseMatrix &surrogate)
     {
@@ -123,7 +127,9 @@ namespace PeriDeal
     }
 
 
-    /** Numbers of the parts on which K applied to one vanishes: nothing from outside acts on them. */
+    /**
+     * Numbers of the parts on which K applied to one vanishes: nothing from outside acts on them.
+     */
     std::set<double> numbers_of_loose_parts(const Operator &op, const Vector &part)
     {
       Vector ones = free_unknowns(op), image;
@@ -263,8 +269,8 @@ namespace PeriDeal
 
 
     /**
-     * Of each part, for rigid motions a and b: the energies a.K b, the sizes a.D b with the diagonal
-     * D of K, the work of the residual r, and in the first row r.r/D.
+     * Of each part, for rigid motions a and b: the energies a.K b, the sizes a.D b with the
+     * diagonal D of K, the work of the residual r, and in the first row r.r/D.
      */
     PartSums energies_of_parts(const ElasticOperator     &op,
                                const Vector              &part,

@@ -16,7 +16,10 @@ namespace PeriDeal
 {
   namespace
   {
-    /** What the implicit methods share: the solve for a stage, and fixed or adaptive steps around a method's single step. */
+    /**
+     * What the implicit methods share: the solve for a stage, and fixed or adaptive steps around a
+     * method's single step.
+     */
     class ImplicitStepper : public Stepper
     {
     public:
@@ -108,8 +111,9 @@ namespace PeriDeal
 
     protected:
       /**
-       * One step of size h from u at t into `next`, what enters meanwhile into `step_heat`; the local error estimate into `error`. Returns the order of the
-       * estimate in h, 0 if there is none yet.
+       * One step of size h from u at t into `next`, what enters meanwhile into `step_heat`; the
+       * local error estimate into `error`. Returns the order of the estimate in h, 0 if there is
+       * none yet.
        */
       virtual int step(const Vector &u, const double t, const double h) = 0;
 
@@ -117,8 +121,10 @@ namespace PeriDeal
       virtual void accept(const Vector &, const double) {}
 
       /**
-       * Solve C (U - w) = s (f(t) - K U): the start of the iteration is in U, w and s > 0 belong to the method. Where C depends on the solution, solve instead for the heat that
-       * U has more than u, H(U) - H(u) = known + s (f(t) - K U), so that the steps keep it. Returns what enters per time with U.
+       * Solve C (U - w) = s (f(t) - K U): the start of the iteration is in U, w and s > 0 belong to
+       * the method. Where C depends on the solution, solve instead for the heat that U has more
+       * than u, H(U) - H(u) = known + s (f(t) - K U), so that the steps keep it. Returns what
+       * enters per time with U.
        */
       double solve_stage(const Vector &u,
                          const Vector &w,
@@ -126,7 +132,8 @@ namespace PeriDeal
                          const double  t,
                          Vector       &U)
       {
-        // Picard iterations if the material depends on the solution: it is taken at the last iterate.
+        // Picard iterations if the material depends on the solution: it is taken at the last
+        // iterate.
         constexpr unsigned int most = 30;
         const double           goal = std::max(1e-4 * tolerance, 1e-14); // above round-off
         for (unsigned int k = 0; k < most; ++k)
@@ -264,8 +271,8 @@ namespace PeriDeal
 
 
     /**
-     * Two-step methods that start with SDIRK2. The local error is estimated from the difference to an explicit predictor through the last three
-     * values.
+     * Two-step methods that start with SDIRK2. The local error is estimated from the difference to
+     * an explicit predictor through the last three values.
      */
     class TwoStep : public ImplicitStepper
     {
@@ -375,7 +382,8 @@ namespace PeriDeal
     private:
       void method_step(const Vector &u, const double t, const double h) override
       {
-        // C (U - u) = h/2 (F(u, t) + F(U, t + h)): as a stage from U = u, with the old half of the rate in the start value.
+        // C (U - u) = h/2 (F(u, t) + F(U, t + h)): as a stage from U = u, with the old half of the
+        // rate in the start value.
         start = u;
         op.distribute(start, t);
         op.take_material_at(start);

@@ -71,7 +71,8 @@ namespace PeriDeal
 
   void LinearSolver::prepare(const double a, const double b)
   {
-    // An outdated preconditioner makes iterations slower, never wrong: making one costs as much as dozens of iterations.
+    // An outdated preconditioner makes iterations slower, never wrong: making one costs as much as
+    // dozens of iterations.
     const bool worn = outdated &&
                       n_last_iterations > n_first_iterations + 3 + n_first_iterations / 3;
     if (worn)

@@ -12,7 +12,10 @@ namespace PeriDeal
 {
   namespace
   {
-    /** One linear system by conjugate gradients with multigrid, by GMRES where the forces have no energy. */
+    /**
+     * One linear system by conjugate gradients with multigrid, by GMRES where the forces have no
+     * energy.
+     */
     class LinearStatics : public StaticSolver
     {
     public:

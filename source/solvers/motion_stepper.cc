@@ -196,7 +196,8 @@ namespace PeriDeal
 
   void MotionStepper::break_bonds(const Vector &u, const double t)
   {
-    // Between two steps: within one, half a step of their force would be lost and with it energy of order dt.
+    // Between two steps: within one, half a step of their force would be lost and with it energy of
+    // order dt.
     if (op.break_bonds(u) == 0)
       return;
     jumps -= kept_back(step_now);
@@ -234,7 +235,8 @@ namespace PeriDeal
         break_bonds(u, next);
         now = next;
         tell_step(now);
-        // Of linear bodies there is nothing to be found: what their steps keep they keep to round-off.
+        // Of linear bodies there is nothing to be found: what their steps keep they keep to
+        // round-off.
         if (op.nonlinear() && spent.steps % between_examinations == 0)
           examine(u, v, now);
         else if (spent.steps % between_checks == 0 || k + 1 == n)

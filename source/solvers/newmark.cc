@@ -14,8 +14,9 @@ namespace PeriDeal
   namespace
   {
     /**
-     * Newmark's method with beta = 1/4, gamma = 1/2 (the mean acceleration): second order, stable for any step, keeps the energy of linear bodies. Each step
-     * solves (4/dt^2 M + K) du = f - K u - M a, again with K the tangent at the new u where forces are not linear (Newton).
+     * Newmark's method with beta = 1/4, gamma = 1/2 (the mean acceleration): second order, stable
+     * for any step, keeps the energy of linear bodies. Each step solves (4/dt^2 M + K) du = f - K
+     * u - M a, again with K the tangent at the new u where forces are not linear (Newton).
      */
     class Newmark : public MotionStepper
     {
@@ -74,7 +75,8 @@ namespace PeriDeal
             if (is_small(size, u, round, t))
               break;
           }
-        // Also to the solver's tolerance the acceleration of the forces, so that the next step starts from them.
+        // Also to the solver's tolerance the acceleration of the forces, so that the next step
+        // starts from them.
         accelerate(acceleration, unbalanced);
         v.add(0.5 * dt, acceleration);
         follow_supports(v, u, dt);

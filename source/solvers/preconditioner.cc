@@ -17,16 +17,18 @@ namespace PeriDeal
   namespace
   {
     /**
-     * The inverse diagonal overlaps with multigrid on wavelengths near the horizon, where with a factor of one the sum of both would be nearly
-     * twice the inverse of K. Half of it needs 17 to 18 iterations where one needs 22 (residual 1e-10, m = 6.5), 0.3 and 0.8
-     * need 19 and 20.
+     * The inverse diagonal overlaps with multigrid on wavelengths near the horizon, where with a
+     * factor of one the sum of both would be nearly twice the inverse of K. Half of it needs 17 to
+     * 18 iterations where one needs 22 (residual 1e-10, m = 6.5), 0.3 and 0.8 need 19 and 20.
      */
     constexpr double share_of_diagonal = 0.5;
 
     /**
-     * Entries below this share of sqrt(K_ii K_jj) do not join an aggregate. Bonds that are longer than a cell are such entries beside a crack; taken for
-     * strong ones they make aggregates too large there: 11 to 14 iterations of the coupled model (m = 3, 21^2 to 321^2 cells) where these need 10 to 12,
-     * and finite elements 10 to 11 with either. All entries of square and cubic elements are above it.
+     * Entries below this share of sqrt(K_ii K_jj) do not join an aggregate. Bonds that are longer
+     * than a cell are such entries beside a crack; taken for strong ones they make aggregates too
+     * large there: 11 to 14 iterations of the coupled model (m = 3, 21^2 to 321^2 cells) where
+     * these need 10 to 12, and finite elements 10 to 11 with either. All entries of square and
+     * cubic elements are above it.
      */
     constexpr double weakest_link = 0.02;
   } // namespace
@@ -80,7 +82,8 @@ namespace PeriDeal
     TrilinosWrappers::PreconditionAMG::AdditionalData options;
     options.elliptic              = true;
     options.higher_order_elements = false;
-    // Smoothing is for what varies fast: there the inverse diagonal does the work unless the surrogate is the operator itself.
+    // Smoothing is for what varies fast: there the inverse diagonal does the work unless the
+    // surrogate is the operator itself.
     options.smoother_sweeps       = op.surrogate_is_exact() ? 2 : 1;
     options.aggregation_threshold = weakest_link;
     Teuchos::ParameterList              list;

@@ -16,7 +16,10 @@ namespace PeriDeal
 {
   namespace
   {
-    /** Coefficients of the s-stage scheme of Sommeijer, Shampine and Verwer (J. Comput. Appl. Math. 88, 1998). */
+    /**
+     * Coefficients of the s-stage scheme of Sommeijer, Shampine and Verwer (J. Comput. Appl. Math.
+     * 88, 1998).
+     */
     struct RKCCoefficients
     {
       explicit RKCCoefficients(const unsigned int s)
@@ -54,7 +57,10 @@ namespace PeriDeal
     };
 
 
-    /** Second order stabilised explicit Runge-Kutta-Chebyshev method with adaptive steps and as many stages as they need. */
+    /**
+     * Second order stabilised explicit Runge-Kutta-Chebyshev method with adaptive steps and as many
+     * stages as they need.
+     */
     class RKC2 : public Stepper
     {
     public:
@@ -112,7 +118,8 @@ namespace PeriDeal
       {
         if (fixed)
           return static_cast<double>(n_equal_steps(time_span, dt) * n_stages(dt));
-        // Steps grow with the solution's age; a few dozen of them with sqrt(lambda t) stages in all, times a measured factor.
+        // Steps grow with the solution's age; a few dozen of them with sqrt(lambda t) stages in
+        // all, times a measured factor.
         return 2.5 * std::sqrt(1.54 * time_span * op.spectrum().sharp) *
                  std::cbrt(1e-3 / tolerance) +
                20.;
@@ -144,7 +151,8 @@ namespace PeriDeal
 
 
       /**
-       * From u at t with its rate to `now` at t + h. Returns what enters meanwhile, which has the rate @p entering at t: the same formulas with one more unknown, 0 at t.
+       * From u at t with its rate to `now` at t + h. Returns what enters meanwhile, which has the
+       * rate @p entering at t: the same formulas with one more unknown, 0 at t.
        */
       double stages(const Vector &u, const double t, const double h, const double entering)
       {

@@ -16,7 +16,10 @@ namespace PeriDeal
     constexpr unsigned int steps_between_checks = 100;
 
 
-    /** Steps of one size; the last one of a span is shorter if it has to land. `auto` takes a share of the stable step. */
+    /**
+     * Steps of one size; the last one of a span is shorter if it has to land. `auto` takes a share
+     * of the stable step.
+     */
     class FixedStepper : public Stepper
     {
     public:

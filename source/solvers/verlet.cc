@@ -7,7 +7,10 @@ namespace PeriDeal
 {
   namespace
   {
-    /** Velocity Verlet: second order, explicit, one application a step, stable up to dt = 2/omega_max. */
+    /**
+     * Velocity Verlet: second order, explicit, one application a step, stable up to dt =
+     * 2/omega_max.
+     */
     class Verlet : public MotionStepper
     {
     public:

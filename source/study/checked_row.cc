@@ -25,7 +25,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Of the program, the processes (times and memory depend on them), the scene, its entries and its mesh file or image. Collective. */
+    /**
+     * Of the program, the processes (times and memory depend on them), the scene, its entries and
+     * its mesh file or image. Collective.
+     */
     std::string hash_of(const CheckedRow  &checked,
                         const std::string &mesh_file,
                         const MPI_Comm     communicator)

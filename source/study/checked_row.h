@@ -28,19 +28,25 @@ namespace PeriDeal
   /** All bytes of a file; empty if it cannot be read. */
   std::string content_of(const std::string &file_name);
 
-  /** What is wrong with the entries of a row: the message without the words for overrides, which stand on no command line there. */
+  /**
+   * What is wrong with the entries of a row: the message without the words for overrides, which
+   * stand on no command line there.
+   */
   std::string mistake_in_overrides(const UserError &error);
 
   /**
-   * Read and parse the scene of a row. Throws UserError with the study, the row and the scene's own message, unless the row is one that
-   * fails. Collective.
+   * Read and parse the scene of a row. Throws UserError with the study, the row and the scene's own
+   * message, unless the row is one that fails. Collective.
    */
   CheckedRow check_row(const Study       &study,
                        const StudyRow    &row,
                        const std::string &folder,
                        const MPI_Comm     communicator);
 
-  /** Call action(scene) with the Scene<dim> that the text describes, the only scene alive then. Throws UserError. */
+  /**
+   * Call action(scene) with the Scene<dim> that the text describes, the only scene alive then.
+   * Throws UserError.
+   */
   template <typename Action>
   void with_scene(const SceneText &text, const Action &action);
 

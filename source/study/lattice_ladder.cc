@@ -24,7 +24,9 @@ namespace PeriDeal
     }
 
 
-    /** Whether the corners of all cracks lie on planes of a lattice of n cells in this direction. */
+    /**
+     * Whether the corners of all cracks lie on planes of a lattice of n cells in this direction.
+     */
     bool on_planes(const CrackedBox &box, const unsigned int direction, const unsigned int n)
     {
       constexpr double slack  = 1e-7; // of a cell

@@ -73,7 +73,10 @@ namespace PeriDeal
     }
 
 
-    /** The size of the process at its peak starts anew, so that it is that of this row. Where the system has no such thing, it does not. */
+    /**
+     * The size of the process at its peak starts anew, so that it is that of this row. Where the
+     * system has no such thing, it does not.
+     */
     void forget_peak_memory()
     {
 #ifdef __GLIBC__

@@ -9,7 +9,10 @@
 
 namespace PeriDeal
 {
-  /** What has become of a row. Status and message are the same on all processes, the rest is on rank 0 only. */
+  /**
+   * What has become of a row. Status and message are the same on all processes, the rest is on rank
+   * 0 only.
+   */
   struct RowResult
   {
     using Json = nlohmann::ordered_json;
@@ -26,7 +29,10 @@ namespace PeriDeal
     Json        record;  // the content of row.json: hash, status, times, memory
     Json results; // of a finished row: summary.json, and "totals" and "probes" from the tables
 
-    /** finished, failed, and with a row that should fail: failed as expected, did not fail. Empty if missing. */
+    /**
+     * finished, failed, and with a row that should fail: failed as expected, did not fail. Empty if
+     * missing.
+     */
     std::string status_of(const StudyRow &row) const;
 
     /** Failed without being expected to, or the other way round. */
@@ -34,7 +40,8 @@ namespace PeriDeal
   };
 
   /**
-   * What the folder of a row holds of this very scene, program and number of processes, or a missing result. Collective.
+   * What the folder of a row holds of this very scene, program and number of processes, or a
+   * missing result. Collective.
    */
   RowResult read_row(const CheckedRow &checked, const MPI_Comm communicator);
 
@@ -42,8 +49,8 @@ namespace PeriDeal
   unsigned int repeats_of(const RowResult &result);
 
   /**
-   * Compute a row @p repeats times, keep the smallest times, and write row.json. A UserError of all processes is recorded; one that a
-   * process has met alone is recorded and thrown on. Collective.
+   * Compute a row @p repeats times, keep the smallest times, and write row.json. A UserError of all
+   * processes is recorded; one that a process has met alone is recorded and thrown on. Collective.
    */
   RowResult compute_row(const CheckedRow  &checked,
                         const unsigned int repeats,

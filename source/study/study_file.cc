@@ -90,7 +90,10 @@ namespace PeriDeal
     }
 
 
-    /** The folders that a scene's path may be relative to: the working one, that of the study file, and its parents. */
+    /**
+     * The folders that a scene's path may be relative to: the working one, that of the study file,
+     * and its parents.
+     */
     std::vector<fs::path> folders_of_scenes(const std::string &study_file)
     {
       std::error_code       none;

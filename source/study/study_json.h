@@ -11,11 +11,15 @@ namespace PeriDeal
 {
   using Json = nlohmann::ordered_json;
 
-  /** An object of a study file, and where it stands, for messages: "convergence.json: row 'coarse'". */
+  /**
+   * An object of a study file, and where it stands, for messages: "convergence.json: row 'coarse'".
+   */
   class StudyObject
   {
   public:
-    /** @param keys all that are known. Throws UserError for others, and if @p object is no object. */
+    /**
+     * @param keys all that are known. Throws UserError for others, and if @p object is no object.
+     */
     StudyObject(const Json &object, const std::string &where, const std::vector<std::string> &keys);
 
     bool has(const std::string &key) const;
@@ -54,7 +58,8 @@ namespace PeriDeal
   };
 
   /**
-   * The text of a study file as JSON; comments are allowed, a key given twice in one object is not. Throws UserError with file and line.
+   * The text of a study file as JSON; comments are allowed, a key given twice in one object is not.
+   * Throws UserError with file and line.
    */
   Json parse_study_text(const std::string &text, const std::string &file_name);
 } // namespace PeriDeal

@@ -20,13 +20,17 @@ namespace PeriDeal
   };
 
   /**
-   * What run_study() does, but for the UserError about rows that did not end as they should. Collective.
+   * What run_study() does, but for the UserError about rows that did not end as they should.
+   * Collective.
    */
   ComputedStudy compute_study(const Study        &study,
                               const StudyOptions &options,
                               const MPI_Comm      communicator);
 
-  /** Throws the UserError that lists the rows that did not end as they should. Not collective: all processes know. */
+  /**
+   * Throws the UserError that lists the rows that did not end as they should. Not collective: all
+   * processes know.
+   */
   void throw_if_wrong(const Study &study, const ComputedStudy &computed);
 
   /** One line for the reader, on rank 0 and unless quiet. */

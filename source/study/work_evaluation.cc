@@ -71,7 +71,10 @@ namespace PeriDeal
     }
 
 
-    /** Near a crack's end finite elements are of first order at the nodes, without one of second: such an order is taken for what it is. */
+    /**
+     * Near a crack's end finite elements are of first order at the nodes, without one of second:
+     * such an order is taken for what it is.
+     */
     double likely_order(const double observed)
     {
       return std::abs(observed - 1.) < 0.15 ? 1. : std::abs(observed - 2.) < 0.15 ? 2. : observed;
@@ -127,8 +130,9 @@ namespace PeriDeal
 
 
     /**
-     * Numbers that one application of the operator multiplies: the entries of a matrix; of bonds that are kept apart what a matrix of them would have, two
-     * for each bond and one for each unknown, and what is stored besides.
+     * Numbers that one application of the operator multiplies: the entries of a matrix; of bonds
+     * that are kept apart what a matrix of them would have, two for each bond and one for each
+     * unknown, and what is stored besides.
      */
     unsigned long long applied_nonzeros(const WorkRow &row)
     {

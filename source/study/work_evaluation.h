@@ -57,7 +57,8 @@ namespace PeriDeal
   std::vector<CellCounts> lattices_of(const WorkPlan &plan);
 
   /**
-   * Read the rows' values and compare them. On rank 0 only. Throws UserError if the reference or the values of a finished row are missing.
+   * Read the rows' values and compare them. On rank 0 only. Throws UserError if the reference or
+   * the values of a finished row are missing.
    */
   WorkResults evaluate_work(const CrackedBox    &box,
                             const WorkPlan      &plan,

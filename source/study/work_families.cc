@@ -87,7 +87,10 @@ namespace PeriDeal
     }
 
 
-    /** The same on meshes whose cells are merged up to k times away from cracks; those of finite elements alone are as for m = 3, c = 1. */
+    /**
+     * The same on meshes whose cells are merged up to k times away from cracks; those of finite
+     * elements alone are as for m = 3, c = 1.
+     */
     WorkFamily graded(WorkFamily family, const unsigned int k)
     {
       family.name += ", graded " + std::to_string(k);
@@ -132,7 +135,10 @@ namespace PeriDeal
     }
 
 
-    /** The lattices of the reference: three, each twice as fine as the one before, with the cracks on faces. */
+    /**
+     * The lattices of the reference: three, each twice as fine as the one before, with the cracks
+     * on faces.
+     */
     std::vector<CellCounts> reference_lattices(const CrackedBox              &box,
                                                const std::vector<CellCounts> &ladder,
                                                const std::string             &given)

@@ -79,7 +79,10 @@ namespace PeriDeal
     }
 
 
-    /** Unknowns of multigrid's coarsest level: so few that iterations compare on coarse lattices, too. On those that have no more it has another level. */
+    /**
+     * Unknowns of multigrid's coarsest level: so few that iterations compare on coarse lattices,
+     * too. On those that have no more it has another level.
+     */
     constexpr unsigned int most_direct = 100, most_direct_of_few = 10;
 
 
@@ -113,7 +116,10 @@ namespace PeriDeal
     }
 
 
-    /** Of the reference: as the finite elements it is compared with, but with the error in time out of sight. */
+    /**
+     * Of the reference: as the finite elements it is compared with, but with the error in time out
+     * of sight.
+     */
     std::vector<Setting> reference_settings(const WorkPlan &plan)
     {
       std::string grid;
@@ -126,7 +132,10 @@ namespace PeriDeal
     }
 
 
-    /** Take families out of the plan whose settings the scene cannot have, with what is wrong. Collective. */
+    /**
+     * Take families out of the plan whose settings the scene cannot have, with what is wrong.
+     * Collective.
+     */
     void leave_out_impossible(WorkPlan                       &plan,
                               const std::string              &scene,
                               const std::vector<std::string> &overrides,

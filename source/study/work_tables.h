@@ -10,9 +10,15 @@ namespace PeriDeal
   /** work_precision.csv: a line for each finished row. */
   std::string work_csv(const WorkResults &results);
 
-  /** work_precision.json: the rows, families with observed orders and costs at given errors, fronts, and how the errors were found. */
+  /**
+   * work_precision.json: the rows, families with observed orders and costs at given errors, fronts,
+   * and how the errors were found.
+   */
   std::string work_json(const Study &study, const WorkPlan &plan, const WorkResults &results);
 
-  /** The same in lines for the reader: the front, what is dominated by what, and the cost of errors of 1 and 0.1 percent. */
+  /**
+   * The same in lines for the reader: the front, what is dominated by what, and the cost of errors
+   * of 1 and 0.1 percent.
+   */
   std::string work_report(const WorkPlan &plan, const WorkResults &results);
 } // namespace PeriDeal

@@ -120,7 +120,8 @@ def judge(case, end, number, memory, may_be_silent):
     results = os.path.join(case.folder, "results")
     if end.kind == HANG:
         return HANG, end.detail
-    # The starter may be ended when the run has written all: then it returns 1, and the results have to be whole.
+    # The starter may be ended when the run has written all: then it returns 1, and the results have
+    # to be whole.
     complete = end.status == 0 or status_of(results) == "complete"
     problems = list(wrong_results(results, complete))
     if problems:

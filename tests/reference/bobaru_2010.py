@@ -24,7 +24,8 @@ LENGTH = {1: 10.0, 2: 10.0, 3: pi}
 IS_FIXED = {1: (True, True), 2: (False, True), 3: (True, False)}
 END_VALUE = {1: 0.0, 2: 100.0, 3: 20.0}
 FLUX_SLOPE = 3.0
-# Relative gap between two programs: sums of a row are 0 to 1e-16 of its diagonal only, and that acts over 10^6 of its time constants.
+# Relative gap between two programs: sums of a row are 0 to 1e-16 of its diagonal only, and that
+# acts over 10^6 of its time constants.
 ROUND_OFF = {1: 1e-9, 2: 5e-8}
 
 

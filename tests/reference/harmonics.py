@@ -17,7 +17,8 @@ LATTICES = ((1, 4), (2, 3), (2, 6.5), (3, 3))
 
 def rate(dim, ratio, shape, n):
     """Rate of the product of sines with one half wave on a side of length 1; kappa = 1, discrete calibration."""
-    # Lengths are counted in spacings. A product of sines is a sum of waves (1, 1), (1, -1), ..., with the same rate each.
+    # Lengths are counted in spacings. A product of sines is a sum of waves (1, 1), (1, -1), ...,
+    # with the same rate each.
     family = Family(dim, ratio, 1.0, shape, n)
     phases = pi / CELLS * family.offsets.sum(axis=1)
     return CELLS ** 2 * fsum(w * 2 * sin(phase / 2) ** 2 for w, phase in zip(family.weights, phases))

@@ -51,7 +51,8 @@ def is_cut_by_crack(n_cells):
     def is_cut(i, offset):
         rows, columns = offset
         y, x = i // (n_cells + 1) - n_cells // 2, i % (n_cells + 1) - n_cells // 2
-        # The bond meets the line at x - y columns/rows; all numbers are integers, and a tip is met exactly or not at all.
+        # The bond meets the line at x - y columns/rows; all numbers are integers, and a tip is met
+        # exactly or not at all.
         is_across = (y >= 0) != (y + rows >= 0)
         return is_across & (abs(x * rows - y * columns) <= n_cells // 4 * abs(rows))
     return is_cut

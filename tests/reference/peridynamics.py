@@ -27,7 +27,8 @@ def kernel(shape, r, horizon):
 
 def analytic_prefactor(dim, shape, n, horizon):
     """Prefactor c for which the integral of c k/r^n x^2 over a full horizon is 2 (constant and conical kernel)."""
-    # x^2 is r^2/dim in the mean over all directions; radial is the integral of r^(dim+1-n) k(r) from 0 to the horizon.
+    # x^2 is r^2/dim in the mean over all directions; radial is the integral of r^(dim+1-n) k(r)
+    # from 0 to the horizon.
     surface = {1: 2.0, 2: 2 * pi, 3: 4 * pi}[dim]
     radial = horizon ** (dim + 2 - n) / (dim + 2 - n)
     if shape == "conical":

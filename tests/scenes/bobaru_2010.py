@@ -13,14 +13,16 @@ from scene_test import Comparison, finish, fitted_order, observed_orders, print_
 
 SCENE = "prm/papers/bobaru_2010/example_{}_paper.prm"
 RATIOS = (2, 4, 8, 16)
-# The horizon is 3 L/200, 3 L/400, 3 L/800: Cells = round(ratio L/horizon), always odd, so that one node is the middle.
+# The horizon is 3 L/200, 3 L/400, 3 L/800: Cells = round(ratio L/horizon), always odd, so that one
+# node is the middle.
 FINENESS = (200, 400, 800)
 
 PUBLISHED = {(1, "constant"): (1.0104, 1.0132, 1.0109, 1.0104), (1, "conical"): (1.0095, 1.0102, 1.0082, 1.0055),
              (2, "constant"): (1.4824, 1.4982, 1.4914, 1.4811), (2, "conical"): (1.4843, 1.4990, 1.4877, 1.4433)}
 MIDDLE = {1: 51.748, 2: 53.063}
 
-# Differences and temperatures of the middle of an independent program (sparse matrix, Chebyshev expansion of the exponential).
+# Differences and temperatures of the middle of an independent program (sparse matrix, Chebyshev
+# expansion of the exponential).
 PROGRAM = {
     (1, "constant", 2): ((1.1275360260e-02, 5.6073813835e-03, 2.8060553144e-03), (51.247982, 51.499315, 51.623373)),
     (1, "constant", 4): ((5.6095376395e-03, 2.8065726171e-03, 1.4008596034e-03), (52.011105, 51.880719, 51.814378)),
@@ -40,7 +42,8 @@ PROGRAM = {
     (2, "conical", 16): ((1.6061298372e-04, 5.7107237097e-05, 2.0233062184e-05), (52.743409, 52.901866, 52.981981)),
 }
 
-# Example 3 at t = 8 s, horizon 3L/800, m = 4: the paper, and an independent program with equation 22 (two digits).
+# Example 3 at t = 8 s, horizon 3L/800, m = 4: the paper, and an independent program with equation
+# 22 (two digits).
 FLUX = {"constant": (3.43e-5, 4.4e-5), "conical": (2.84e-5, 4.9e-5)}
 
 
@@ -79,7 +82,8 @@ def rates():
                 middles.append(run.along_line("peridynamics", 8)[cells // 2])
             name = f"Example {example}, {kernel}, m = {ratio}"
             published.add(name, fitted_order([1 / f for f in FINENESS], errors), rate, relative=0.05)
-            # What extrapolation leaves is of second order in the horizon; measured: at most 4.5e-3, at m = 16.
+            # What extrapolation leaves is of second order in the horizon; measured: at most 4.5e-3,
+            # at m = 16.
             middle.add(name, 2 * middles[2] - middles[1], MIDDLE[example], absolute=6.5e-3)
             others = PROGRAM[example, kernel, ratio]
             program.add_limit(f"{name}: middle", max(abs(a / b - 1) for a, b in zip(middles, others[1])), 1e-6)

@@ -39,7 +39,8 @@ TIMEOUT = 300  # seconds a scene; with sanitizers they take up to 20
 
 FIELDS = ("vtu, hdf5", "vtu", "hdf5", "none")
 
-# What sanitizers, deal.II and the standard library print. Their own exit status is 99 (tests/CMakeLists.txt).
+# What sanitizers, deal.II and the standard library print. Their own exit status is 99
+# (tests/CMakeLists.txt).
 COMPLAINTS = re.compile(r"runtime error:|AddressSanitizer|LeakSanitizer|UndefinedBehaviorSanitizer|An error occurred in line"
                         r"|Assertion .* failed|terminate called|Signal:")
 

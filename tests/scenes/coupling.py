@@ -181,7 +181,8 @@ def oblique():
     cases = {"cells removed": {"Models": FEM, "Cracks/Mesh": "removed"},
              "pairs": {"Models": FEM, "Peridynamics/Surface correction": "none"},
              "pairs, scaled": {"Models": FEM}, "coupled, scaled": {"Models": BOTH, "Coupling/Certificate": "false"}}
-    # Measured (mean, worst): 2.4e-2 and 3.1e-2, 9.9e-3 and 1.4e-2, 3.8e-3 and 6.6e-3, 3.9e-3 and 6.3e-3; at 121 cells 2.3e-3 and 3.9e-3.
+    # Measured (mean, worst): 2.4e-2 and 3.1e-2, 9.9e-3 and 1.4e-2, 3.8e-3 and 6.6e-3, 3.9e-3 and
+    # 6.3e-3; at 121 cells 2.3e-3 and 3.9e-3.
     limits = {"cells removed": (3.5e-2, 4.6e-2), "pairs": (1.5e-2, 2e-2), "pairs, scaled": (5.8e-3, 9.9e-3), "coupled, scaled": (5e-3, 8e-3)}
     rows = []
     for cells in (81, 121):
@@ -220,7 +221,8 @@ def growing():
 
 def others():
     """The remaining scenes: both models agree as far as they did when this was written, and no heat is lost."""
-    # Measured differences of the heat: 1.03e-3, 3.2e-3, 3.4e-4, 7.3e-4, 4.5e-3; along the line 1.1e-3, 3.4e-3, 1.5e-3, 2.0e-3, 0.26 (of 100).
+    # Measured differences of the heat: 1.03e-3, 3.2e-3, 3.4e-4, 7.3e-4, 4.5e-3; along the line
+    # 1.1e-3, 3.4e-3, 1.5e-3, 2.0e-3, 0.26 (of 100).
     for name, allowed, apart in (("crack_leaving_body.prm", 1.5e-3, 1.7e-3), ("graded_material_crack.prm", 4.8e-3, 5.1e-3),
                                  ("hole_beside_crack.prm", 5.1e-4, 2.2e-3), ("square_crack_3d.prm", 1.1e-3, 3e-3), ("distorted_mesh.prm", 6.7e-3, 0.4)):
         run = run_quietly(name)

@@ -216,7 +216,8 @@ end
         check_close([stretch[name][0], stretch[name][-1]], [wanted, wanted], relative=0.15, what=f"{name} cells: lowest and highest stretch")
 
 
-# Distances in spacings from a row of nodes, or a tip from the edge of a cell, that `table` compares; up to 1e-3 a crack is on the row.
+# Distances in spacings from a row of nodes, or a tip from the edge of a cell, that `table`
+# compares; up to 1e-3 a crack is on the row.
 PAIRS = ((0, 1e-9), (0, -1e-9), (0.999e-3, 1.001e-3), (-0.999e-3, -1.001e-3))
 
 

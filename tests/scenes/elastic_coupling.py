@@ -105,7 +105,8 @@ def opening():
             table.add_limit(f"{name}: opening in the middle", abs(middle), of_opening)
             table.add_limit(f"{name}: K_I", first, of_intensity)
             table.add_limit(f"{name}: K_II / K_I", second, 1e-8)
-            # The domain integral has no stress in cut cells; measured: up to 1.1e-2, in plane strain with nu = 0.45.
+            # The domain integral has no stress in cut cells; measured: up to 1.1e-2, in plane
+            # strain with nu = 0.45.
             table.add_limit(f"{name}: K_I from J", from_j, 1.3e-2 if (plane, nu) == ("strain", 0.45) else of_intensity)
             balance = run.model(model)["force balance"]
             table.add_limit(f"{name}: imbalance of forces", balance["imbalance"] / balance["throughput"], 1e-12)
@@ -130,7 +131,8 @@ def mixed():
     table.show()
 
 
-# Of openings (mean, in the middle) and stress intensities; measured: up to 1.1e-2, 3.7e-3 and 4.9e-3.
+# Of openings (mean, in the middle) and stress intensities; measured: up to 1.1e-2, 3.7e-3 and
+# 4.9e-3.
 STATE_BASED = {"Peridynamics/Surface correction": "none", "Peridynamics/Kernel exponent": "auto", "Coupling/Overlap": 1, "Models": "coupled"}
 LIMITS = (1.5e-2, 5e-3, 7e-3)
 

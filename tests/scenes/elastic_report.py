@@ -143,7 +143,8 @@ def check_comparison(run, dimension):
     for model in (FEM, PD):
         with h5py.File(os.path.join(run.folder, run.summary["fields"][-1]["files"][model])) as file:
             u[model] = file["displacement"][:, :dimension]
-    # Field files have single precision, 6e-8 of the displacement. On a lattice each vertex of a cell has an equal share of its volume.
+    # Field files have single precision, 6e-8 of the displacement. On a lattice each vertex of a
+    # cell has an equal share of its volume.
     gap = np.linalg.norm(u[PD] - u[FEM], axis=1)
     relative = math.sqrt((gap ** 2).sum() / (u[FEM] ** 2).sum())
     found = run.summary["comparison"]

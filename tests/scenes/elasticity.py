@@ -49,7 +49,8 @@ def bars():
     table.add_limit("1D, PD, families end at the ends: relative excess of the displacement", ends[0], 0.0215)  # measured: 0.0143
     table.add("1D, PD, families end: ratio of the excess on cells of half the size", ends[0] / ends[1], 2, relative=1e-6)
     balanced(table, run)
-    # Moduli inside; measured: 1.0 % and 0.0071, 0.53 % and 0.0003; on a full lattice 1.0102 E, 0.2929 and 1.0056 E, 0.2989.
+    # Moduli inside; measured: 1.0 % and 0.0071, 0.53 % and 0.0003; on a full lattice 1.0102 E,
+    # 0.2929 and 1.0056 E, 0.2989.
     for name, dim, of_young, of_poisson in (("bar_2d.prm", 2, 0.0155, 0.0105), ("bar_3d.prm", 3, 0.008, 0.0005)):
         run = run_quietly(name)
         far = [2, 1, 1][:dim]
@@ -109,7 +110,8 @@ def plates():
     """A hole against Kirsch, a cantilever against Timoshenko's beam."""
     table = Comparison("Plates against closed forms")
     run = run_quietly("hole_in_tension.prm")
-    # Measured: finite elements 1.0, 4.3, 2.6, 1.5 %; peridynamics 0.03, 0.6 and 0.8 % away from the hole, 13.8 % at the second row above it. The hole's steps are a larger hole.
+    # Measured: finite elements 1.0, 4.3, 2.6, 1.5 %; peridynamics 0.03, 0.6 and 0.8 % away from the
+    # hole, 13.8 % at the second row above it. The hole's steps are a larger hole.
     for model, bounds in ((FEM, (0.015, 0.064, 0.04, 0.023)), (PD, (0.2, 0.0045, 0.0083, 0.012))):
         for row, bound in zip(run.rows(model), bounds):
             r2 = row["x"] ** 2 + row["y"] ** 2
@@ -181,7 +183,8 @@ def thermal():
     strain = -300 * (4e4 * 5e-6 + 3e4 * 2e-5) / 7e4
     free = [1e5 * (strain + 300 * 5e-6), 5e4 * (strain + 300 * 2e-5)]
     held = [1e5 * 300 * 5e-6, 5e4 * 300 * 2e-5]
-    # Measured, share of the largest: finite elements 3.9e-5 and 1e-13; peridynamics 2.3 %, with cells of half the size 1.5 %; 1.0 % between rigid sides.
+    # Measured, share of the largest: finite elements 3.9e-5 and 1e-13; peridynamics 2.3 %, with
+    # cells of half the size 1.5 %; 1.0 % between rigid sides.
     for more, wanted, bounds in (({}, free, (6e-5, 0.035)), ({"Domain/Cells": "360, 60"}, free, (6e-5, 0.0225)), ({"Boundary conditions/Displacement": "right: 0, free"}, held, (1e-10, 0.0155))):
         run = run_quietly("laminate.prm", more)
         for model, bound in zip((FEM, PD), bounds):
@@ -200,7 +203,8 @@ def torsion():
     odd = range(1, 60, 2)
     moment = 0.8 * (1 - 192 / math.pi ** 5 * sum(math.tanh(n * math.pi / 2) / n ** 5 for n in odd)) / 3
     shear = 0.8 * (1 - 8 / math.pi ** 2 * sum(1 / (n * n * math.cosh(n * math.pi / 2)) for n in odd))
-    # Measured: torque 1.52e-3 and 3.8e-4, stress -1.01e-3 and -2.5e-4; peridynamics +1.2e-2 and -4.5e-5 of the torque.
+    # Measured: torque 1.52e-3 and 3.8e-4, stress -1.01e-3 and -2.5e-4; peridynamics +1.2e-2 and
+    # -4.5e-5 of the torque.
     for n, of_torque, of_stress, of_bonds in ((12, 2.3e-3, 1.5e-3, 0.018), (24, 5.8e-4, 3.8e-4, 7e-5)):
         run = run_quietly("torsion.prm", {"Domain/Cells": f"{n}, {n}, {n}"})
         torque = {model: 8 * run.model(model)["strain energy"] / 0.005 for model in (FEM, PD)}

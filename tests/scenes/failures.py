@@ -20,7 +20,8 @@ REFUSED = {
 
 DISCRETE = {"Peridynamics/Calibration": "discrete"}
 
-# Wrong: words of the note, the overrides of the twin, what is looked at, its value, and that of the twin.
+# Wrong: words of the note, the overrides of the twin, what is looked at, its value, and that of the
+# twin.
 WRONG = {
     "small_m_analytic.prm": (["0.9306", "'Calibration = discrete'"], DISCRETE, "heat", 0.930627, 1),
     "no_volume_fraction_1d.prm": (["1.320", "'Calibration = discrete'"], DISCRETE, "heat", 1.320099, 1),

@@ -224,7 +224,8 @@ def files():
             check(not [name for name in kept if name.endswith(".part") or name.startswith(".") and name != ".perideal"], f"left over: {kept}")
             again = run_scene(os.path.join(run.folder, "scene.prm"), {})
             check(again.probes == run.probes, f"{dim}D, {place}: the written scene.prm gives other values")
-    # several processes and a horizon shorter than a cell's diagonal: all values of ghost vertices have to be there
+    # several processes and a horizon shorter than a cell's diagonal: all values of ghost vertices
+    # have to be there
     for dim in (2, 3):
         short = {"Domain/Cells": ("10, 10", "5, 5, 5")[dim - 2], "Peridynamics/Horizon ratio": "1", "Peridynamics/Volume fraction": "none",
                  "Peridynamics/Kernel": "constant"}

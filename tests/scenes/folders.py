@@ -264,7 +264,8 @@ def ends():
     _, stderr = process.communicate(timeout=60)
     check_message(process.returncode, stderr, 1, "cannot write", "No such file")
 
-    # half of the runs write into a folder of limited room: a limit on the size of files does the same as a full disk
+    # half of the runs write into a folder of limited room: a limit on the size of files does the
+    # same as a full disk
     big = {"Domain/Cells": "60, 60", "Output/Fields": "vtu, hdf5", "Output/Write every": "0.1"}
     for size in (3000, 30000, 300000, 1000000):
         limited = os.path.join(FOLDER, f"limit{size}")

@@ -51,7 +51,8 @@ HALF = {"Domain/Cells": "40, 80"}
 def plate(lattice=HALF, delta=0.1, left_over=2e-3):
     """A plate with a crack in its middle: Griffith's strength within 10 % at m = 4, for any Poisson ratio, and the crack runs through."""
     table = Comparison(f"Plate with a crack, m = 4, delta = {delta}, half length 0.2")
-    # Measured: 1.013, 0.972, 1.015 and 1.019; on the scene's own lattice 1.070, 1.004, 1.069 and 1.065.
+    # Measured: 1.013, 0.972, 1.015 and 1.019; on the scene's own lattice 1.070, 1.004, 1.069 and
+    # 1.065.
     for settings in ({}, {"Material/Poisson ratio": "0"}, {"Material/Poisson ratio": "0.45"},
                      {"Material/Poisson ratio": "0.3", "Elasticity/Plane": "strain"}):
         more = {"Boundary conditions/Displacement": "top: 0, 0.012*t; bottom: 0, -0.012*t", "Solver/Tolerance": "1e-8", **settings} if settings else {}
@@ -83,7 +84,8 @@ def cantilever():
     late = [row for row in growth if row[0] > 0.599]
     check(late[-1][1] - late[0][1] > 0.15, f"the crack grows from {late[0][1]} to {late[-1][1]}")
     check(max(b[1] - a[1] for a, b in zip(late, late[1:])) < 0.03, "the crack grows bit by bit")
-    # Measured: 1.20 and 1.14 to 1.23 of the fracture energy, whose roots are 1.095 and 1.07 to 1.11 of Griffith's load.
+    # Measured: 1.20 and 1.14 to 1.23 of the fracture energy, whose roots are 1.095 and 1.07 to 1.11
+    # of Griffith's load.
     rate = (late[-1][3] - late[0][3]) / (late[-1][1] - late[0][1])
     table.add("energy dissipated per length over the fracture energy", rate / ENERGY, 1, absolute=0.32)
     table.add("load in the mean over Griffith's", sum(math.sqrt(row[2] / ENERGY) for row in late) / len(late), 1, absolute=0.1)

@@ -16,8 +16,9 @@ from scene_test import Comparison, check, finish, observed_orders, print_table, 
 
 SCENES = {1: "prm/heat/harmonic_1d.prm", 2: "prm/heat/harmonic_2d.prm", 3: "prm/heat/harmonic_3d.prm"}
 
-# Rates of an independent program on 20 cells, horizon ratio m, all wave numbers 1: (dimension, m, kernel): exponents 0, 1, 2.
-# Beyond the horizon the constant and the gaussian kernel go on as far as the linear volume fraction does.
+# Rates of an independent program on 20 cells, horizon ratio m, all wave numbers 1: (dimension, m,
+# kernel): exponents 0, 1, 2. Beyond the horizon the constant and the gaussian kernel go on as far
+# as the linear volume fraction does.
 RATES = {(1, 4, "constant"): (9.6632771539588, 9.69874355642944, 9.74311667614839),
          (1, 4, "conical"): (9.73411989596521, 9.76593062469284, 9.79711490608956),
          (1, 4, "gaussian"): (9.76385471710018, 9.79228572387711, 9.81600705338756),
@@ -87,8 +88,8 @@ def variants():
 
 def time():
     rows = []
-    # The third mode on a coarse bar: its rate is not much below the largest eigenvalue, so that explicit steps can be long enough
-    # for an error above round-off.
+    # The third mode on a coarse bar: its rate is not much below the largest eigenvalue, so that
+    # explicit steps can be long enough for an error above round-off.
     for stepper, order, steps in (("euler", 1, (80, 160, 320, 640)), ("rkc2", 2, (20, 40, 80, 160)),
                                   ("crank nicolson", 2, (10, 20, 40, 80)), ("bdf2", 2, (20, 40, 80, 160)),
                                   ("sdirk2", 2, (10, 20, 40, 80)), ("rk4", 4, (20, 40, 80))):
@@ -119,7 +120,8 @@ def elements():
     rows = []
     for dim, counts, modes in ((1, (20, 40, 80), [2]), (2, (10, 20, 40, 80), [1, 2]), (3, (8, 16, 32), [1, 2, 1])):
         for capacity in ("lumped", "consistent") if dim < 3 else ("lumped",):
-            # The steppers for consistent capacity are implicit, and the error in time has to be far below that in space.
+            # The steppers for consistent capacity are implicit, and the error in time has to be far
+            # below that in space.
             more = {"Time__End_time": "0.02", "Time__Tolerance": "1e-6"} if capacity == "consistent" else {}
             some = counts if capacity == "lumped" else counts[:2]
             errors = [run_harmonic(dim, n, modes, "classical", "finite elements", Finite_elements__Capacity=capacity,
@@ -143,8 +145,9 @@ def space():
     rows = []
     for dim, horizon, counts, modes in ((1, 0.2, (20, 40, 80, 160, 320), [2]), (2, 0.15, (20, 40, 80, 160), [1, 2]),
                                         (3, 0.25, (8, 16, 32), [1, 1, 1])):
-        # The sum leaves out the node's own volume, a share (h/horizon)^dim of the integral. Calibration makes up for it where the
-        # temperature is a parabola, not beyond: order 1 in 1D. From 2D on volumes cut by the horizon count as much.
+        # The sum leaves out the node's own volume, a share (h/horizon)^dim of the integral.
+        # Calibration makes up for it where the temperature is a parabola, not beyond: order 1 in
+        # 1D. From 2D on volumes cut by the horizon count as much.
         for kernel in ("constant", "conical", "gaussian"):
             errors = [run_harmonic(dim, n, modes, "nonlocal", Peridynamics__Horizon_ratio=repr(horizon * n), Peridynamics__Kernel=kernel,
                                    Output__Write_at="").error("peridynamics") for n in counts]

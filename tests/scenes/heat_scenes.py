@@ -66,8 +66,9 @@ def layers():
     phases = {"Material/Conductivity": "1", "Material/Phases/Conductivity": "good: 100",
               "Domain/Cells": "21, 21", "Boundary conditions/Dirichlet": "top: 100; bottom: -100", "Output/Probes": "", "Output/Line": "",
               **STEADY}
-    # The interface runs through the middle of a row of cells: finite elements take the mean there, which is right in parallel only.
-    # Peridynamics is exact with the rule that suits. Measured: 4.8e-2 for elements in series, and at most 1e-11.
+    # The interface runs through the middle of a row of cells: finite elements take the mean there,
+    # which is right in parallel only. Peridynamics is exact with the rule that suits. Measured:
+    # 4.8e-2 for elements in series, and at most 1e-11.
     bounds = {("series", "finite elements"): 7.2e-2, ("series", "peridynamics"): 1e-10, ("parallel", "finite elements"): 1e-10,
               ("parallel", "peridynamics"): 1e-10}
     # Heights and widths of 1 around 0, 200 degrees over a length of 2.
@@ -113,7 +114,8 @@ def composite():
 def plate_with_hole():
     """Both models on one staircase, and finite elements of degree 2 on a mesh that follows the circle."""
     table = Comparison("Plate with a hole, steady")
-    # Q2 elements on a mesh of Gmsh with edges of 0.04, 0.02 and 0.01 (0.005 at the rim): the last digit is uncertain.
+    # Q2 elements on a mesh of Gmsh with edges of 0.04, 0.02 and 0.01 (0.005 at the rim): the last
+    # digit is uncertain.
     smooth, heat = {(-0.5, 0): 79.713, (0.5, 0): 20.287, (-0.3, 0.3): 69.2957, (0, 0.5): 50.0, (0, 0.9): 50.0}, 90.642
     counts, gaps, fluxes = (60, 120, 240), [], []
     for cells in counts:
@@ -186,7 +188,8 @@ def gmsh_plate():
     table.add("peridynamics: order in the horizon", observed_orders([2, 1], errors)[0], 1.7, absolute=0.15)
     for model in ("finite elements", "peridynamics"):
         table.add_limit(f"{model}: imbalance of heat", abs(run.model(model)["heat balance"]["imbalance"]), 1e-8)
-    # Without exchange families are cut off along all sides, an error of first order; measured: 6.0e-2.
+    # Without exchange families are cut off along all sides, an error of first order; measured:
+    # 6.0e-2.
     errors = []
     for horizon in (0.2, 0.1):
         run = run_quietly("gmsh_plate.prm", Peridynamics__Horizon=str(horizon), Solver__Tolerance="1e-12", Peridynamics__Boundary_treatment="none")
@@ -232,7 +235,8 @@ def example_3():
     for model, limit in (("finite elements", 1.7), ("peridynamics", 0.95)):
         errors = [run.probe(model, point, 0.5) - value for point, value in wanted.items()]
         table.add_limit(f"as published, {model}: rms error", insulated_crack.rms(errors), limit)
-    # Nodes at cell centres: at those of x = 1/120, against elements on finer meshes, whose error at the tips is of first order.
+    # Nodes at cell centres: at those of x = 1/120, against elements on finer meshes, whose error at
+    # the tips is of first order.
     run = run_scene(scene.format(""), QUIET)
     coarse, fine = (run_scene(scene.format(""), {**QUIET, "Models": "finite elements", "Domain/Cells": f"{n}, {n}"}).along_line("finite elements") for n in (240, 480))
     # Largest errors; measured: 0.21 and 0.070 degrees.
@@ -247,8 +251,9 @@ def bars_2010():
     table = Comparison("Bars of Bobaru and Duangpanya 2010 at t = 8 s")
     paper = {n: f"prm/papers/bobaru_2010/{name}" for n, name in enumerate(("example_1_paper.prm", "example_2_paper.prm", "example_3_paper.prm"), 1)}
     ours = {n: f"prm/papers/bobaru_2010/{name}" for n, name in enumerate(("example_1.prm", "example_2.prm", "example_3.prm"), 1)}
-    # As published the horizon is 3 L/400; the rest is of first order in it. Measured: 6.5e-2 and 2.7e-2 degrees; elements 1.7e-3 and 7.5e-4.
-    # Mirrored nodes: 1.8e-4 and 6.7e-4, more than half of it the last digit of the reference.
+    # As published the horizon is 3 L/400; the rest is of first order in it. Measured: 6.5e-2 and
+    # 2.7e-2 degrees; elements 1.7e-3 and 7.5e-4. Mirrored nodes: 1.8e-4 and 6.7e-4, more than half
+    # of it the last digit of the reference.
     for example, middle, bound in ((1, 51.748, 0.1), (2, 53.063, 0.04)):
         run = run_scene(paper[example], QUIET)
         for model, within in (("peridynamics", bound), ("finite elements", 2.5e-3)):

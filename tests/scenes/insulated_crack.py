@@ -159,12 +159,14 @@ def pairs():
     for cells in (60, 61, 120, 121):
         check_less(size[cells, model, "pairs, scaled"], 0.6 * size[cells, model, "pairs"],
                    f"{model}, {cells} cells: error with crack-side scaling against 0.6 of that without")
-        # With a tip on an edge of cells pairs ahead of it are cut, and cells ahead of it are not removed.
+        # With a tip on an edge of cells pairs ahead of it are cut, and cells ahead of it are not
+        # removed.
         best = "pairs" if cells % 2 else "pairs, scaled"
         check_less(size[cells, model, best], size[cells, model, "removed"],
                    f"{model}, {cells} cells: error of {best} against that of removed cells")
-        # In peridynamics two errors of opposite sign cancel: families cut off at the hot and the cold side, and bonds missing at the crack.
-        # With mirrored layers only the second is left, and scaling makes up for it.
+        # In peridynamics two errors of opposite sign cancel: families cut off at the hot and the
+        # cold side, and bonds missing at the crack. With mirrored layers only the second is left,
+        # and scaling makes up for it.
         check_less(size[cells, "peridynamics", "mirror, scaled"], 0.6 * size[cells, "peridynamics", "mirror"],
                    f"peridynamics with mirrored layers, {cells} cells: error with crack-side scaling against 0.6 of that without")
     for treatment in ("pairs", "pairs, scaled", "removed"):

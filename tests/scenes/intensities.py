@@ -152,7 +152,8 @@ def tada_two_edges(a):
 
 
 HELD = {BC + "Parts": "back: point 1, 0 ; middle: point 0.8, 0", BC + "Displacement": "back: 0, 0 ; middle: free, 0"}
-# The load of the bend is spread so that it stands in the middle on any lattice: its moment is less by 0.03/4.
+# The load of the bend is spread so that it stands in the middle on any lattice: its moment is less
+# by 0.03/4.
 SPECIMENS = [
     Specimen("single edge notch in tension", PLATE, HELD, (0.0, 0.0), (0.5, 0.0), tada_edge(0.5), lambda n, odd: f"{n}, {3 * n + odd}"),
     Specimen("two edge notches in tension", PLATE, {BC + "Parts": "left foot: point 0, -1.5 ; right foot: point 1, -1.5",

@@ -488,8 +488,8 @@ def main():
         run = run_scene(scene, overrides, ranks, expect_error=True, timeout=120, alone=alone)
         rows.append(judge(name, run.returncode, run.stdout, run.stderr, words, run.folder, ranks))
 
-    # Every eighth by the program itself, on one process or on two; the others by a process that goes on to the next mistake, which
-    # must not be the worse for the one before.
+    # Every eighth by the program itself, on one process or on two; the others by a process that
+    # goes on to the next mistake, which must not be the worse for the one before.
     for number, (name, overrides, words) in enumerate(changed + late):
         if "Domain/Node spacing" in overrides:
             overrides = {entry: value for entry, value in overrides.items() if entry != "Domain/Cells"}

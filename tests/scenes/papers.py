@@ -152,7 +152,8 @@ def growing():
     fine = run_paper(scene, {"Models": FEM, "Domain/Cells": "180, 181", "Cracks/Growth step": "0.0083", "Peridynamics/Surface correction": "crack scaling"})
     for t, lost, through in balances(fine, FEM):
         table.add_limit(f"1.14, finite elements, t = {t}: imbalance over throughput", abs(lost) / through, 1e-10)
-    # The cracks meet at 3.54 s, and at 4 s the jump still opens. Measured: 0.76 %, 0.12 % and 0.08 %; at 5 s the elements are 0.1 % off those on 360 x 361 cells.
+    # The cracks meet at 3.54 s, and at 4 s the jump still opens. Measured: 0.76 %, 0.12 % and 0.08
+    # %; at 5 s the elements are 0.1 % off those on 360 x 361 cells.
     for t, within in ((4, 0.012), (5, 0.002), (7, 0.0013)):
         table.add(f"1.14, t = {t}: jump across the crossing, against finite elements", jump["1.14", t],
                   fine.probe(FEM, (0, 0.05), t) - fine.probe(FEM, (0, -0.05), t), relative=within)
@@ -178,7 +179,8 @@ def fibres():
 def diyaroglu():
     """Examples A and B against closed forms, C against finite elements on fine meshes."""
     table = Comparison("Diyaroglu (2017)")
-    # Measured, in degrees: 4.9, 2.1, 1.04, 0.091 and 0.054, 0.0093, 0.0061, 0.00049; the order in the spacing is 1 and 2.
+    # Measured, in degrees: 4.9, 2.1, 1.04, 0.091 and 0.054, 0.0093, 0.0061, 0.00049; the order in
+    # the spacing is 1 and 2.
     bounds = {"example_a_paper.prm": (7, 3, 1.5, 0.13), "example_a.prm": (0.08, 0.014, 0.009, 0.0008)}
     for name, limits in bounds.items():
         found = {}
@@ -190,7 +192,8 @@ def diyaroglu():
         for t, limit in zip((100, 500, 2000, 5000), limits):
             table.add_limit(f"{name}, t = {t}: largest error", found[100, t], limit)
         table.add(f"{name}: order in the spacing", float(np.log2(found[100, 2000] / found[200, 2000])), 1 if "paper" in name else 2, absolute=0.1)
-    # Measured, as a share of the largest temperature: 7.7e-2 and 4.8e-2 with a constant layer, 1.5e-3 and 6.4e-4 with a mirror.
+    # Measured, as a share of the largest temperature: 7.7e-2 and 4.8e-2 with a constant layer,
+    # 1.5e-3 and 6.4e-4 with a mirror.
     for name, limits in (("example_b_paper.prm", (0.12, 0.075)), ("example_b.prm", (2.4e-3, 1e-3))):
         run = run_paper(f"diyaroglu_2017/{name}", {"Models": PD, "Time/Tolerance": "1e-6"})
         for t, limit in zip((3, 6), limits):

@@ -71,7 +71,8 @@ def loads():
     for model in (FE, PD):
         check_close(force(run, model, "disc"), -math.pi * 0.045, relative=6e-4, what=f"{model}: half a disc")  # measured: 3.7e-4
     run = run_scene(HEAT, {**ELASTIC, "Models": both, **area, BC + "Traction": "load: 0, -sqrt(0.237^2 - (x - 0.47)^2)"})
-    # Measured: 9e-4 and, with one value of the formula for each node, 2.7e-2 on the six cells of the part.
+    # Measured: 9e-4 and, with one value of the formula for each node, 2.7e-2 on the six cells of
+    # the part.
     for model, bound in ((FE, 1.4e-3), (PD, 0.04)):
         check_close(force(run, model, "load"), -math.pi * 0.237 ** 2 / 2, relative=bound, what=f"{model}: a pressure that ends at the rim of the part")
 
@@ -96,7 +97,8 @@ def whole():
         sides = run_scene(HEAT, {**base, BC + "Dirichlet": "bottom: x", BC + "Flux": "top: 1 + x"})
         parts = run_scene(HEAT, {**base, BC + "Parts": "floor: bottom if x > -1 ; a: top if x < 0.43 ; b: top if x >= 0.43",
                                  BC + "Dirichlet": "floor: x", BC + "Flux": "a: 1 + x ; b: 1 + x"})
-        # A node on the border takes the values in the middle of its two pieces: formulas that are straight lines are the same there.
+        # A node on the border takes the values in the middle of its two pieces: formulas that are
+        # straight lines are the same there.
         same(name, sides, parts, 1e-9)
         for model in parts.summary["models"]:
             check_close(flux(parts, model, "a") + flux(parts, model, "b"), flux(sides, model, "top"), relative=1e-9, what=f"{model}, {name}: flux through both parts")
@@ -253,7 +255,8 @@ def scenes():
     """Three-point bend and compact tension against ASTM E399; the cracks of Kalthoff and Winkler."""
     quiet = {"Output/Fields": "none"}
     run = run_scene("prm/fracture/three_point_bend.prm", {**quiet, "Domain/Cells": "177, 41"})
-    # Measured: 7.9 % (finite elements lose the cells that the crack cuts) and 1.2 %; on the scene's own lattice 2.8 and -0.4 %.
+    # Measured: 7.9 % (finite elements lose the cells that the crack cuts) and 1.2 %; on the scene's
+    # own lattice 2.8 and -0.4 %.
     for model, bound in ((FE, 0.1), (COUPLED, 0.02)):
         check_close(intensity(run, model), 10.65, relative=bound, what=f"{model}: K of the three-point bend")
         for foot in ("left foot", "right foot"):

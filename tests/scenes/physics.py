@@ -62,7 +62,8 @@ def electricity():
     for name, region, rule, current in (("series", "copper: y > 0", "harmonic", 200 * 2 / (1 + 1 / 100)),
                                         ("parallel", "copper: x > 0", "arithmetic", 200 / 2 * (1 + 100))):
         for nodes in ("vertices", "cell centers"):
-            # At vertices an interface through nodes is of neither phase: an odd number of cells for peridynamics, an even one for elements.
+            # At vertices an interface through nodes is of neither phase: an odd number of cells for
+            # peridynamics, an even one for elements.
             for model, cells in (("finite elements", 40), ("peridynamics", 40 if nodes == "cell centers" else 41)):
                 run = run_scene(CURRENT, {"Models": model, "Domain/Nodes": nodes, "Domain/Cells": f"{cells}, {cells}", "Output/Fields": "none",
                                           "Material/Interface rule": rule, "Material/Phases/Regions": region})

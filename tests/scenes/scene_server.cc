@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Computes scenes one after the other, as `perideal run` does, for scripts that need many of them: with its two hundred shared
-// libraries a program takes longer to start than a small scene to compute. Only for tests; scene_test.py talks to it.
+// Computes scenes one after the other, as `perideal run` does, for scripts that need many of them:
+// with its two hundred shared libraries a program takes longer to start than a small scene to
+// compute. Only for tests; scene_test.py talks to it.
 //
-// A line of standard input is a request, {"scene": file, "overrides": ["Section/Entry=value", ...], "output": file, "errors": file}.
-// What the run says goes to the two files; the answer on standard output is a line with its exit status.
+// A line of standard input is a request, {"scene": file, "overrides": ["Section/Entry=value", ...],
+// "output": file, "errors": file}. What the run says goes to the two files; the answer on standard
+// output is a line with its exit status.
 
 #include <deal.II/base/mpi.h>
 
@@ -65,7 +67,10 @@ namespace
   };
 
 
-  /** Rank 0 has the message; the others look for it now and then, since those who wait in a broadcast take the cores from who computes. */
+  /**
+   * Rank 0 has the message; the others look for it now and then, since those who wait in a
+   * broadcast take the cores from who computes.
+   */
   template <typename Value>
   void send_to_all(Value *const data, const int size, const MPI_Datatype type)
   {

@@ -66,7 +66,8 @@ def check_kept(run, name, model):
         return  # steady
     held = max(abs(row["value"]) for row in run.totals if row["model"] == model and row["quantity"] == run.summary["names"]["content"])
     moved = max(abs(cumulative["entered"]), abs(cumulative["stored"]), held)
-    # Where as much enters as leaves, and the mean is zero: what passes through, and what warm and cold parts hold.
+    # Where as much enters as leaves, and the mean is zero: what passes through, and what warm and
+    # cold parts hold.
     moved = max(moved, run.model(model)["heat balance"]["throughput"] * run.summary["end time"], held_by_parts(run, model))
     check_less(abs(cumulative["imbalance"]) / moved, HEAT_LOST, f"{name}, {model}: heat lost since the start, over what passed or was there")
 
@@ -106,7 +107,8 @@ def main():
             entry = run.model(model)
             if "energy balance" in entry:  # an elastic body in motion, or loaded slowly
                 lost = abs(entry["energy balance"]["imbalance"]) / (entry["energy balance"]["start"] + abs(entry["energy balance"]["work"]))
-                # Measured 1.5e-3 and 6.8e-3: where accelerations jump as bonds break, a quarter with half the step.
+                # Measured 1.5e-3 and 6.8e-3: where accelerations jump as bonds break, a quarter
+                # with half the step.
                 bound = 2.4e-3 if "branching" in name else 8e-3 if "kalthoff" in name else 1e-3
                 check_less(lost, bound, f"{name}, {model}: energy lost, over what there was and came in")
                 rows.append((name, model, entry["unknowns"], entry.get("bonds", ""), entry.get("stepper", "none"), f"{lost:.1e}", f"{seconds:.1f}"))

@@ -239,7 +239,8 @@ def resume():
     study.run("--only", "cells, Cells = 120, 120")
     check(sorted(stamps(study)) == ["cells_Cells_120_120", "small"], f"--only: {sorted(stamps(study))}")
 
-    # A changed scene, settings, a broken summary, more repeats: computed again. Another name of the folder: not.
+    # A changed scene, settings, a broken summary, more repeats: computed again. Another name of the
+    # folder: not.
     small = Workshop({"rows": [{"name": "a", "scene": "plate.prm"}, {"name": "b", "scene": "bar.prm"}]})
     small.run()
     first = stamps(small)

@@ -84,7 +84,8 @@ def part():
     """A square within 2 % for each m, and what it is without completed families."""
     table = Comparison("A square in tension, horizon 0.1")
     stretched = PROBLEMS[0]
-    # What is left is the modulus of the lattice, 1.0 % and 0.11 % too large at m = 3 and 6. The probe of a side between cell centres has the value half a cell inside.
+    # What is left is the modulus of the lattice, 1.0 % and 0.11 % too large at m = 3 and 6. The
+    # probe of a side between cell centres has the value half a cell inside.
     for nodes in ("vertices", "cell centers"):
         for m, modulus in ((3, 1.0102), (6, 1.00113)):
             displacement, stress = stretched.gaps(m, "auto", {"Domain/Nodes": nodes})
@@ -97,7 +98,8 @@ def part():
     setting = run.model(PD)["settings"]["surface correction"]
     check("fictitious nodes beyond" in setting and "left" in setting, f"the report names what is done: {setting}")
     check(run.summary["notes"] == [], f"no note where families go on: {run.summary['notes']}")
-    # Planes of symmetry hold finite elements, whatever beside them the cell centres of peridynamics do.
+    # Planes of symmetry hold finite elements, whatever beside them the cell centres of peridynamics
+    # do.
     both = run_scene(SCENE, {"Output/Fields": "none", "Models": "finite elements, peridynamics", "Domain/Nodes": "cell centers"})
     table.add("finite elements beside cell centers: displacement of the right side", both.rows("finite elements")[0]["ux"], 1, relative=1e-9)
     for more, words in (({"Peridynamics/Surface correction": "none"}, ("'Surface correction = none'", "on 'right'", "With 'auto'", "'Traction layer'")),

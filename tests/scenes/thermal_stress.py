@@ -16,7 +16,8 @@ FEM, PD = "finite elements", "peridynamics"
 QUIET = {"Output/Fields": "none", "Solver/Tolerance": "1e-12"}
 SCENE = "prm/elasticity/thermal_stress.prm"
 
-# A plate 2 x 1 whose temperature is 100 at the left end and 300 at the right one; it is without stress at 50.
+# A plate 2 x 1 whose temperature is 100 at the left end and 300 at the right one; it is without
+# stress at 50.
 PLATE = """
 set Dimension = 2
 set Physics   = elasticity
@@ -79,8 +80,9 @@ def free():
                 gaps += [row["ux"] - alpha * (start * x + slope * (x * x - y * y) / 2), row["uy"] - alpha * (start + slope * x) * y]
                 stresses += [row[c] for c in COLUMNS[2:]]
                 table.add(f"{number} cells, {model}: temperature at ({x}, {y})", row["temperature"], 100 + 100 * x, relative=1e-9)
-            # Measured: 6.5e-12 and 2.1e-12, peridynamics 2.5e-13 and 3.0e-13: the extension of a bond of a quadratic displacement is that of its middle;
-            # beyond the sides it is that of what the fictitious node follows from.
+            # Measured: 6.5e-12 and 2.1e-12, peridynamics 2.5e-13 and 3.0e-13: the extension of a
+            # bond of a quadratic displacement is that of its middle; beyond the sides it is that of
+            # what the fictitious node follows from.
             table.add_limit(f"{number} cells, {model}: displacement, largest gap / that of the end", max(map(abs, gaps)) / end, 1e-11)
             table.add_limit(f"{number} cells, {model}: stress, largest / E alpha times the difference of temperatures", max(map(abs, stresses)) / (200 * alpha * 200), 1e-11)
     table.show()
@@ -93,7 +95,8 @@ def held():
            "Output/Probes": "0.5 ; 1 ; 1.5"}
     sides = {"Boundary conditions/Symmetry": "bottom, top", "Boundary conditions/Displacement": "left: 0, free; right: 0, free"}
     alpha, start, slope = 1e-5, 50, 100
-    # Measured: bar 3e-13; plate 2e-10 and 4.7e-3, then 2e-13 and 5.3e-3, the Poisson ratio of the sums over bonds. (Where families end at the sides 3.5 and 5.2 %, 7.5 and 8.1 %.)
+    # Measured: bar 3e-13; plate 2e-10 and 4.7e-3, then 2e-13 and 5.3e-3, the Poisson ratio of the
+    # sums over bonds. (Where families end at the sides 3.5 and 5.2 %, 7.5 and 8.1 %.)
     for what, more, finer, stress, factor, bounds in (("bar", bar, "80", -200 * alpha * 150, 1, ((1e-10, 1e-10), (1e-10, 1e-10))),
                                                       ("plate", sides, "80, 40", -200 * alpha * 150 / 0.7, 1.3, ((1e-8, 7e-3), (1e-8, 7.9e-3)))):
         for cells, bound in (({}, bounds[0]), ({"Domain/Cells": finer}, bounds[1])):
@@ -131,7 +134,8 @@ def formula():
             check(broken[0] == broken[1] > 0, f"bonds broken: {broken}")
 
 
-    # At time 0 the temperature is the initial value, also at cell centres; Dirichlet conditions would hold the outermost of those.
+    # At time 0 the temperature is the initial value, also at cell centres; Dirichlet conditions
+    # would hold the outermost of those.
     start = {**CLAMPED, "Time/Steady": "false", "Time/End time": "1e-3", "Output/Write at": "0", "Initial and source/Initial value": "100 + 100*x", "Boundary conditions/Dirichlet": "",
              "Models": PD, "Domain/Nodes": "cell centers"}
     computed, given = run_plate(start), run_plate({**CLAMPED, "Models": PD, "Domain/Nodes": "cell centers", **FORMULA})
@@ -140,7 +144,8 @@ def formula():
         check_close(b, a, absolute=FORMULA_PD * max(map(abs, a)), what=f"cell centres: {', '.join(columns)}")
 
 
-# Measured: 1.05e-11, full kinematics. Elements: stresses are read a hair inside the cell, the temperature at the point itself; 3.1e-8.
+# Measured: 1.05e-11, full kinematics. Elements: stresses are read a hair inside the cell, the
+# temperature at the point itself; 3.1e-8.
 FORMULA_PD, FORMULA_FEM = 1.5e-11, 4.6e-8
 
 
@@ -182,7 +187,8 @@ def cooling():
     table.show()
 
 
-# Measured: 1.4e-5, 8.0e-4 (the end at the top), 3.1e-4; peridynamics 4.3e-4 (at 5 s, then 1.1e-4), 3.3e-3, 2.7e-3 (on the face).
+# Measured: 1.4e-5, 8.0e-4 (the end at the top), 3.1e-4; peridynamics 4.3e-4 (at 5 s, then 1.1e-4),
+# 3.3e-3, 2.7e-3 (on the face).
 COOLING = {FEM: (2.1e-5, 1.2e-3, 4.6e-4), PD: (6.5e-4, 4.9e-3, 4.1e-3)}
 
 
@@ -204,7 +210,8 @@ def strip():
     table.show()
 
 
-# Measured: 1.6e-13, 1.8e-3 (the end at the top); peridynamics 1.5e-4, 7.1e-3 on the side, where families that end there are 0.13 off.
+# Measured: 1.6e-13, 1.8e-3 (the end at the top); peridynamics 1.5e-4, 7.1e-3 on the side, where
+# families that end there are 0.13 off.
 STRIP = {FEM: (1e-12, 2.7e-3), PD: (2.1e-4, 1.1e-2)}
 
 

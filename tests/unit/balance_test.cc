@@ -30,7 +30,10 @@ namespace PeriDeal
     }
 
 
-    /** entering() is what the balance says of sides and sources, with and without finish(), and linear in the field but for loads. */
+    /**
+     * entering() is what the balance says of sides and sources, with and without finish(), and
+     * linear in the field but for loads.
+     */
     template <int dim>
     void expect_entering(const std::string &what, const Problem<dim> &problem, const Vector &u)
     {
@@ -59,7 +62,10 @@ namespace PeriDeal
     }
 
 
-    /** Nothing is lost: in a field that is no solution at all, and in a steady one, to 1e-12 of what flows. */
+    /**
+     * Nothing is lost: in a field that is no solution at all, and in a steady one, to 1e-12 of what
+     * flows.
+     */
     template <int dim>
     void expect_balance(const std::string &what,
                         const Settings    &settings,
@@ -87,7 +93,8 @@ namespace PeriDeal
 
   TEST(Balance, through_sides_beside_symmetry)
   {
-    // A linear field, exact with mirrored layers: all heat goes through the two sides with values, none through the others.
+    // A linear field, exact with mirrored layers: all heat goes through the two sides with values,
+    // none through the others.
     for (const std::string placement : {"vertices", "cell centers"})
       for (const bool upright : {true, false})
         {
@@ -214,7 +221,8 @@ namespace PeriDeal
 
   TEST(Balance, bar_carries_what_enters)
   {
-    // Steady bar: flux 3 in on the right, source x, temperature 1 on the left: everything leaves on the left.
+    // Steady bar: flux 3 in on the right, source x, temperature 1 on the left: everything leaves on
+    // the left.
     for (const Model model : {Model::peridynamics, Model::finite_elements})
       {
         const Problem<1> problem({{"Domain/Cells", "40"},
@@ -228,7 +236,8 @@ namespace PeriDeal
         const Balance balance = problem.op().balance(u, 0., true);
         EXPECT_NEAR(balance.sides.at("right"), 3., 1e-12);
         EXPECT_NEAR(balance.sources, 0.5, 1e-12);
-        // The natural side of the prescribed node holds no source of its own in PD: it is not counted either.
+        // The natural side of the prescribed node holds no source of its own in PD: it is not
+        // counted either.
         EXPECT_NEAR(balance.sides.at("left"), -3.5, 1e-9);
         EXPECT_NEAR(balance.throughput(), 3.5, 1e-12);
         if (model == Model::finite_elements)

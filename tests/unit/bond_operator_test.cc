@@ -42,7 +42,9 @@ namespace PeriDeal
     }
 
 
-    /** sum of K u over all nodes, K 1, symmetry and definiteness of a body without Dirichlet sides. */
+    /**
+     * sum of K u over all nodes, K 1, symmetry and definiteness of a body without Dirichlet sides.
+     */
     template <int dim>
     void expect_conservation(const std::string &what, const Settings &settings)
     {
@@ -185,7 +187,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Largest |K u - expected V| / V among nodes with a full family, relative to the size of the terms. */
+    /**
+     * Largest |K u - expected V| / V among nodes with a full family, relative to the size of the
+     * terms.
+     */
     template <int dim>
     double interior_defect(const Settings                                  &settings,
                            const std::function<double(const Point<dim> &)> &field,
@@ -222,7 +227,8 @@ namespace PeriDeal
 
   TEST(BondOperator, linear_and_quadratic_fields)
   {
-    // K u = -kappa Laplace(u) V, exactly for quadratics with discrete calibration: -2 kappa V for x^2.
+    // K u = -kappa Laplace(u) V, exactly for quadratics with discrete calibration: -2 kappa V for
+    // x^2.
     for (const std::string kernel : {"constant", "conical", "gaussian"})
       for (const Settings &placement : {Settings(), centers})
         {

@@ -12,7 +12,10 @@ using namespace PeriDeal;
 
 namespace
 {
-  /** A linear field changes along each piece by what it changes along that part of the bond, in each of the cells around. */
+  /**
+   * A linear field changes along each piece by what it changes along that part of the bond, in each
+   * of the cells around.
+   */
   template <int dim>
   void check_linear_fields(const std::array<int, dim> &offset)
   {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Families of the linear peridynamic solid that go on beyond the boundary of a mesh (`Surface correction = auto`).
+// Families of the linear peridynamic solid that go on beyond the boundary of a mesh (`Surface
+// correction = auto`).
 
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
@@ -118,7 +119,9 @@ namespace
   }
 
 
-  /** A quarter of a square with a hole, graded towards it, of irregular cells: curved, flat, convex. */
+  /**
+   * A quarter of a square with a hole, graded towards it, of irregular cells: curved, flat, convex.
+   */
   void make_irregular(Triangulation<2> &mesh)
   {
     dealii::GridGenerator::subdivided_hyper_rectangle(mesh,
@@ -147,7 +150,10 @@ namespace
   }
 
 
-  /** Forces of a lattice and of the same mesh from a file are the same, with and without a plane of symmetry. */
+  /**
+   * Forces of a lattice and of the same mesh from a file are the same, with and without a plane of
+   * symmetry.
+   */
   template <int dim>
   void check_lattice(const bool symmetric)
   {
@@ -242,7 +248,10 @@ TEST(BoundaryImages, same_on_all_processes)
 }
 
 
-/** Half a body with a plane of symmetry, a crack across the plane, and the whole one: forces, damage, and what breaks. */
+/**
+ * Half a body with a plane of symmetry, a crack across the plane, and the whole one: forces,
+ * damage, and what breaks.
+ */
 TEST(BoundaryImages, half_a_body_breaks_as_the_whole_one)
 {
   const auto make = [](Triangulation<2> &mesh, const bool whole) {

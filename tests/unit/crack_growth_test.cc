@@ -118,7 +118,10 @@ namespace PeriDeal
   }
 
 
-  /** The zone moves with the cracks; bonds that join behind a tip are broken by what it has done before. */
+  /**
+   * The zone moves with the cracks; bonds that join behind a tip are broken by what it has done
+   * before.
+   */
   TEST(CrackGrowth, moving_zones_end_where_a_new_operator_starts)
   {
     for (const std::string scheme : {"exchange", "blending", "splice"})

@@ -17,7 +17,9 @@ namespace PeriDeal
 
   namespace
   {
-    /** The cells that a scene comes to have; its crack runs along a row of nodes if there is a note. */
+    /**
+     * The cells that a scene comes to have; its crack runs along a row of nodes if there is a note.
+     */
     template <int dim>
     std::array<unsigned int, dim> cells_of(const std::string &text, const bool note)
     {

@@ -35,7 +35,10 @@ namespace PeriDeal
     }
 
 
-    /** The critical stretch for a fracture energy of 1, alike at all nodes, over the one of the continuum with a constant micromodulus. */
+    /**
+     * The critical stretch for a fracture energy of 1, alike at all nodes, over the one of the
+     * continuum with a constant micromodulus.
+     */
     template <int dim>
     double ratio_to_continuum(const Settings &more)
     {
@@ -59,7 +62,10 @@ namespace PeriDeal
     }
 
 
-    /** Pulled in one direction, the bonds near to it break, the same on all numbers of processes, for good, and no energy is lost. */
+    /**
+     * Pulled in one direction, the bonds near to it break, the same on all numbers of processes,
+     * for good, and no energy is lost.
+     */
     template <int dim>
     void check_breaking(const Settings &more, const bool full)
     {

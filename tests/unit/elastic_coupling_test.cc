@@ -117,7 +117,10 @@ namespace
   const std::vector<std::string> schemes{"splice", "blending"};
 
 
-  /** A block in the middle, with its overlap of half a horizon more than two horizons of 0.2 clear of the surface. */
+  /**
+   * A block in the middle, with its overlap of half a horizon more than two horizons of 0.2 clear
+   * of the surface.
+   */
   template <int dim>
   Settings block(const std::string &scheme, const std::string &overlap = "0")
   {
@@ -136,7 +139,10 @@ namespace
   }
 
 
-  /** With peridynamics everywhere both schemes are the operator of peridynamics, heat and cracks included. */
+  /**
+   * With peridynamics everywhere both schemes are the operator of peridynamics, heat and cracks
+   * included.
+   */
   template <int dim>
   void expect_peridynamics(const std::string &scheme, const Settings &more = {})
   {

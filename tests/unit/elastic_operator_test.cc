@@ -77,7 +77,9 @@ namespace
   }
 
 
-  /** A uniform strain, prescribed on all sides, comes out in the body, with its stress and energy. */
+  /**
+   * A uniform strain, prescribed on all sides, comes out in the body, with its stress and energy.
+   */
   template <int dim>
   void patch_of_elements(const Settings &more)
   {
@@ -269,7 +271,10 @@ TEST(ElasticOperator, same_on_all_processes)
 
 namespace
 {
-  /** A body that no side holds back expands freely and without stress: u = alpha dT x, also where families are cut off. */
+  /**
+   * A body that no side holds back expands freely and without stress: u = alpha dT x, also where
+   * families are cut off.
+   */
   template <int dim>
   void expand_freely(const Model model, const Settings &more, const double factor = 1.)
   {
@@ -311,7 +316,10 @@ TEST(ElasticOperator, free_thermal_expansion)
 
 namespace
 {
-  /** The loads and the energy of a temperature at nodes, and those of the same as a formula; it has been another one before. */
+  /**
+   * The loads and the energy of a temperature at nodes, and those of the same as a formula; it has
+   * been another one before.
+   */
   template <int dim>
   void warm_nodes(const Model model, const Settings &more)
   {

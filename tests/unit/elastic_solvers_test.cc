@@ -70,7 +70,10 @@ namespace PeriDeal
     }
 
 
-    /** The exact motion of a linear body on this process, by the eigenvectors of M^-1/2 K M^-1/2; no loads. */
+    /**
+     * The exact motion of a linear body on this process, by the eigenvectors of M^-1/2 K M^-1/2; no
+     * loads.
+     */
     template <int dim>
     struct Modes
     {

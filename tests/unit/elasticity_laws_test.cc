@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Laws of elasticity on paper: moduli, peridynamic solids against classical energies, stresses, critical stretches.
+// Laws of elasticity on paper: moduli, peridynamic solids against classical energies, stresses,
+// critical stretches.
 
 #include <deal.II/base/tensor.h>
 
@@ -33,7 +34,10 @@ namespace
   }
 
 
-  /** Integral over all directions, exact for polynomials of degree 6; the weights sum to the area of the unit sphere. */
+  /**
+   * Integral over all directions, exact for polynomials of degree 6; the weights sum to the area of
+   * the unit sphere.
+   */
   template <int dim>
   double over_directions(const std::function<double(const Tensor<1, dim> &)> &f)
   {
@@ -85,7 +89,10 @@ namespace
   }
 
 
-  /** 1/2 integral of t e under a uniform strain, and of a thermal strain that reduces the extensions. */
+  /**
+   * 1/2 integral of t e under a uniform strain, and of a thermal strain that reduces the
+   * extensions.
+   */
   template <int dim>
   double bond_energy(const StateLaw                &law,
                      const SymmetricTensor<2, dim> &strain,
@@ -123,7 +130,9 @@ namespace
   }
 
 
-  /** Over all strains and Poisson ratios; the classical energy by Hooke's law in three dimensions. */
+  /**
+   * Over all strains and Poisson ratios; the classical energy by Hooke's law in three dimensions.
+   */
   template <int dim>
   void expect_classical_energy(const PlaneState plane)
   {
@@ -362,7 +371,8 @@ TEST(ElasticityLaws, critical_stretch_of_constant_micromodulus)
               std::sqrt(3. * G0 / (m.young() * delta)),
               1e-12);
 
-  // The energy of all bonds across a unit area, point by point of a line normal to it (2D): both halves of each bond.
+  // The energy of all bonds across a unit area, point by point of a line normal to it (2D): both
+  // halves of each bond.
   m                 = young_and_poisson(7e4, 0.1);
   const double    s = critical_stretch_constant(G0, m, delta, 2, PlaneState::strain);
   const double    q = 2. / 3. * pi * std::pow(delta, 3); // of omega = 1/r

@@ -16,7 +16,10 @@ namespace PeriDeal
     const Settings energy{{"Peridynamics/Surface correction", "energy"}};
 
 
-    /** The definition, from the bonds without correction, on one process. Directions from first on; one: it holds for all bonds. */
+    /**
+     * The definition, from the bonds without correction, on one process. Directions from first on;
+     * one: it holds for all bonds.
+     */
     template <int dim>
     void expect_definition(const std::string &what,
                            const Settings    &settings,
@@ -123,7 +126,8 @@ namespace PeriDeal
 
   TEST(EnergyCorrection, makes_up_for_the_calibration_inside)
   {
-    // With analytic calibration complete families conduct 7 % too little; the correction brings that back.
+    // With analytic calibration complete families conduct 7 % too little; the correction brings
+    // that back.
     const Settings   settings = energy + Settings{{"Domain/Cells", "20, 20"},
                                                 {"Peridynamics/Calibration", "analytic"},
                                                 {"Material/Conductivity", "3"}};

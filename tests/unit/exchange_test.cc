@@ -21,7 +21,9 @@ namespace
     {"all", "everywhere"}};
 
 
-  /** A body with the values of a field on all of its sides, a source that belongs to it, and a zone. */
+  /**
+   * A body with the values of a field on all of its sides, a source that belongs to it, and a zone.
+   */
   template <int dim>
   Settings patch(const std::string &field,
                  const std::string &source,
@@ -153,7 +155,8 @@ TEST(Exchange, linear_patch_with_bonds_across_levels)
 
 TEST(Exchange, agrees_with_the_reference)
 {
-  // Bonds and largest eigenvalues that a plain form of the method gives on 16 x 16 cells, zone 5 <= i <= 11, 4 <= j <= 12.
+  // Bonds and largest eigenvalues that a plain form of the method gives on 16 x 16 cells, zone 5 <=
+  // i <= 11, 4 <= j <= 12.
   const struct
   {
     const char  *m, *zone;
@@ -237,7 +240,8 @@ TEST(Exchange, equals_bonds_alone_inside)
 
 TEST(Exchange, layers_and_graded_materials)
 {
-  // Two layers: bonds across the jump are not active, so the exact solution, linear in each, comes out.
+  // Two layers: bonds across the jump are not active, so the exact solution, linear in each, comes
+  // out.
   for (const char *ratio : {"10", "1000"})
     {
       const std::string r = ratio;

@@ -60,7 +60,8 @@ namespace PeriDeal
 
   TEST(FiniteElements, pairs_do_not_conduct_through_a_crack)
   {
-    // Right through the body, between rows of nodes and along one: halves that know nothing of each other.
+    // Right through the body, between rows of nodes and along one: halves that know nothing of each
+    // other.
     for (const std::string height : {"0.47", "0.5"})
       {
         const Settings   settings{{"Domain/Cells", "8, 8"},
@@ -88,7 +89,8 @@ namespace PeriDeal
 
   TEST(FiniteElements, pairs_with_contact_conductance)
   {
-    // Steady heat through a body cut in half by a contact: resistances in series, R = 1/kappa (1 - h) + (h/kappa + 1/H) of the row of cut cells.
+    // Steady heat through a body cut in half by a contact: resistances in series, R = 1/kappa (1 -
+    // h) + (h/kappa + 1/H) of the row of cut cells.
     for (const std::string given : {"Contact conductance", "Transmission"})
       {
         const double     H = 3.;
@@ -105,7 +107,8 @@ namespace PeriDeal
         EXPECT_GT(flux, 0.2);
         if (given == "Contact conductance")
           {
-            // Pairs of Q1 squares: edges kappa/6 each side, diagonals kappa/3, all scaled by H h/(H h + kappa).
+            // Pairs of Q1 squares: edges kappa/6 each side, diagonals kappa/3, all scaled by H h/(H
+            // h + kappa).
             EXPECT_NEAR(flux, 1. / (1. / 2. + 1. / H), 1e-10);
           }
       }
@@ -141,7 +144,8 @@ namespace PeriDeal
            y               = problem.vector();
     problem.op().apply(y, above);
     EXPECT_LT(y.linfty_norm(), 1e-14);
-    // Two cracks, one in each of two neighbouring rows of cells: the nodes between have no cell left.
+    // Two cracks, one in each of two neighbouring rows of cells: the nodes between have no cell
+    // left.
     const std::string message = SceneTests::message_of([] {
       Problem<2>({{"Domain/Cells", "8, 8"},
                   {"Cracks/Mesh", "removed"},

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Families of the linear peridynamic solid that go on beyond the sides (`Surface correction = auto`).
+// Families of the linear peridynamic solid that go on beyond the sides (`Surface correction =
+// auto`).
 
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
@@ -39,7 +40,8 @@ namespace
 
 
   /**
-   * The forces of a uniform strain: none inside. Those of a side carry the stress, sigma n times its area, and all of them balance.
+   * The forces of a uniform strain: none inside. Those of a side carry the stress, sigma n times
+   * its area, and all of them balance.
    */
   template <int dim>
   void check_uniform_strain(const Settings &more)
@@ -78,7 +80,8 @@ namespace
     double area = 1.;
     for (unsigned int d = 1; d < dim; ++d)
       area *= body.scene.domain.upper[d];
-    // Near the edges of the side forces of the sides around it are among these, which cancel but for rotations.
+    // Near the edges of the side forces of the sides around it are among these, which cancel but
+    // for rotations.
     EXPECT_NEAR(right[0] / (tensors.stress[0][0][0] * area), 1., 1e-11);
     for (const Vector &motion : op.near_null_space())
       EXPECT_LT(std::abs(motion * y), 1e-11 * motion.linfty_norm() * y.l1_norm());

@@ -37,7 +37,8 @@ namespace
 
 
   /**
-   * Forces of a uniform strain act on sides alone; those of equal strains in all directions are those of the classical body where no other side is near, and have its energy.
+   * Forces of a uniform strain act on sides alone; those of equal strains in all directions are
+   * those of the classical body where no other side is near, and have its energy.
    */
   template <int dim>
   void check_completed(const Settings &settings)

@@ -84,7 +84,8 @@ namespace PeriDeal
     }
 
 
-    // Calculated by an independent program (numpy): the lattice's eigenvalue of the product of sines on 20 cells.
+    // Calculated by an independent program (numpy): the lattice's eigenvalue of the product of
+    // sines on 20 cells.
     const double lambda_1d[3][3] = {{9.6632771539588, 9.69874355642944, 9.74311667614839},
                                     {9.73411989596521, 9.76593062469284, 9.79711490608956},
                                     {9.76385471710018, 9.79228572387711, 9.81600705338756}};
@@ -203,7 +204,8 @@ namespace PeriDeal
 
   TEST(FictitiousNodes, every_family_within_the_layers_is_full)
   {
-    // Corners too: with layers on all sides each node has the whole family; of the row on a side half the volume is fictitious.
+    // Corners too: with layers on all sides each node has the whole family; of the row on a side
+    // half the volume is fictitious.
     for (const std::string placement : {"vertices", "cell centers"})
       {
         const Problem<2> problem(harmonic_box(2, "3", "conical", 2, placement) + mirror_box(2));

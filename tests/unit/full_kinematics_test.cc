@@ -148,7 +148,10 @@ namespace PeriDeal
     }
 
 
-    /** omega^2 of plane waves along x, u along the direction: sums over the lattice written down here. */
+    /**
+     * omega^2 of plane waves along x, u along the direction: sums over the lattice written down
+     * here.
+     */
     template <int dim>
     double lattice_frequency_square(const double       m,
                                     const double       k,

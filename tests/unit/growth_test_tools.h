@@ -57,8 +57,9 @@ namespace PeriDeal
 
 
     /**
-     * At every event each bond of the zone is broken if and only if the whole crack as it is then separates its nodes. Returns how many are broken as soon as they
-     * join: those that pass behind a tip. Collective.
+     * At every event each bond of the zone is broken if and only if the whole crack as it is then
+     * separates its nodes. Returns how many are broken as soon as they join: those that pass behind
+     * a tip. Collective.
      */
     template <int dim>
     unsigned int expect_history_kept(const Problem<dim> &problem, const std::string &what)

@@ -114,7 +114,8 @@ namespace PeriDeal
 
   TEST(HeatSteps, closed_body_of_varying_capacity_keeps_its_heat)
   {
-    // At the default tolerance, and by fixed steps of a tenth of the time, whose correction leaves a little more.
+    // At the default tolerance, and by fixed steps of a tenth of the time, whose correction leaves
+    // a little more.
     for (const Model model : {Model::finite_elements, Model::peridynamics})
       {
         const Problem<2> problem(plate + closed, model);
@@ -153,7 +154,8 @@ namespace PeriDeal
 
   TEST(HeatSteps, content_of_a_capacity_with_a_peak)
   {
-    // Melting: a peak of area 3 between 0.9 and 1.1 on top of 1. One Gauss rule over the whole range misses most of it.
+    // Melting: a peak of area 3 between 0.9 and 1.1 on top of 1. One Gauss rule over the whole
+    // range misses most of it.
     const Problem<1> problem({{"Domain/Cells", "4"},
                               {"Material/Heat capacity", "1 + 30*max(0, 1 - 10*abs(T - 1))"}});
     EXPECT_NEAR(heat_content(problem.scene.material, Point<1>(0.5), 2.), 5., 1e-2);

@@ -23,7 +23,7 @@ namespace PeriDeal
 
   namespace
   {
-    /** A PGM file for the time of a test, of rows of digits: greys of 10 times as much. Each process has one of its own. */
+    /** A PGM file for a test, one on each process, of rows of digits: greys of 10 times as much. */
     class Image
     {
     public:
@@ -436,7 +436,7 @@ namespace PeriDeal
   }
 
 
-  /** A void of one cell, whose corners all are nodes: the same bonds and conductances as in a plate with a hole of that cell. */
+  /** A void of one cell, all corners nodes: bonds and conductances of a plate with that hole. */
   TEST(Image, void_of_one_cell)
   {
     std::vector<std::string> rows(11, std::string(11, '9'));
@@ -465,7 +465,8 @@ namespace PeriDeal
 
   TEST(Image, statistics_of_phases)
   {
-    // 200 samples of volume 1 in one phase, of uniaxial stress 1 to 200, dealt out to the processes; one sample elsewhere.
+    // 200 samples of volume 1 in one phase, of uniaxial stress 1 to 200, dealt out to the
+    // processes; one sample elsewhere.
     const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD),
                        n    = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
     std::vector<StressSample> samples;

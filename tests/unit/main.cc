@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// The unit tests as one program, on one or several processes: every process runs every test, in the same order.
-// Process 0 reports; the others speak only of their own failures. A test has passed if it has on all.
+// The unit tests as one program, on one or several processes: every process runs every test, in the
+// same order. Process 0 reports; the others speak only of their own failures. A test has passed if
+// it has on all.
 
 #include <deal.II/base/mpi.h>
 
@@ -14,8 +15,9 @@
 namespace
 {
   /**
-   * Makes a failure on one process one of process 0 too, so that its report is complete. A failed assertion is
-   * printed at once: if it leaves the other processes waiting, the reason stands in the log before the time-out.
+   * Makes a failure on one process one of process 0 too, so that its report is complete. A failed
+   * assertion is printed at once: if it leaves the other processes waiting, the reason stands in
+   * the log before the time-out.
    */
   class AllProcesses : public testing::EmptyTestEventListener
   {

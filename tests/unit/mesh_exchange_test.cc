@@ -23,8 +23,8 @@ using namespace PeriDeal::OperatorTests;
 namespace
 {
   /**
-   * A Gmsh file of n^dim quadrilaterals or hexahedra on the unit square or cube, whose inner vertices are moved by up to a part of the spacing. Each process
-   * writes its own, all the same.
+   * A Gmsh file of n^dim quadrilaterals or hexahedra on the unit square or cube, whose inner
+   * vertices are moved by up to a part of the spacing. Each process writes its own, all the same.
    * @param power above 1 the cells are the smaller the nearer they are to the middle
    */
   template <int dim>
@@ -180,7 +180,8 @@ namespace
           {
             const unsigned int at[3] = {i, j, k};
             dealii::Point<dim> p;
-            // Flat outer faces, and one quarter of the mesh not distorted: paths along faces, edges and through vertices.
+            // Flat outer faces, and one quarter of the mesh not distorted: paths along faces, edges
+            // and through vertices.
             const bool regular = 2 * i <= n && 2 * j <= n;
             for (unsigned int d = 0; d < dim; ++d)
               p[d] = at[d] + (at[d] > 0 && at[d] < n && !regular ? shift(random) : 0.);
@@ -219,7 +220,8 @@ namespace
           n_leaving += !one;
           if (!one)
             continue;
-          // The general way may cut a piece along an edge once more: what each cell has of the path is the same.
+          // The general way may cut a piece along an edge once more: what each cell has of the path
+          // is the same.
           std::map<unsigned int, std::array<double, n_corners * n_corners>> difference;
           for (const auto *const way : {&walked, &plain})
             for (const auto &piece : *way)
@@ -260,7 +262,10 @@ TEST(MeshExchange, hexahedra_distorted_by_10_percent)
 }
 
 
-/** Outside of the zone cells may be larger than the horizon; the bonds of the zone conduct on average what the material does. */
+/**
+ * Outside of the zone cells may be larger than the horizon; the bonds of the zone conduct on
+ * average what the material does.
+ */
 TEST(MeshExchange, calibrated_over_the_zone)
 {
   const Problem<2> problem(
@@ -321,8 +326,8 @@ namespace
 
 
   /**
-   * A square of edge 5 with 20 x 20 cells, turned by an angle, with coordinates of so many digits: its sides are not quite straight. Five digits are up to 6e-5
-   * of a cell.
+   * A square of edge 5 with 20 x 20 cells, turned by an angle, with coordinates of so many digits:
+   * its sides are not quite straight. Five digits are up to 6e-5 of a cell.
    */
   std::string turned_mesh(const double degrees, const unsigned int n_digits)
   {
@@ -360,7 +365,10 @@ TEST(MeshExchange, same_on_all_processes)
 }
 
 
-/** Whether a bond along a side stays in the body is a matter of round-off of the mesh file: then too it is the same from both ends and everywhere. */
+/**
+ * Whether a bond along a side stays in the body is a matter of round-off of the mesh file: then too
+ * it is the same from both ends and everywhere.
+ */
 TEST(MeshExchange, sides_that_are_not_quite_straight)
 {
   std::size_t n_bonds = 0;

@@ -81,8 +81,8 @@ namespace PeriDeal
 
   TEST(MeshFile, conducts_about_as_much_as_it_should)
   {
-    // A linear temperature between top and bottom; calibrated on the mean of the full families, so exact up to their scatter and, most of all, the cut families on
-    // the sides.
+    // A linear temperature between top and bottom; calibrated on the mean of the full families, so
+    // exact up to their scatter and, most of all, the cut families on the sides.
     const Settings sides{{"Boundary conditions/Dirichlet", "3: 0 ; 4: 1"}};
     for (const Model model : {Model::finite_elements, Model::peridynamics})
       {

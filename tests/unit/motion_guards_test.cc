@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// What ends a motion or an equilibrium: bodies inside out, steps that have become too long, nodes without mass.
+// What ends a motion or an equilibrium: bodies inside out, steps that have become too long, nodes
+// without mass.
 
 #include <perideal/solvers/motion_stepper.h>
 #include <perideal/solvers/slow_loading.h>

@@ -12,7 +12,8 @@ using PeriDeal::SceneTests::message_of;
 
 namespace
 {
-  // Four squares of edge 1 on nodes in rows of three, numbered from the lower left one, with two named sides.
+  // Four squares of edge 1 on nodes in rows of three, numbered from the lower left one, with two
+  // named sides.
   const std::string latest = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"                // lines 1 to 3
                              "$Entities\n0 1 1 0\n"                                  // 5
                              "3 0 0 0 2 0 0 1 5 0\n"                                 // 6
@@ -100,7 +101,8 @@ TEST(MshCheck, sound_files)
       EXPECT_EQ(fault, "");
       expect_sound(text, name == "hexes.msh" ? 3 : 2);
     }
-  // Cells numbered clockwise, all or some, names of groups, and sections behind those that are read.
+  // Cells numbered clockwise, all or some, names of groups, and sections behind those that are
+  // read.
   expect_sound(with(latest, "3 1 2 5 4", "3 4 5 2 1"));
   expect_sound(with(old, "$Nodes", "$PhysicalNames\n1\n1 5 \"side\"\n$EndPhysicalNames\n$Nodes"));
   expect_sound(latest + "$Periodic\n0\n$EndPeriodic\n");
@@ -110,7 +112,8 @@ TEST(MshCheck, sound_files)
 TEST(MshCheck, straight_corners)
 {
   expect_sound(with(latest, "0 1 0\n1 1 0\n2 1 0", "0 1 0\n0.5 0.5 0\n2 1 0"));
-  // A corner in the middle of an edge is in order: quadrilaterals from recombined triangles have some.
+  // A corner in the middle of an edge is in order: quadrilaterals from recombined triangles have
+  // some.
   expect_sound(with(latest, "2 0 0\n0 1 0", "2 0 0\n0.5 0.5 0"));
   expect_fault(with(latest, "2 0 0\n0 1 0", "2 0 0\n0.5 0 0"), 2, 37, {"no angle"});
 }
@@ -206,7 +209,8 @@ TEST(MshCheck, folded_cells)
 
 TEST(MshCheck, neighbors)
 {
-  // A second cell on the same side of the edge 2-5, of nodes of its own, and a third cell at that edge.
+  // A second cell on the same side of the edge 2-5, of nodes of its own, and a third cell at that
+  // edge.
   const std::string more = with(with(old, "$Nodes\n6\n", "$Nodes\n8\n"),
                                 "6 2 1 0\n",
                                 "6 2 1 0\n7 0.2 -0.5 0\n8 0.2 1.5 0\n");

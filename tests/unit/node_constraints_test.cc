@@ -69,7 +69,8 @@ namespace PeriDeal
 
   TEST(NodeConstraints, extrapolation_of_a_linear_field_is_exact)
   {
-    // kappa T' = -q at the end where q enters... into the body is positive: T' = q/kappa on the right, -q/kappa on the left.
+    // kappa T' = -q at the end where q enters... into the body is positive: T' = q/kappa on the
+    // right, -q/kappa on the left.
     for (const std::string treatment : {"extrapolation", "layer extrapolation"})
       for (const std::string kernel : {"constant", "conical", "gaussian"})
         {
@@ -101,7 +102,8 @@ namespace PeriDeal
 
   TEST(NodeConstraints, coupled_slaves_meet_their_equations)
   {
-    // T_b sum w L = sum w L T + q over the whole family, slaves included; a corner follows the side named first.
+    // T_b sum w L = sum w L T + q over the whole family, slaves included; a corner follows the side
+    // named first.
     const std::vector<std::string> orders = {"right: 2 ; bottom: x ; top: y",
                                              "top: y ; bottom: x; right: 2"};
     for (const std::string &order : orders)

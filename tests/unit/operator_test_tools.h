@@ -25,7 +25,10 @@
 
 namespace PeriDeal
 {
-  /** What the tests of meshes, bonds, operators and solvers share; compiled once, for it takes longer than most tests. */
+  /**
+   * What the tests of meshes, bonds, operators and solvers share; compiled once, for it takes
+   * longer than most tests.
+   */
   namespace OperatorTests
   {
     /** Entries of a scene: "Section/Entry" and its text. Later ones replace earlier ones. */
@@ -88,7 +91,10 @@ namespace PeriDeal
     std::map<std::array<long, dim>, double> gathered(const Problem<dim> &problem, const Vector &v);
 
 
-    /** Largest difference of two vectors of the same unknowns on different processes; infinite if the unknowns differ. */
+    /**
+     * Largest difference of two vectors of the same unknowns on different processes; infinite if
+     * the unknowns differ.
+     */
     template <int dim>
     double difference(const Problem<dim> &a,
                       const Vector       &x,
@@ -114,7 +120,10 @@ namespace PeriDeal
     dealii::FullMatrix<double> dense(const Operator &op);
 
 
-    /** Eigenvalues' largest, of C^{-1} K for symmetric K, and how unsymmetric K is: largest entry of K - K^T relative to the largest of K. */
+    /**
+     * Eigenvalues' largest, of C^{-1} K for symmetric K, and how unsymmetric K is: largest entry of
+     * K - K^T relative to the largest of K.
+     */
     struct DenseProperties
     {
       explicit DenseProperties(const Operator &op);

@@ -197,7 +197,10 @@ TEST(Picture, mistakes)
 }
 
 
-/** The head of a file can claim any size, with a right checksum; memory is taken only for what the file can hold. */
+/**
+ * The head of a file can claim any size, with a right checksum; memory is taken only for what the
+ * file can hold.
+ */
 TEST(Picture, sizes_that_are_claimed)
 {
   const std::string small = png_file(PNG_COLOR_TYPE_RGB, 8, 2, {{1, 2, 3, 255, 128, 0}});

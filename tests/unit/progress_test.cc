@@ -16,7 +16,10 @@ namespace
 {
   using namespace PeriDeal;
 
-  /** The largest factor, up or down, by which the remaining time leaves what was said before less the time since, asked every 30 s. */
+  /**
+   * The largest factor, up or down, by which the remaining time leaves what was said before less
+   * the time since, asked every 30 s.
+   */
   double largest_jump(double (*share)(const double))
   {
     RemainingTime remaining;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Elastic scenes whose temperature is computed: the heat problem in them, and what is said about mistakes.
+// Elastic scenes whose temperature is computed: the heat problem in them, and what is said about
+// mistakes.
 
 #include "elastic_scene_tools.h"
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// The smallest eigenvalue of a family's shape, where closed forms fail: isotropic, nearly isotropic and singular tensors.
+// The smallest eigenvalue of a family's shape, where closed forms fail: isotropic, nearly isotropic
+// and singular tensors.
 
 #include <perideal/base/smallest_eigenvalue.h>
 
@@ -38,7 +39,9 @@ namespace
   }
 
 
-  /** Isotropic, and isotropic but for round-off, at any size: what whole families of a lattice give. */
+  /**
+   * Isotropic, and isotropic but for round-off, at any size: what whole families of a lattice give.
+   */
   template <int dim>
   void check_isotropic()
   {

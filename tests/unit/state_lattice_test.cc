@@ -18,7 +18,10 @@ namespace
   }
 
 
-  /** Largest difference of two lists of the same length, over the largest number of the second one on any process. */
+  /**
+   * Largest difference of two lists of the same length, over the largest number of the second one
+   * on any process.
+   */
   double relative_gap(const std::vector<double> &a, const std::vector<double> &b)
   {
     double gap = a.size() == b.size() ? 0. : INFINITY, size = 0.;

@@ -101,8 +101,9 @@ namespace PeriDeal
 
 
     /**
-     * T = (1 + x) cos(3 t), prescribed on four rows at either end, with mirrors at the top and bottom: K of a linear field is zero in full families, so that
-     * the source has nothing but its rate of change to provide.
+     * T = (1 + x) cos(3 t), prescribed on four rows at either end, with mirrors at the top and
+     * bottom: K of a linear field is zero in full families, so that the source has nothing but its
+     * rate of change to provide.
      */
     Settings driven()
     {
@@ -142,9 +143,12 @@ namespace PeriDeal
     const double stable = 2. / problem.op().spectrum().sharp;
     for (const auto &[name, expected] : methods)
       {
+        // The error of rk4 is lost in round-off at any stable step; prescribed values in time
+        // reduce its order to 2.
         if (name == "rk4")
-          continue; // its error is lost in round-off at any stable step; prescribed values in time reduce its order to 2
-        // RKC2's number of stages, and with it its error's constant, changes with the step: two stages from here on.
+          continue;
+        // RKC2's number of stages, and with it its error's constant, changes with the step: two
+        // stages from here on.
         const double dt = name == "euler" ? 0.6 * stable : name == "rkc2" ? 0.003 : 0.0125;
         EXPECT_NEAR(order(problem, exact, name, dt, name == "euler" ? 16. * dt : 0.4),
                     expected,
@@ -156,7 +160,8 @@ namespace PeriDeal
 
   TEST(Steppers, orders_with_consistent_capacity)
   {
-    // Q1 on a line of cells: cos(pi x) is a discrete harmonic of the consistent system, too, and so is its product with a constant.
+    // Q1 on a line of cells: cos(pi x) is a discrete harmonic of the consistent system, too, and so
+    // is its product with a constant.
     const unsigned int n = 16;
     const Problem<2>   problem(
       {{"Domain/Cells", "16, 4"}, {"Finite elements/Capacity", "consistent"}},
@@ -199,7 +204,8 @@ namespace PeriDeal
     const double   dt = 0.7 * 2. / harmonic.problem.op().spectrum().sharp;
     for (const auto &[name, order] : methods)
       {
-        // A multiple of the step in one call or in eight: the same steps. One-step methods: the same numbers.
+        // A multiple of the step in one call or in eight: the same steps. One-step methods: the
+        // same numbers.
         auto   whole = make_stepper(name, harmonic.problem.op(), options_with(dt));
         auto   parts = make_stepper(name, harmonic.problem.op(), options_with(dt));
         Vector u =
@@ -254,7 +260,8 @@ namespace PeriDeal
 
   TEST(Steppers, adaptive_ones_take_moving_prescribed_values_in_their_stride)
   {
-    // A ramp on one side: smooth inside, so steps must not shrink because the prescribed nodes move.
+    // A ramp on one side: smooth inside, so steps must not shrink because the prescribed nodes
+    // move.
     const Problem<2> problem({{"Domain/Cells", "16, 4"},
                               {"Peridynamics/Horizon", "0.5"},
                               {"Boundary conditions/Dirichlet", "left: 1 + t ; right: 1 + t"},
@@ -303,7 +310,8 @@ namespace PeriDeal
   TEST(Steppers, chebyshev_is_exact_for_every_kernel)
   {
     const auto check = [](const auto &problem, const std::string &what) {
-      // Against RK4 far below its limit, or better: twice half the span is the whole span, and lattice harmonics.
+      // Against RK4 far below its limit, or better: twice half the span is the whole span, and
+      // lattice harmonics.
       const auto f = [](const auto &p) {
         double s = 1.;
         for (unsigned int d = 0; d < std::decay_t<decltype(p)>::dimension; ++d)

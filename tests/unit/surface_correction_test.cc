@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Surface corrections of the linear peridynamic solid: the laws alone, and what they do to uniform strains.
+// Surface corrections of the linear peridynamic solid: the laws alone, and what they do to uniform
+// strains.
 
 #include <perideal/base/user_error.h>
 #include <perideal/laws/family_moments.h>
@@ -81,7 +82,8 @@ TEST(FamilyMoments, fourth_moments)
 
 TEST(FamilyMoments, matrices_and_positive_factors)
 {
-  // Directions of a half circle have the moments of a whole one but for the factor 2; those of a quarter cannot with positive factors.
+  // Directions of a half circle have the moments of a whole one but for the factor 2; those of a
+  // quarter cannot with positive factors.
   const auto directions = [](const double angle) {
     std::vector<FourthMoments<2>> list;
     for (unsigned int k = 0; k <= 40; ++k)
@@ -121,7 +123,10 @@ TEST(FamilyMoments, matrices_and_positive_factors)
 
 namespace
 {
-  /** Uniform strains of a box that is cut off on all sides: theta and stress are those inside at all nodes but the ones that the operator counts. */
+  /**
+   * Uniform strains of a box that is cut off on all sides: theta and stress are those inside at all
+   * nodes but the ones that the operator counts.
+   */
   template <int dim>
   void uniform_strains_up_to_the_surface(const Settings &more)
   {

@@ -44,7 +44,8 @@ namespace PeriDeal
 
   TEST(Temperature, kirchhoff_transformation_of_a_wall)
   {
-    // theta = T + T^2/2 is linear in the steady state; bonds and elements with the mean of both ends carry exactly its differences.
+    // theta = T + T^2/2 is linear in the steady state; bonds and elements with the mean of both
+    // ends carry exactly its differences.
     for (const Model model : {Model::peridynamics, Model::finite_elements})
       {
         const Problem<2> problem(wall + mirrored, model);
@@ -56,7 +57,8 @@ namespace PeriDeal
             largest,
             std::abs(u.local_element(i) - (std::sqrt(1. + 3. * problem.positions[i][0]) - 1.)));
         largest = dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD);
-        // Elements are exact at their vertices; beyond a side the mirror keeps T, not theta, linear: measured 5e-4.
+        // Elements are exact at their vertices; beyond a side the mirror keeps T, not theta,
+        // linear: measured 5e-4.
         EXPECT_LE(largest, model == Model::finite_elements ? 1e-10 : 8e-4);
         const auto balance = problem.op().balance(u, 0., true);
         EXPECT_NEAR(balance.sides.at("right"), 1.5 * 0.4, 5e-3);
@@ -128,7 +130,8 @@ namespace PeriDeal
 
   TEST(Temperature, cracks_and_slaves_follow)
   {
-    // An operator that takes the material at some temperatures is that of a scene which starts with them.
+    // An operator that takes the material at some temperatures is that of a scene which starts with
+    // them.
     const auto     temperature = [](const Point<2> &p) { return 0.5 * p[0] + p[0] * p[1]; };
     const Settings crack{{"Cracks/Segments", "0.31,0.13 ; 0.72,0.29"},
                          {"Boundary conditions/Dirichlet", "left: 0"}},

@@ -17,7 +17,10 @@ using namespace PeriDeal::OperatorTests;
 
 namespace
 {
-  /** Influence functions, and how stiff bonds of full families are against shear strains of the axes, relative to the shear modulus (sums over the lattice). */
+  /**
+   * Influence functions, and how stiff bonds of full families are against shear strains of the
+   * axes, relative to the shear modulus (sums over the lattice).
+   */
   struct ShearOfLattice
   {
     const char *kernel, *exponent, *ratio, *cells;
@@ -26,8 +29,9 @@ namespace
 
 
   /**
-   * All uniform strains where families are complete. theta and the mean stress are exact; bonds see the fourth moments of the lattice, so that shear of the
-   * axes has the shear modulus g G, and differences of stretches (2 - g) G in two dimensions, (5 - 3 g)/2 G in three.
+   * All uniform strains where families are complete. theta and the mean stress are exact; bonds see
+   * the fourth moments of the lattice, so that shear of the axes has the shear modulus g G, and
+   * differences of stretches (2 - g) G in two dimensions, (5 - 3 g)/2 G in three.
    */
   template <int dim>
   void all_uniform_strains(const ShearOfLattice &lattice,
@@ -132,7 +136,8 @@ TEST(StateOperator, all_uniform_strains)
 
 TEST(StateOperator, energy_of_uniform_strain)
 {
-  // What one more row and column adds to what the last ones added is a full family's energy: faces and corners cancel.
+  // What one more row and column adds to what the last ones added is a full family's energy: faces
+  // and corners cancel.
   for (const std::string nu : {"-0.9", "0.3", "0.499"})
     {
       const double young = 3., value = std::stod(nu), shear = young / (2. * (1. + value));
@@ -153,7 +158,10 @@ TEST(StateOperator, energy_of_uniform_strain)
 
 namespace
 {
-  /** The energy of a bond-based cube of n^3 cells over the classical one, and the same by plain sums over pairs of its vertices. */
+  /**
+   * The energy of a bond-based cube of n^3 cells over the classical one, and the same by plain sums
+   * over pairs of its vertices.
+   */
   std::pair<double, double> energy_of_cube(const unsigned int                   n,
                                            const bool                           constant,
                                            const dealii::SymmetricTensor<2, 3> &strain)
@@ -166,7 +174,8 @@ namespace
                                            {"Elasticity/Micromodulus",
                                             constant ? "constant" : "family"}},
                        Model::peridynamics);
-    const double  lambda = 1.2, volume = n * n * n; // of Young modulus 3; equal to the shear modulus
+    // Of Young modulus 3; lambda is equal to the shear modulus.
+    const double  lambda = 1.2, volume = n * n * n;
     const double  classical = volume * (0.5 * lambda * trace(strain) * trace(strain) +
                                        lambda * strain.norm() * strain.norm());
     const double  found     = body.op().energy(body.values(
@@ -208,8 +217,9 @@ namespace
 
 TEST(StateOperator, surfaces_of_bond_based_bodies)
 {
-  // Divided by the sums over their own families nodes have all of the energy of equal strains, surfaces or not; the constant micromodulus has it inside, less by what
-  // families lack at surfaces.
+  // Divided by the sums over their own families nodes have all of the energy of equal strains,
+  // surfaces or not; the constant micromodulus has it inside, less by what families lack at
+  // surfaces.
   dealii::SymmetricTensor<2, 3> equal = dealii::unit_symmetric_tensor<3>(), shear;
   shear[0][1] = 0.5;
   for (const bool constant : {false, true})

@@ -139,7 +139,8 @@ namespace
     EXPECT_EQ(*nearest_fitting(box, {22, 22}, true, 1), (CellCounts{20, 22}));
     EXPECT_EQ(*nearest_fitting(box, {41, 41}, false, 1), (CellCounts{41, 41}));
     EXPECT_EQ(*nearest_fitting(box, {41, 41}, false, 8), (CellCounts{40, 40}));
-    // the largest cells, twice as large, have to have the crack on their faces: 0.5 is a multiple of 2/20, but not of 2/18
+    // the largest cells, twice as large, have to have the crack on their faces: 0.5 is a multiple
+    // of 2/20, but not of 2/18
     EXPECT_EQ(*nearest_fitting(box, {37, 37}, true, 2), (CellCounts{40, 36}));
     box.cracks = {{{-0.5, 0.}, {3., 0.}}}; // leaves the box
     EXPECT_EQ(*nearest_fitting(box, {41, 41}, true, 1), (CellCounts{40, 40}));

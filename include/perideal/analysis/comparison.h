@@ -18,8 +18,9 @@ namespace PeriDeal
   };
 
   /**
-   * Finite element values at the support points of another scalar element on the same mesh (vertices or cell centres): the interpolant.
-   * u must have up-to-date ghosts; @p values is a vector of the other dofs (owned entries are set). Not collective.
+   * Finite element values at the support points of another scalar element on the same mesh
+   * (vertices or cell centres): the interpolant. u must have up-to-date ghosts; @p values is a
+   * vector of the other dofs (owned entries are set). Not collective.
    */
   template <int dim>
   void interpolate_to(const dealii::DoFHandler<dim> &fem_dofs,
@@ -27,12 +28,18 @@ namespace PeriDeal
                       const dealii::DoFHandler<dim> &other_dofs,
                       Vector                        &values);
 
-  /** Nodal difference of two vectors of one layout, weighted by nodal volumes, relative to the second. Collective. */
+  /**
+   * Nodal difference of two vectors of one layout, weighted by nodal volumes, relative to the
+   * second. Collective.
+   */
   Difference nodal_difference(const Vector                              &a,
                               const Vector                              &b,
                               const std::function<double(unsigned int)> &volume);
 
-  /** Finite element solution against a function: quadrature of order degree + 3 per cell, maximum at the quadrature points. Collective. */
+  /**
+   * Finite element solution against a function: quadrature of order degree + 3 per cell, maximum at
+   * the quadrature points. Collective.
+   */
   template <int dim>
   Difference element_difference(const dealii::DoFHandler<dim>                           &dofs,
                                 const Vector                                            &u,

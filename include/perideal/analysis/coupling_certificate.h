@@ -12,27 +12,35 @@
 namespace PeriDeal
 {
   /**
-   * What a coupling is worth, found out before the run on the body without its cracks, with values (of elastic bodies displacements) prescribed on its whole surface.
+   * What a coupling is worth, found out before the run on the body without its cracks, with values
+   * (of elastic bodies displacements) prescribed on its whole surface.
    *
-   * The patch errors are the largest differences between the solution of the coupled model and that of finite elements for the boundary values and sources of a
-   * linear, a quadratic and a cubic field, over the largest value of the field: what the coupling adds to the error of finite elements.
+   * The patch errors are the largest differences between the solution of the coupled model and that
+   * of finite elements for the boundary values and sources of a linear, a quadratic and a cubic
+   * field, over the largest value of the field: what the coupling adds to the error of finite
+   * elements.
    */
   struct CouplingCertificate
   {
     double linear = 0., quadratic = 0., cubic = 0.;
     double asymmetry         = 0.; // the largest of |(K - K^T) x|/|K x| for some fields x of noise
     double lowest_eigenvalue = 0.; // of C^{-1} K, the rate of the slowest decay
-    double lowest_remainder =
-      0.; // eigenvalue of what is left of a cell, in units of its conductivity or shear modulus; infinite if all cells are whole
-    double zone_share = 0.; // of the body's volume
+    // Eigenvalue of what is left of a cell, in units of its conductivity or shear modulus; infinite
+    // if all cells are whole.
+    double lowest_remainder = 0.;
+    double zone_share       = 0.; // of the body's volume
     std::optional<double>
       kept_share; // of the bonds' conductance that distorted cells leave; not of elastic bodies
-    std::optional<double>
-                       unbalanced; // of elastic bodies: the largest |m . K x|/(max |m| sum |K x|) for the rigid motions m and a field x of noise
-    unsigned long long n_bonds_of_full    = 0,
+    // Of elastic bodies: the largest |m . K x|/(max |m| sum |K x|) for the rigid motions m and a
+    // field x of noise.
+    std::optional<double> unbalanced;
+    unsigned long long    n_bonds_of_full = 0,
                        n_nonzeros_of_full = 0; // peridynamics everywhere; 0: not known
 
-    /** What is wrong, or nothing: a linear field that is not exact to 1e-10, a negative eigenvalue, forces that do not balance. */
+    /**
+     * What is wrong, or nothing: a linear field that is not exact to 1e-10, a negative eigenvalue,
+     * forces that do not balance.
+     */
     std::string fault() const;
   };
 

@@ -10,7 +10,8 @@
 namespace PeriDeal
 {
   /**
-   * The stress in three dimensions: with that out of the plane in plane strain, and zeros in plane stress and in a bar.
+   * The stress in three dimensions: with that out of the plane in plane strain, and zeros in plane
+   * stress and in a bar.
    *
    * @param temperature_change at the point
    */
@@ -20,7 +21,9 @@ namespace PeriDeal
                                             const dealii::Point<dim>              &p,
                                             const double temperature_change);
 
-  /** The same of a strain, by Hooke's law with the material of a point; thermal strain is taken off. */
+  /**
+   * The same of a strain, by Hooke's law with the material of a point; thermal strain is taken off.
+   */
   template <int dim>
   dealii::SymmetricTensor<2, 3> stress_of_strain(const dealii::SymmetricTensor<2, dim> &strain,
                                                  const Scene<dim>                      &scene,

@@ -33,8 +33,8 @@ namespace PeriDeal
 
 
   /**
-   * The statistics of all phases that have some volume, in the order of their names; those of samples of no phase come last as `elsewhere`.
-   * No phases have no statistics. Collective.
+   * The statistics of all phases that have some volume, in the order of their names; those of
+   * samples of no phase come last as `elsewhere`. No phases have no statistics. Collective.
    */
   std::vector<PhaseStatistics> phase_statistics(const std::vector<StressSample> &samples,
                                                 const std::vector<std::string>  &names,

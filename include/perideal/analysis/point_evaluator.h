@@ -14,8 +14,9 @@
 namespace PeriDeal
 {
   /**
-   * Values of a field at given points: the Q1 (or Qp) interpolant for vertex dofs, the nearest node's value for cell centres. Points exactly on
-   * a crack are read on its left side. On a lattice the result is the same to the last bit on any number of processes.
+   * Values of a field at given points: the Q1 (or Qp) interpolant for vertex dofs, the nearest
+   * node's value for cell centres. Points exactly on a crack are read on its left side. On a
+   * lattice the result is the same to the last bit on any number of processes.
    */
   template <int dim>
   class PointEvaluator
@@ -29,8 +30,10 @@ namespace PeriDeal
     };
 
     /**
-     * @param nodes the lattice the dofs lie on, or nullptr to look points up in the mesh (finite elements, mesh files).
-     * Throws UserError naming @p entry for points outside the body, where they are refused, or if all are. Collective.
+     * @param nodes the lattice the dofs lie on, or nullptr to look points up in the mesh (finite
+     *              elements, mesh files).
+     * Throws UserError naming @p entry for points outside the body, where they are refused, or if
+     * all are. Collective.
      */
     PointEvaluator(const dealii::DoFHandler<dim>          &dofs,
                    const Nodes<dim>                       *nodes,
@@ -39,23 +42,34 @@ namespace PeriDeal
                    const std::string                      &entry,
                    const Outside                           outside = Outside::refuse);
 
-    /** One value per point, on all processes, of a component of a vector with several at each node, interleaved. Needs no ghosts. Collective. */
+    /**
+     * One value per point, on all processes, of a component of a vector with several at each node,
+     * interleaved. Needs no ghosts. Collective.
+     */
     std::vector<double> evaluate(const Vector      &u,
                                  const unsigned int n_components = 1,
                                  const unsigned int component    = 0) const;
 
-    /** The gradient of the interpolant, by the cell that holds the point. Only if points were looked up in the mesh; else all zero. Collective. */
+    /**
+     * The gradient of the interpolant, by the cell that holds the point. Only if points were looked
+     * up in the mesh; else all zero. Collective.
+     */
     std::vector<dealii::Tensor<1, dim>> gradients(const Vector      &u,
                                                   const unsigned int n_components = 1,
                                                   const unsigned int component    = 0) const;
 
-    /** Whether a point lies outside the body, so that it has no value. The same on all processes. */
+    /**
+     * Whether a point lies outside the body, so that it has no value. The same on all processes.
+     */
     bool is_gap(const unsigned int point) const
     {
       return gaps[point];
     }
 
-    /** The points; those that were looked up in the mesh moved a little towards the middle of the cell, in whose material they are. */
+    /**
+     * The points; those that were looked up in the mesh moved a little towards the middle of the
+     * cell, in whose material they are.
+     */
     const std::vector<dealii::Point<dim>> &inner_points() const;
 
   private:
@@ -68,7 +82,10 @@ namespace PeriDeal
       dealii::Tensor<1, dim> slope; // of the shape function, where points are looked up in the mesh
     };
 
-    /** Sums over the parts of each point; every slot has one contributor, so that they are the same on any number of processes. */
+    /**
+     * Sums over the parts of each point; every slot has one contributor, so that they are the same
+     * on any number of processes.
+     */
     template <typename Factor>
     std::vector<double> sum_parts(const Vector      &u,
                                   const unsigned int n_components,

@@ -22,8 +22,9 @@ namespace PeriDeal
   };
 
   /**
-   * Error indicators by recovery (Zienkiewicz and Zhu 1987): q = -kappa grad u in each cell against q*, its mean over the cells around each node,
-   * interpolated. Cut cells, in which the gradient means nothing, have none and count for no other.
+   * Error indicators by recovery (Zienkiewicz and Zhu 1987): q = -kappa grad u in each cell against
+   * q*, its mean over the cells around each node, interpolated. Cut cells, in which the gradient
+   * means nothing, have none and count for no other.
    *
    * @param cut cells that a crack cuts, by active cell index
    * @param u   with up-to-date ghosts

@@ -13,7 +13,10 @@
 
 namespace PeriDeal
 {
-  /** What holds at the end of a crack in two dimensions. Units: force per length (J), stress times the square root of length (K). */
+  /**
+   * What holds at the end of a crack in two dimensions. Units: force per length (J), stress times
+   * the square root of length (K).
+   */
   struct StressIntensity
   {
     std::string name; // of the end, as in `crack 1 end 2`
@@ -23,13 +26,18 @@ namespace PeriDeal
 
 
   /**
-   * Domain integrals over a ring about the end of a straight crack, in its frame (x_1 ahead of the crack):
+   * Domain integrals over a ring about the end of a straight crack, in its frame (x_1 ahead of the
+   * crack):
    *
-   *   J   = int (sigma_ij u_i,1 - W delta_1j) q,j dA                                       (Rice 1968; domain form of Li, Shih and Needleman 1985)
-   *   K_m = E'/2 int (sigma_ij u^m_i,1 + sigma^m_ij u_i,1 - sigma^m_kl u_k,l delta_1j) q,j dA     (interaction integral, Yau, Wang and Corten 1980)
+   *   J   = int (sigma_ij u_i,1 - W delta_1j) q,j dA
+   *   K_m = E'/2 int (sigma_ij u^m_i,1 + sigma^m_ij u_i,1 - sigma^m_kl u_k,l delta_1j) q,j dA
    *
-   * with the near-tip fields u^m of unit intensity in mode m, E' = E in plane stress, E/(1 - nu^2) in plane strain, and q falling from 1 at the inner radius to 0 at the
-   * outer one. They hold for one elastic material in the ring, without thermal strain and forces on the lips; W = sigma : grad u/2.
+   * (J: Rice 1968, domain form of Li, Shih and Needleman 1985; K_m: interaction integral, Yau, Wang
+   * and Corten 1980)
+   * with the near-tip fields u^m of unit intensity in mode m, E' = E in plane stress, E/(1 - nu^2)
+   * in plane strain, and q falling from 1 at the inner radius to 0 at the outer one. They hold for
+   * one elastic material in the ring, without thermal strain and forces on the lips; W = sigma :
+   * grad u/2.
    *
    * Give add() all quadrature points of this process; result() is collective.
    */
@@ -73,9 +81,11 @@ namespace PeriDeal
 
 
   /**
-   * The ends of the cracks of a scene that lie in the body, away from its sides and from other cracks, with rings as wide as these and the crack allow; those without
-   * room for a ring of a few cells have none; holes, and regions and points that are held or loaded, stay outside the rings. Empty unless the body is at rest, is no mesh file or image, and has two dimensions and one material
-   * without thermal strain.
+   * The ends of the cracks of a scene that lie in the body, away from its sides and from other
+   * cracks, with rings as wide as these and the crack allow; those without room for a ring of a few
+   * cells have none; holes, and regions and points that are held or loaded, stay outside the rings.
+   * Empty unless the body is at rest, is no mesh file or image, and has two dimensions and one
+   * material without thermal strain.
    */
   std::vector<CrackEndIntegral> crack_end_integrals(const Scene<2> &scene);
 } // namespace PeriDeal

@@ -9,12 +9,16 @@
 
 namespace PeriDeal
 {
-  /** The indices of all components of the nodes in a set: component c of node i is n_components i + c. */
+  /**
+   * The indices of all components of the nodes in a set: component c of node i is n_components i +
+   * c.
+   */
   dealii::IndexSet interleaved(const dealii::IndexSet &nodes, const unsigned int n_components);
 
   /**
-   * The layout of vectors with several components at each node, interleaved: component c of the node with local number i is the unknown n_components i + c,
-   * for owned nodes and ghosts. Collective.
+   * The layout of vectors with several components at each node, interleaved: component c of the
+   * node with local number i is the unknown n_components i + c, for owned nodes and ghosts.
+   * Collective.
    */
   std::shared_ptr<const dealii::Utilities::MPI::Partitioner> interleaved(
     const dealii::Utilities::MPI::Partitioner &nodes,

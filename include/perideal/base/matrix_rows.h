@@ -11,7 +11,10 @@
 
 namespace PeriDeal
 {
-  /** Call visit(column, value) for each stored entry of one row of this process, as for_each_entry() does. */
+  /**
+   * Call visit(column, value) for each stored entry of one row of this process, as for_each_entry()
+   * does.
+   */
   template <typename Visit>
   void for_each_entry_of_row(const dealii::TrilinosWrappers::SparseMatrix &matrix,
                              const unsigned int                            row,
@@ -28,9 +31,10 @@ namespace PeriDeal
 
 
   /**
-   * Call visit(row, column, value) for each stored entry of the rows of this process, with the local number of the row, the global number of the
-   * column and a reference to the value, which may be changed. deal.II's iterators copy each row and write through a search; on matrices of
-   * a million entries that shows. Not collective; the matrix must be compressed.
+   * Call visit(row, column, value) for each stored entry of the rows of this process, with the
+   * local number of the row, the global number of the column and a reference to the value, which
+   * may be changed. deal.II's iterators copy each row and write through a search; on matrices of a
+   * million entries that shows. Not collective; the matrix must be compressed.
    */
   template <typename Visit>
   void for_each_entry(const dealii::TrilinosWrappers::SparseMatrix &matrix, const Visit &visit)
@@ -43,10 +47,16 @@ namespace PeriDeal
   }
 
 
-  /** The owned values of a vector with all columns of a matrix as ghosts, which hanging nodes carry beyond the halo. Collective. */
+  /**
+   * The owned values of a vector with all columns of a matrix as ghosts, which hanging nodes carry
+   * beyond the halo. Collective.
+   */
   Vector with_columns_as_ghosts(const Vector                                 &v,
                                 const dealii::TrilinosWrappers::SparseMatrix &matrix);
 
-  /** Clear rows and columns of the unknowns that are marked by a number above 0, and put 1 on their diagonal. Collective. */
+  /**
+   * Clear rows and columns of the unknowns that are marked by a number above 0, and put 1 on their
+   * diagonal. Collective.
+   */
   void hold_unknowns(dealii::TrilinosWrappers::SparseMatrix &matrix, const Vector &marked);
 } // namespace PeriDeal

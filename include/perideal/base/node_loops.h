@@ -8,9 +8,10 @@
 namespace PeriDeal
 {
   /**
-   * The loops over nodes in which operators and time steppers spend their time beside the stencil, compiled for several instruction
-   * sets. Multiplications and additions are never contracted, so that a node's value depends neither on where in a loop it
-   * stands nor on the machine. Arrays must not overlap.
+   * The loops over nodes in which operators and time steppers spend their time beside the stencil,
+   * compiled for several instruction sets. Multiplications and additions are never contracted, so
+   * that a node's value depends neither on where in a loop it stands nor on the machine. Arrays
+   * must not overlap.
    */
   namespace NodeLoops
   {
@@ -47,7 +48,10 @@ namespace PeriDeal
                     const double      a,
                     const std::size_t n);
 
-    /** last_i = 2 now_i - last_i - a s_i r_i, and sum_i += c last_i: a term of a Chebyshev expansion. */
+    /**
+     * last_i = 2 now_i - last_i - a s_i r_i, and sum_i += c last_i: a term of a Chebyshev
+     * expansion.
+     */
     void chebyshev_term(double           *last,
                         double           *sum,
                         const double     *now,
@@ -57,7 +61,10 @@ namespace PeriDeal
                         const double      c,
                         const std::size_t n);
 
-    /** next_i = a[0] u_i + a[1] last_i + a[2] before_i + a[3] s_i r_i + a[4] rate_i: a stage of RKC2. */
+    /**
+     * next_i = a[0] u_i + a[1] last_i + a[2] before_i + a[3] s_i r_i + a[4] rate_i: a stage of
+     * RKC2.
+     */
     void rkc_stage(double       *next,
                    const double *u,
                    const double *last,

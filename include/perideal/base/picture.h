@@ -12,7 +12,9 @@
 
 namespace PeriDeal
 {
-  /** Red, green, blue and opacity of a pixel, each from 0 to 255. Pictures without opacity have 255. */
+  /**
+   * Red, green, blue and opacity of a pixel, each from 0 to 255. Pictures without opacity have 255.
+   */
   using Pixel = std::array<std::uint8_t, 4>;
 
 
@@ -33,10 +35,12 @@ namespace PeriDeal
   constexpr std::size_t most_pixels = 100000000;
 
   /**
-   * A picture from the bytes of a PNG file (grey, palette or colour, with or without opacity, 1 to 16 bits), or of a PGM or PPM file as text or binary (P2, P3, P5, P6).
-   * More than 8 bits are rounded to 8, fewer are spread over 0 to 255; no gamma or colour profile is applied.
+   * A picture from the bytes of a PNG file (grey, palette or colour, with or without opacity, 1 to
+   * 16 bits), or of a PGM or PPM file as text or binary (P2, P3, P5, P6). More than 8 bits are
+   * rounded to 8, fewer are spread over 0 to 255; no gamma or colour profile is applied.
    *
-   * @param name of the file, for messages. Throws UserError: no such picture, cut short, broken, more than most_pixels.
+   * @param name of the file, for messages. Throws UserError: no such picture, cut short, broken,
+   *             more than most_pixels.
    */
   Picture decode_picture(const std::string &bytes, const std::string &name);
 

@@ -19,17 +19,20 @@ namespace PeriDeal
 
 
   /**
-   * Settings of Open MPI that a run needs and that stand in the environment, unless the user has set them; to be called before MPI_Init.
+   * Settings of Open MPI that a run needs and that stand in the environment, unless the user has
+   * set them; to be called before MPI_Init.
    *
-   * Its directory of keys is kept in memory: the one in shared files below TMPDIR ends in a bus error where that is full. A process that no
-   * launcher has started needs no daemon and no transport between processes.
+   * Its directory of keys is kept in memory: the one in shared files below TMPDIR ends in a bus
+   * error where that is full. A process that no launcher has started needs no daemon and no
+   * transport between processes.
    */
   void prepare_mpi_environment();
 
   /**
-   * From now on SIGTERM and SIGINT end the process with ExitStatus::stopped after what set_farewell() has asked for; faults (a segmentation fault, a bus
-   * error, abort()) end it with one message, without a trace, and ExitStatus::fault, or ExitStatus::error if memory has run out. To be called after
-   * MPI_Init, which sets handlers of its own.
+   * From now on SIGTERM and SIGINT end the process with ExitStatus::stopped after what
+   * set_farewell() has asked for; faults (a segmentation fault, a bus error, abort()) end it with
+   * one message, without a trace, and ExitStatus::fault, or ExitStatus::error if memory has run
+   * out. To be called after MPI_Init, which sets handlers of its own.
    *
    * @param speaks whether this process tells the user; one of each run does
    * @param alone  whether the run has no other processes; those would wait for ever for one that
@@ -39,29 +42,34 @@ namespace PeriDeal
   void handle_signals(const bool speaks, const bool alone);
 
   /**
-   * A library ends all processes by MPI_Abort(): what set_farewell() has asked for, and one message. Returns the status to end with. A program calls it from an MPI_Abort of
-   * its own, which takes the place of the library's.
+   * A library ends all processes by MPI_Abort(): what set_farewell() has asked for, and one
+   * message. Returns the status to end with. A program calls it from an MPI_Abort of its own, which
+   * takes the place of the library's.
    */
   int leave_after_abort();
 
   /**
-   * What a process that is told to end still does: the file is replaced as a whole by the text, then the message is printed. Only what is prepared here
-   * can be written then, since nothing may be computed in a signal handler.
+   * What a process that is told to end still does: the file is replaced as a whole by the text,
+   * then the message is printed. Only what is prepared here can be written then, since nothing may
+   * be computed in a signal handler.
    */
   void set_farewell(const std::string &file, const std::string &text, const std::string &message);
 
   /** Nothing is to be written any more. */
   void clear_farewell();
 
-  /** A file that is being written and is of no use until it is whole: removed if the process ends before. Empty: none. */
+  /**
+   * A file that is being written and is of no use until it is whole: removed if the process ends
+   * before. Empty: none.
+   */
   void set_unfinished_file(const std::string &file);
 
   /** Whether the machine, or a limit of the process, refuses more memory at this moment. */
   bool memory_is_short();
 
   /**
-   * Do it; where memory runs out, by an exception of C++, of deal.II or of a library that was refused some and fails over that, throws a UserError that
-   * says so and what needs less.
+   * Do it; where memory runs out, by an exception of C++, of deal.II or of a library that was
+   * refused some and fails over that, throws a UserError that says so and what needs less.
    */
   void with_memory_errors(const std::function<void()> &action);
 } // namespace PeriDeal

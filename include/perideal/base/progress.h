@@ -12,13 +12,17 @@
 namespace PeriDeal
 {
   /**
-   * The time that a run still needs, from the share that is done. What it says follows the time that passes, and changes besides by a
-   * factor of 1.5 in a twentieth of the whole run, or half a minute, at most, however unevenly a run advances.
+   * The time that a run still needs, from the share that is done. What it says follows the time
+   * that passes, and changes besides by a factor of 1.5 in a twentieth of the whole run, or half a
+   * minute, at most, however unevenly a run advances.
    */
   class RemainingTime
   {
   public:
-    /** @param spent seconds since the start; @param done share in (0, 1]. Returns seconds, negative as long as too little is known. */
+    /**
+     * @param spent seconds since the start; @param done share in (0, 1]. Returns seconds, negative
+     *              as long as too little is known.
+     */
     double update(const double spent, const double done);
 
   private:
@@ -27,8 +31,9 @@ namespace PeriDeal
 
 
   /**
-   * What a run tells the user while it goes on, from rank 0 only: plain lines, and a progress bar with the remaining time on a terminal. In a log, a line
-   * per tenth, and one at least every 30 s with what the run is at: a thread of its own writes it, which waits for nothing.
+   * What a run tells the user while it goes on, from rank 0 only: plain lines, and a progress bar
+   * with the remaining time on a terminal. In a log, a line per tenth, and one at least every 30 s
+   * with what the run is at: a thread of its own writes it, which waits for nothing.
    */
   class Progress
   {
@@ -57,7 +62,10 @@ namespace PeriDeal
     /** What there is to know of the results so far, as in `force on top in y 12.3`. */
     void state(const std::string &what) const;
 
-    /** Until the next call, steps go from @p t to @p t_end (tell_step()), and with them the share done. */
+    /**
+     * Until the next call, steps go from @p t to @p t_end (tell_step()), and with them the share
+     * done.
+     */
     void advancing(const double t,
                    const double t_end,
                    const double done,

@@ -10,10 +10,11 @@
 namespace PeriDeal
 {
   /**
-   * The smallest eigenvalue of a symmetric tensor, to round-off of the largest one whatever the tensor: isotropic (families inside
-   * a body), of rank one (bonds in one line) or zero. The closed forms of dealii::eigenvalues() are not: of a nearly
-   * isotropic tensor in two dimensions they take the root of a negative number, and of one of rank one in three dimensions
-   * they leave 1e-8 of its trace. An entry that is not finite gives a number that is not finite.
+   * The smallest eigenvalue of a symmetric tensor, to round-off of the largest one whatever the
+   * tensor: isotropic (families inside a body), of rank one (bonds in one line) or zero. The closed
+   * forms of dealii::eigenvalues() are not: of a nearly isotropic tensor in two dimensions they
+   * take the root of a negative number, and of one of rank one in three dimensions they leave 1e-8
+   * of its trace. An entry that is not finite gives a number that is not finite.
    */
   template <int dim>
   double smallest_eigenvalue(const dealii::SymmetricTensor<2, dim> &tensor)

@@ -25,7 +25,10 @@ namespace PeriDeal
                         const std::size_t  most_bytes,
                         std::string       &fault);
 
-  /** Where a file of a scene was looked for, for a message that it is not there: `. Looked for it at ...`. @param folder that of the scene file. Not collective. */
+  /**
+   * Where a file of a scene was looked for, for a message that it is not there: `. Looked for it at
+   * ...`. @param folder that of the scene file. Not collective.
+   */
   std::string places_looked_at(const std::string &file_name, const std::string &folder);
 
   /** Give the text that rank 0 has to all. At most 2^31 - 1 bytes. Collective. */

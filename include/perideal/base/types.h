@@ -8,8 +8,9 @@
 namespace PeriDeal
 {
   /**
-   * The vector of unknowns of every model: owned values first, then the ghosts of the model's own partitioner (horizon wide for
-   * peridynamics, one layer of cells for finite elements). Operators exchange the ghosts they need themselves.
+   * The vector of unknowns of every model: owned values first, then the ghosts of the model's own
+   * partitioner (horizon wide for peridynamics, one layer of cells for finite elements). Operators
+   * exchange the ghosts they need themselves.
    */
   using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
 } // namespace PeriDeal

@@ -14,8 +14,9 @@ namespace PeriDeal
   /**
    * A mistake in what the user gave us: a scene, an option, a file. Thrown with AssertThrow.
    *
-   * The program prints message() alone, without file, line or stack, and ends with exit status 1. So the
-   * message must name the entry and its section, what was found, what is allowed, and what to do.
+   * The program prints message() alone, without file, line or stack, and ends with exit status 1.
+   * So the message must name the entry and its section, what was found, what is allowed, and what
+   * to do.
    */
   class UserError : public dealii::ExceptionBase
   {
@@ -32,25 +33,29 @@ namespace PeriDeal
   };
 
   /**
-   * Make an error that only some processes have seen everybody's error. Each process passes its own message, empty if it
-   * has none; if any is not empty, every process throws the UserError of the lowest such rank. Collective.
+   * Make an error that only some processes have seen everybody's error. Each process passes its own
+   * message, empty if it has none; if any is not empty, every process throws the UserError of the
+   * lowest such rank. Collective.
    */
   void throw_on_all_if_any(const MPI_Comm communicator, const std::string &message);
 
   /**
-   * Whether every process calls this within five seconds. For error handling: a process that failed alone must not wait for the
-   * others in a collective operation, which they would never reach.
+   * Whether every process calls this within five seconds. For error handling: a process that failed
+   * alone must not wait for the others in a collective operation, which they would never reach.
    */
   bool all_processes_arrive(const MPI_Comm communicator);
 
   /**
-   * The name in @p known nearest to @p name in edit distance (upper and lower case are the same), or an empty string
-   * if none is near enough to be what the user meant.
+   * The name in @p known nearest to @p name in edit distance (upper and lower case are the same),
+   * or an empty string if none is near enough to be what the user meant.
    */
   template <typename Container>
   std::string nearest_name(const std::string &name, const Container &known);
 
-  /** Number of insertions, deletions, replacements and swaps of neighbours that turn one name into the other, ignoring case. */
+  /**
+   * Number of insertions, deletions, replacements and swaps of neighbours that turn one name into
+   * the other, ignoring case.
+   */
   unsigned int edit_distance(const std::string &a, const std::string &b);
 
   /** `a`, `b` or `c`: a list of names as it reads in a sentence. */

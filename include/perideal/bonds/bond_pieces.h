@@ -11,11 +11,13 @@
 namespace PeriDeal
 {
   /**
-   * A bond between two sites of a lattice of cells, cut where it crosses from cell to cell. Pure geometry in units of the spacing: lengths do not enter, so a
-   * table holds for rectangles and bricks too.
+   * A bond between two sites of a lattice of cells, cut where it crosses from cell to cell. Pure
+   * geometry in units of the spacing: lengths do not enter, so a table holds for rectangles and
+   * bricks too.
    *
-   * A field that is interpolated linearly between the corners of each cell changes along a piece by sum_a change_a T_a, a the corners of a cell
-   * around the piece. So the piece conducts like L = change change^T/length (secant rule: exact where the field is linear on the piece).
+   * A field that is interpolated linearly between the corners of each cell changes along a piece by
+   * sum_a change_a T_a, a the corners of a cell around the piece. So the piece conducts like L =
+   * change change^T/length (secant rule: exact where the field is linear on the piece).
    */
   template <int dim>
   struct BondPiece
@@ -24,8 +26,9 @@ namespace PeriDeal
     using Corners = std::array<double, dealii::GeometryInfo<dim>::vertices_per_cell>;
 
     double length; // part of the bond, all pieces add up to 1
-    std::vector<Site>
-                         cells; // that share the piece: one, or those around a face or an edge; lowest corner relative to the bond's start
+    // The cells that share the piece: one, or those around a face or an edge; lowest corner
+    // relative to the bond's start.
+    std::vector<Site>    cells;
     std::vector<Corners> change; // of the shape functions along the piece, for each of the cells
   };
 

@@ -20,18 +20,22 @@
 namespace PeriDeal
 {
   /**
-   * The bonds of each node, one family at a time: who is bonded to whom and with which conductance. This is the plain definition of the
-   * peridynamic model, from which both forms of the operator are built.
+   * The bonds of each node, one family at a time: who is bonded to whom and with which conductance.
+   * This is the plain definition of the peridynamic model, from which both forms of the operator
+   * are built.
    *
    * The heat that flows from j to i is W_ij (T_j - T_i) with
    *
    *   W_ij = V_i V_j w(xi) k_ij g_ij t_ij,   w = kernel * volume fraction / r^n
    *
-   * (power; 2D per unit thickness, 1D per unit area), k_ij the bond's conductivity by the interface rule, t_ij the cracks' transmission, g_ij
-   * the surface correction. `Self term = paper` adds V_i^2 s(xi) k_ij for the touching neighbours, with the node's own volume; only then W is not symmetric.
+   * (power; 2D per unit thickness, 1D per unit area), k_ij the bond's conductivity by the interface
+   * rule, t_ij the cracks' transmission, g_ij the surface correction. `Self term = paper` adds
+   * V_i^2 s(xi) k_ij for the touching neighbours, with the node's own volume; only then W is not
+   * symmetric.
    *
-   * Neighbours are numbered like the nodes: owned, ghosts, then fictitious nodes from n_local() on. The order of a family is that of the lattice offsets
-   * (or of the relative positions), never of local numbers, so that sums come out the same on any number of processes.
+   * Neighbours are numbered like the nodes: owned, ghosts, then fictitious nodes from n_local() on.
+   * The order of a family is that of the lattice offsets (or of the relative positions), never of
+   * local numbers, so that sums come out the same on any number of processes.
    */
   template <int dim>
   class Families
@@ -49,8 +53,10 @@ namespace PeriDeal
     using HasBonds = std::function<bool(const dealii::Point<dim> &)>;
 
     /**
-     * Adds the halo to the nodes. Collective. Throws UserError for empty families and isolated nodes.
-     * @param has_bonds all nodes if empty. Off the lattice discrete calibration is the mean over these, and no other has to have neighbours.
+     * Adds the halo to the nodes. Collective. Throws UserError for empty families and isolated
+     * nodes.
+     * @param has_bonds all nodes if empty. Off the lattice discrete calibration is the mean over
+     *                  these, and no other has to have neighbours.
      */
     Families(Nodes<dim>       &nodes,
              const Scene<dim> &scene,
@@ -58,18 +64,27 @@ namespace PeriDeal
              const HasBonds   &has_bonds = {});
     ~Families();
 
-    /** The family of an owned node, in its fixed order. @p bonds is overwritten, its memory is reused. */
+    /**
+     * The family of an owned node, in its fixed order. @p bonds is overwritten, its memory is
+     * reused.
+     */
     void bonds_of(const unsigned int node,
                   std::vector<Bond> &bonds,
                   const bool         with_self_term = true) const;
 
-    /** The same for any node known here: the bonds whose other ends are known here, too. Without self term. */
+    /**
+     * The same for any node known here: the bonds whose other ends are known here, too. Without
+     * self term.
+     */
     void known_bonds_of(const unsigned int node, std::vector<Bond> &bonds) const;
 
     /** A crack that is cut into the mesh lies between two nodes. */
     bool is_parted(const unsigned int node, const unsigned int neighbor) const;
 
-    /** On a lattice only: the bonds to neighbours one spacing away along an axis, without self term. Else as bonds_of(). */
+    /**
+     * On a lattice only: the bonds to neighbours one spacing away along an axis, without self term.
+     * Else as bonds_of().
+     */
     void nearest_bonds_of(const unsigned int node, std::vector<Bond> &bonds) const;
 
     /** Relative position of a neighbour. */
@@ -78,13 +93,19 @@ namespace PeriDeal
     const Nodes<dim>                       &nodes() const;
     const std::vector<FictitiousNode<dim>> &fictitious() const;
 
-    /** On a lattice: the full family with weights w (unit conductivity), self term not included. Else empty. */
+    /**
+     * On a lattice: the full family with weights w (unit conductivity), self term not included.
+     * Else empty.
+     */
     const std::vector<FamilyMember<dim>> &lattice_members() const;
 
     /** Self term additions (own volume), empty if none. */
     const std::vector<FamilyMember<dim>> &self_members() const;
 
-    /** Horizon as a length, and the largest distance of a bond (volume fractions may reach half a spacing farther). */
+    /**
+     * Horizon as a length, and the largest distance of a bond (volume fractions may reach half a
+     * spacing farther).
+     */
     double horizon() const;
     double reach() const;
 
@@ -100,7 +121,10 @@ namespace PeriDeal
     /** The conductivity of a bond by the interface rule. */
     double bond_conductivity(const unsigned int node, const unsigned int neighbor) const;
 
-    /** Conductivities at the temperatures u, whose ghosts are up to date. Collective. Throws UserError where one is not positive. */
+    /**
+     * Conductivities at the temperatures u, whose ghosts are up to date. Collective. Throws
+     * UserError where one is not positive.
+     */
     void take_conductivities_at(const Vector &u);
 
     /** Surface correction by energy: bonds everywhere may have factors. */
@@ -115,21 +139,27 @@ namespace PeriDeal
     /** Some bond of this node may cross a crack, or be scaled for one. */
     bool near_crack(const unsigned int node) const;
 
-    /** Local number of the real node at a lattice site, or numbers::invalid_unsigned_int. Only without doubled nodes. */
+    /**
+     * Local number of the real node at a lattice site, or numbers::invalid_unsigned_int. Only
+     * without doubled nodes.
+     */
     unsigned int node_at(const typename Lattice<dim>::Index &site) const;
 
     /**
-     * Surface correction (doc/theory.md): the factors of nodes, owned and ghosts, one for each direction in turn or a single one for all.
-     * From now on a bond's conductance is multiplied by the mean of its nodes' factors, those of the directions weighted with the squares of
-     * the bond's direction cosines. A fictitious node has the factor of its mirror, or 1. An empty list takes the factors away.
+     * Surface correction (doc/theory.md): the factors of nodes, owned and ghosts, one for each
+     * direction in turn or a single one for all. From now on a bond's conductance is multiplied by
+     * the mean of its nodes' factors, those of the directions weighted with the squares of the
+     * bond's direction cosines. A fictitious node has the factor of its mirror, or 1. An empty list
+     * takes the factors away.
      */
     void set_node_factors(std::vector<double> factors,
                           const unsigned int  n_directions,
                           const bool          mirrored);
 
     /**
-     * Make the cracks those of the representative time (CrackHistory), and return the boxes around what has changed: bonds of nodes farther
-     * from all of them than reach() are as before. Node factors stay as they are.
+     * Make the cracks those of the representative time (CrackHistory), and return the boxes around
+     * what has changed: bonds of nodes farther from all of them than reach() are as before. Node
+     * factors stay as they are.
      */
     std::vector<dealii::BoundingBox<dim>> set_cracks_of(const double time);
 
@@ -146,18 +176,25 @@ namespace PeriDeal
     /** What the cracks leave of a bond's conductance, and whether it crosses any. */
     double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const;
 
-    /** The cracks that a bond crosses: +1 if the node lies on the left side, -1 if its neighbour does. @p crossed is overwritten. */
+    /**
+     * The cracks that a bond crosses: +1 if the node lies on the left side, -1 if its neighbour
+     * does. @p crossed is overwritten.
+     */
     void crossed_cracks(const unsigned int                         node,
                         const unsigned int                         neighbor,
                         std::vector<std::pair<unsigned int, int>> &crossed) const;
 
     /**
-     * What the bonds of a complete family conduct of a linear field, over what the conductivity asks for: the mean over the directions of
-     * sum_j w V_j xi_a^2/(2 kappa), self term included. 1 with discrete calibration; also 1 off the lattice, where it is not known.
+     * What the bonds of a complete family conduct of a linear field, over what the conductivity
+     * asks for: the mean over the directions of sum_j w V_j xi_a^2/(2 kappa), self term included. 1
+     * with discrete calibration; also 1 off the lattice, where it is not known.
      */
     double effective_conductivity() const;
 
-    /** Discrete calibration had a complete family to sum over. Off the lattice a body may be too narrow for any; then it is analytic. */
+    /**
+     * Discrete calibration had a complete family to sum over. Off the lattice a body may be too
+     * narrow for any; then it is analytic.
+     */
     bool has_complete_families() const;
 
     /** Whether W is symmetric. */

@@ -12,16 +12,20 @@
 namespace PeriDeal
 {
   /**
-   * Fictitious nodes beyond the flat sides of an elastic body on a lattice, over the whole reach of a family. Beyond a side that is continued their displacement is that of the body, linearly,
+   * Fictitious nodes beyond the flat sides of an elastic body on a lattice, over the whole reach of
+   * a family. Beyond a side that is continued their displacement is that of the body, linearly,
    *
    *   u(x_s + d n) = 2 u(x_s) - u(x_s - d n)
    *
-   * with x_s on the side and n its normal; where a displacement is prescribed at x_s this is the mirror rule of Dirichlet values. Between cell centres u(x_s) is drawn on from the two outermost rows,
-   * 3/2 u_0 - 1/2 u_1. Beyond planes of symmetry they mirror it: the normal component changes its sign, the others do not. At edges and corners one side after the other continues the body, and so do opposite sides
-   * of a body that is narrower than a family.
+   * with x_s on the side and n its normal; where a displacement is prescribed at x_s this is the
+   * mirror rule of Dirichlet values. Between cell centres u(x_s) is drawn on from the two outermost
+   * rows, 3/2 u_0 - 1/2 u_1. Beyond planes of symmetry they mirror it: the normal component changes
+   * its sign, the others do not. At edges and corners one side after the other continues the body,
+   * and so do opposite sides of a body that is narrower than a family.
    *
-   * Vertices on a side have half a cell (a quarter, an eighth at edges and corners); the missing part lies at the same place and moves with them, so that they count with their whole volume in the families of
-   * others.
+   * Vertices on a side have half a cell (a quarter, an eighth at edges and corners); the missing
+   * part lies at the same place and moves with them, so that they count with their whole volume in
+   * the families of others.
    */
   template <int dim>
   class FictitiousExtension
@@ -48,13 +52,18 @@ namespace PeriDeal
     FictitiousExtension(const Families<dim>                   &families,
                         const std::array<BeyondSide, 2 * dim> &beyond);
 
-    /** Whether families go on there and all nodes that the site follows from exist, and which. @p site is overwritten. */
+    /**
+     * Whether families go on there and all nodes that the site follows from exist, and which.
+     * @p site is overwritten.
+     */
     bool find(const Index &index, Site &site) const;
 
     /** The site lies in the body, and on no side beyond which it goes on. */
     bool is_inside(const Index &index) const;
 
-    /** How many sites lie between a site of the body and the nearest side beyond which it goes on. */
+    /**
+     * How many sites lie between a site of the body and the nearest side beyond which it goes on.
+     */
     int distance(const Index &index) const;
 
   private:

@@ -11,13 +11,15 @@
 namespace PeriDeal
 {
   /**
-   * Fictitious nodes outside the flat sides of a box, over the whole reach of a family. Each has the value
+   * Fictitious nodes outside the flat sides of a box, over the whole reach of a family. Each has
+   * the value
    *
    *   T = sign * T(mirror) + sum_k coefficient_k * T*_k(foot_k, t),
    *
-   * with the mirror node inside the body: sign -1 and coefficient 2 on sides with a Dirichlet value (mirror treatment), sign 0 and coefficient
-   * 1 (constant treatment), sign +1 on symmetry sides. At edges and corners one side after the other is mirrored, in the
-   * order left, right, bottom, top, back, front. Vertices are mirrored about the side's own row: the row's missing half or
+   * with the mirror node inside the body: sign -1 and coefficient 2 on sides with a Dirichlet value
+   * (mirror treatment), sign 0 and coefficient 1 (constant treatment), sign +1 on symmetry sides.
+   * At edges and corners one side after the other is mirrored, in the order left, right, bottom,
+   * top, back, front. Vertices are mirrored about the side's own row: the row's missing half or
    * quarter volumes lie outside and are fictitious nodes at the row's own place.
    */
   template <int dim>
@@ -51,7 +53,8 @@ namespace PeriDeal
   /**
    * All fictitious nodes that local nodes of this process may be bonded to.
    * @param reach largest offset of a family in each direction, in lattice spacings
-   * Throws UserError if a side that needs such a layer is not flat or if the body is narrower than the reach. Not collective.
+   * Throws UserError if a side that needs such a layer is not flat or if the body is narrower than
+   * the reach. Not collective.
    */
   template <int dim>
   std::vector<FictitiousNode<dim>> make_fictitious_nodes(const Nodes<dim>              &nodes,

@@ -7,7 +7,10 @@
 
 namespace PeriDeal
 {
-  /** What a process needs the neighbourhood of: its nodes, for their bonds; or its cells and ghost cells, for all bonds that pass through its cells, and all nodes on the way. */
+  /**
+   * What a process needs the neighbourhood of: its nodes, for their bonds; or its cells and ghost
+   * cells, for all bonds that pass through its cells, and all nodes on the way.
+   */
   enum class HaloAround
   {
     nodes,
@@ -16,9 +19,10 @@ namespace PeriDeal
 
 
   /**
-   * Give each process copies of all nodes of others that may be bonded to its own. deal.II's distributed meshes know one layer of
-   * ghost cells only, a horizon reaches over m of them: so every process tells all others a few boxes around its nodes, and receives the
-   * nodes that lie within @p reach of a box. The halo may hold a few nodes that no bond needs. Collective.
+   * Give each process copies of all nodes of others that may be bonded to its own. deal.II's
+   * distributed meshes know one layer of ghost cells only, a horizon reaches over m of them: so
+   * every process tells all others a few boxes around its nodes, and receives the nodes that lie
+   * within @p reach of a box. The halo may hold a few nodes that no bond needs. Collective.
    */
   template <int dim>
   void add_halo(Nodes<dim> &nodes, const double reach, const HaloAround around = HaloAround::nodes);

@@ -26,7 +26,10 @@ namespace PeriDeal
       bins[bin_of(p)].push_back(number);
     }
 
-    /** Visit the numbers of all points within the edge of p, and of some more, in an order that depends on places and on the order of add() alone. */
+    /**
+     * Visit the numbers of all points within the edge of p, and of some more, in an order that
+     * depends on places and on the order of add() alone.
+     */
     template <typename Visit>
     void visit_near(const dealii::Point<dim> &p, const Visit &visit) const
     {

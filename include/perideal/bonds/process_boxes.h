@@ -16,7 +16,9 @@ namespace PeriDeal
   class ProcessBoxes
   {
   public:
-    /** @param own_points of this process; consecutive ones should be near each other. Collective. */
+    /**
+     * @param own_points of this process; consecutive ones should be near each other. Collective.
+     */
     ProcessBoxes(const std::vector<dealii::Point<dim>> &own_points, const MPI_Comm communicator);
 
     unsigned int n_processes() const;

@@ -18,8 +18,8 @@ namespace PeriDeal
    *
    *   out(x,y,z) = sum over offsets (a,b,c) of w(|a|,|b|,|c|) g(x+a, y+b, z+c).
    *
-   * A stencil may be odd in some coordinates: then the terms also have the signs of these coordinates of their offsets, and where
-   * one of them is zero there is no term.
+   * A stencil may be odd in some coordinates: then the terms also have the signs of these
+   * coordinates of their offsets, and where one of them is zero there is no term.
    *
    * **Method.** Mirror images are added before they are multiplied. In 3D, rows are first folded
    * over z into a buffer, u_c(x,y) = g(x,y,z+c) + g(x,y,z-c). Then, for each class of shifts in x,
@@ -87,7 +87,8 @@ namespace PeriDeal
      * weight of each; a zero coordinate has one image, any other two, so an entry stands for 1 to 8
      * bonds. The offset (0,0,0) is allowed: with it a constant diagonal can be built in.
      *
-     * @p odd says in which coordinates the stencil is odd. halo() is that of all offsets, those of no weight included.
+     * @p odd says in which coordinates the stencil is odd. halo() is that of all offsets, those of
+     * no weight included.
      *
      * @throw std::invalid_argument if the lists are of different or zero length, if an offset is
      * negative, occurs twice or leaves the dimension, or if a weight is not finite.

@@ -13,8 +13,8 @@ namespace PeriDeal
   {
     /**
      * One term of the stencil: an input row p, and the symmetric filter over y that is applied to
-     * it. The input row is the sum of up to four rows u_c, each shifted in x; of a stencil that is odd in x,
-     * the second and the fourth are subtracted.
+     * it. The input row is the sum of up to four rows u_c, each shifted in x; of a stencil that is
+     * odd in x, the second and the fourth are subtracted.
      */
     struct StencilChannel
     {

@@ -18,11 +18,13 @@ namespace PeriDeal
   using FourthMoments = std::array<double, n_fourth_moments<dim>>;
 
   /**
-   * All products n_a n_b n_c n_d of the components of the direction n = xi/x, each times the square root of how often it occurs in the tensor n n n n. They
-   * are the same for xi and -xi. The squares of their components add up to 1.
+   * All products n_a n_b n_c n_d of the components of the direction n = xi/x, each times the square
+   * root of how often it occurs in the tensor n n n n. They are the same for xi and -xi. The
+   * squares of their components add up to 1.
    *
-   * With weights w of bonds, sum w x^2 n n n n over a family is all that its energy and collapsed stress under a uniform strain know of it: the trace over two of
-   * the indices is sum w xi xi, from which theta comes, the trace over all q.
+   * With weights w of bonds, sum w x^2 n n n n over a family is all that its energy and collapsed
+   * stress under a uniform strain know of it: the trace over two of the indices is sum w xi xi,
+   * from which theta comes, the trace over all q.
    */
   template <int dim>
   FourthMoments<dim> fourth_moments(const dealii::Tensor<1, dim> &xi);
@@ -33,7 +35,8 @@ namespace PeriDeal
 
 
   /**
-   * A symmetric positive definite matrix sum w m m^T and its Cholesky factor, row by row below the diagonal.
+   * A symmetric positive definite matrix sum w m m^T and its Cholesky factor, row by row below the
+   * diagonal.
    */
   template <int dim>
   class MomentMatrix
@@ -55,8 +58,8 @@ namespace PeriDeal
   double scalar_product(const FourthMoments<dim> &a, const FourthMoments<dim> &b);
 
   /**
-   * The y for which the factors 1 + y . m of a family's bonds, of all factors those nearest to 1 in the mean of w, add sum w m (y . m) =
-   * missing; and whether all these factors are positive.
+   * The y for which the factors 1 + y . m of a family's bonds, of all factors those nearest to 1 in
+   * the mean of w, add sum w m (y . m) = missing; and whether all these factors are positive.
    */
   template <int dim>
   bool positive_factors_exist(const std::vector<FourthMoments<dim>> &m,

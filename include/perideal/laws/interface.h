@@ -9,7 +9,10 @@
 
 namespace PeriDeal
 {
-  /** No bond of an exchange is active across a jump of the conductivity (the stiffness) by more than this factor: so layers stay exact. */
+  /**
+   * No bond of an exchange is active across a jump of the conductivity (the stiffness) by more than
+   * this factor: so layers stay exact.
+   */
   constexpr double largest_contrast = 1.5;
 
 

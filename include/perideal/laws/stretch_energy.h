@@ -8,8 +8,9 @@
 namespace PeriDeal
 {
   /**
-   * What a family sums under unit stretches along each axis a, the others 0, with weights w of its bonds: sum w xi_a^2, the dilatation, and sum w
-   * xi_a^4/x^2, the energy of the extensions but for common factors.
+   * What a family sums under unit stretches along each axis a, the others 0, with weights w of its
+   * bonds: sum w xi_a^2, the dilatation, and sum w xi_a^4/x^2, the energy of the extensions but for
+   * common factors.
    */
   template <int dim>
   struct StretchSums
@@ -25,8 +26,8 @@ namespace PeriDeal
                                       const dealii::Tensor<1, dim> &own);
 
   /**
-   * Factor of a bond: the radius in its direction n of the ellipsoid whose half axes are the means g of both ends' factors, (sum_a (n_a/g_a)^2)^(-1/2)
-   * (Madenci and Oterkus 2014, section 4.2).
+   * Factor of a bond: the radius in its direction n of the ellipsoid whose half axes are the means
+   * g of both ends' factors, (sum_a (n_a/g_a)^2)^(-1/2) (Madenci and Oterkus 2014, section 4.2).
    */
   template <int dim>
   double ellipsoid_factor(const dealii::Tensor<1, dim> &one,

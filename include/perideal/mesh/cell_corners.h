@@ -12,7 +12,10 @@
 
 namespace PeriDeal
 {
-  /** A node and dim of its neighbours, one along each direction of the mesh: they span a corner of a cell. */
+  /**
+   * A node and dim of its neighbours, one along each direction of the mesh: they span a corner of a
+   * cell.
+   */
   template <int dim>
   struct CellCorner
   {
@@ -22,10 +25,13 @@ namespace PeriDeal
 
 
   /**
-   * All corners of owned nodes: of the cells around a vertex its neighbours along the edges, of a node at the centre of a cell those at the centres of
-   * the cells beside it, where these are cells of the same size. A node inside a plane has four, one inside a body in space eight. Not collective.
+   * All corners of owned nodes: of the cells around a vertex its neighbours along the edges, of a
+   * node at the centre of a cell those at the centres of the cells beside it, where these are cells
+   * of the same size. A node inside a plane has four, one inside a body in space eight. Not
+   * collective.
    *
-   * @param local_number of the node with a global index, or numbers::invalid_unsigned_int for those that this process does not know. Corners with such nodes are left out.
+   * @param local_number of the node with a global index, or numbers::invalid_unsigned_int for those
+   *                     that this process does not know. Corners with such nodes are left out.
    */
   template <int dim>
   std::vector<CellCorner<dim>> cell_corners(
@@ -35,10 +41,12 @@ namespace PeriDeal
 
 
   /**
-   * The volume that the corner spans over what it spanned in the undeformed mesh, by the places of its nodes: 1 in a body at rest, also one that has been turned, zero or negative where
-   * nodes have passed through each other.
+   * The volume that the corner spans over what it spanned in the undeformed mesh, by the places of
+   * its nodes: 1 in a body at rest, also one that has been turned, zero or negative where nodes
+   * have passed through each other.
    *
-   * @param position of a node by local number; @param displacement dim numbers for each node, interleaved
+   * @param position of a node by local number; @param displacement dim numbers for each node,
+   *                 interleaved
    */
   template <int dim, typename Position>
   double volume_ratio(const CellCorner<dim> &corner,

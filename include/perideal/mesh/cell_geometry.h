@@ -21,8 +21,8 @@ namespace PeriDeal
     const dealii::Point<dim> &unit);
 
   /**
-   * The point of the unit cell that the multilinear mapping takes to p, to round-off; @p unit is where the search for it starts. Returns false far outside
-   * of the cell, where there may be none.
+   * The point of the unit cell that the multilinear mapping takes to p, to round-off; @p unit is
+   * where the search for it starts. Returns false far outside of the cell, where there may be none.
    */
   template <int dim>
   bool unit_point(const CellCorners<dim>   &corners,
@@ -34,8 +34,9 @@ namespace PeriDeal
   double volume_element(const CellCorners<dim> &corners, const dealii::Point<dim> &unit);
 
   /**
-   * Append the places s at which the line a + s (b - a) passes the faces of a cell, extended a little beyond their edges; not those at which it lies within a face.
-   * 2D: straight edges. 3D: bilinear faces, which two cells share exactly.
+   * Append the places s at which the line a + s (b - a) passes the faces of a cell, extended a
+   * little beyond their edges; not those at which it lies within a face. 2D: straight edges. 3D:
+   * bilinear faces, which two cells share exactly.
    */
   template <int dim>
   void add_face_crossings(const CellCorners<dim>   &corners,

@@ -13,7 +13,10 @@
 
 namespace PeriDeal
 {
-  /** A cell as paths see it. Cells are neighbours if they have the nodes of a face in common: not across a crack cut into the mesh. */
+  /**
+   * A cell as paths see it. Cells are neighbours if they have the nodes of a face in common: not
+   * across a crack cut into the mesh.
+   */
   template <int dim>
   struct PathCell
   {
@@ -31,8 +34,10 @@ namespace PeriDeal
   };
 
 
-  /** What a path has in a cell: the change of the shape functions along the piece, over the square root of its share of the path, times that of one over the
-   *  number of cells around it. */
+  /**
+   * What a path has in a cell: the change of the shape functions along the piece, over the square
+   * root of its share of the path, times that of one over the number of cells around it.
+   */
   template <int dim>
   struct PathPiece
   {
@@ -44,10 +49,12 @@ namespace PeriDeal
   /**
    * Follows straight lines from vertex to vertex through the cells on their way.
    *
-   * A path that passes from cell to cell through the inside of faces walks so: where it crosses a face the two coordinates of the face give the shape
-   * functions of both cells. So do paths within a side of the body that is flat to 1e-4 of a cell, and those that are one edge of a cell. All others
-   * (within faces of the inside, close to vertices, through hanging nodes, at cracks cut into the mesh) are cut at all faces of the cells nearby, and for
-   * each piece the cells that hold its middle are looked for.
+   * A path that passes from cell to cell through the inside of faces walks so: where it crosses a
+   * face the two coordinates of the face give the shape functions of both cells. So do paths within
+   * a side of the body that is flat to 1e-4 of a cell, and those that are one edge of a cell. All
+   * others (within faces of the inside, close to vertices, through hanging nodes, at cracks cut
+   * into the mesh) are cut at all faces of the cells nearby, and for each piece the cells that hold
+   * its middle are looked for.
    */
   template <int dim>
   class CellPaths
@@ -57,8 +64,10 @@ namespace PeriDeal
     using Piece = PathPiece<dim>;
 
     /**
-     * Paths connect nodes of a list that are no farther apart than the reach. Only cells near to some of these are looked at; all cells must live on.
-     * @param regular there are neither hanging nodes nor cracks cut into the mesh: then an edge has only those cells around it that have its nodes.
+     * Paths connect nodes of a list that are no farther apart than the reach. Only cells near to
+     * some of these are looked at; all cells must live on.
+     * @param regular there are neither hanging nodes nor cracks cut into the mesh: then an edge has
+     *                only those cells around it that have its nodes.
      */
     CellPaths(const std::vector<PathCell<dim>>      &cells,
               const std::vector<dealii::Point<dim>> &ends,
@@ -66,7 +75,10 @@ namespace PeriDeal
               const bool                             regular);
     ~CellPaths();
 
-    /** @p pieces is overwritten; they are in the order of the way. Returns false if the path leaves the body. Fast if paths from the same start follow in turn. */
+    /**
+     * @p pieces is overwritten; they are in the order of the way. Returns false if the path leaves
+     * the body. Fast if paths from the same start follow in turn.
+     */
     bool follow(const End &a, const End &b, std::vector<Piece> &pieces);
 
     /** The same for any path, without walking. */
@@ -82,7 +94,10 @@ namespace PeriDeal
     static constexpr unsigned int n_faces        = dealii::GeometryInfo<dim>::faces_per_cell;
     static constexpr unsigned int n_face_corners = n_corners / 2;
 
-    /** A cell at the start of a path, and the inverse of its Jacobian there: directions into the cell have positive components. */
+    /**
+     * A cell at the start of a path, and the inverse of its Jacobian there: directions into the
+     * cell have positive components.
+     */
     struct Start
     {
       unsigned int           cell, corner;

@@ -11,7 +11,10 @@
 
 namespace PeriDeal
 {
-  /** Finds cells by place, in a time that grows with their number found. Knows this process's cells and ghost cells as they are when it is made. */
+  /**
+   * Finds cells by place, in a time that grows with their number found. Knows this process's cells
+   * and ghost cells as they are when it is made.
+   */
   template <int dim>
   class CellSearch
   {
@@ -21,7 +24,10 @@ namespace PeriDeal
     explicit CellSearch(const dealii::DoFHandler<dim> &dofs);
     ~CellSearch();
 
-    /** Append the cells that come within a distance of some box, in the coordinate directions. May append a cell again. */
+    /**
+     * Append the cells that come within a distance of some box, in the coordinate directions. May
+     * append a cell again.
+     */
     void find(const std::vector<dealii::BoundingBox<dim>> &boxes,
               const double                                 distance,
               std::vector<Cell>                           &cells) const;

@@ -24,16 +24,18 @@ namespace PeriDeal
   double measure_on_faces(const CoarseMesh<dim> &mesh, const CrackGeometry<dim> &crack);
 
   /**
-   * Whether all of a crack that is inside the body lies on whole interior faces of the mesh: then both cells beside each piece hold that piece, while a
-   * piece inside a cell is held by one cell only. The crack may leave the body.
+   * Whether all of a crack that is inside the body lies on whole interior faces of the mesh: then
+   * both cells beside each piece hold that piece, while a piece inside a cell is held by one cell
+   * only. The crack may leave the body.
    */
   template <int dim>
   bool lies_on_faces(const CoarseMesh<dim> &mesh, const CrackGeometry<dim> &crack);
 
   /**
-   * Cut cracks that lie on cell faces into a coarse mesh: around each vertex on a crack the cells fall into groups connected
-   * through faces that are not on a crack; every group but the first gets a vertex of its own. So crack tips stay
-   * closed, crossings and cracks that leave the body open up.
+   * Cut cracks that lie on cell faces into a coarse mesh: around each vertex on a crack the cells
+   * fall into groups connected through faces that are not on a crack; every group but the first
+   * gets a vertex of its own. So crack tips stay closed, crossings and cracks that leave the body
+   * open up.
    */
   template <int dim>
   void cut_along_faces(CoarseMesh<dim> &mesh, const std::vector<CrackGeometry<dim>> &cracks);

@@ -10,7 +10,10 @@
 
 namespace PeriDeal
 {
-  /** Whether some crack separates two vertices of a cell. @tparam Cell an accessor or iterator of deal.II */
+  /**
+   * Whether some crack separates two vertices of a cell. @tparam Cell an accessor or iterator of
+   * deal.II
+   */
   template <int dim, typename Cell>
   bool is_cut(const Cell &cell, const std::vector<CrackGeometry<dim>> &cracks)
   {

@@ -14,10 +14,12 @@
 namespace PeriDeal
 {
   /**
-   * Which cells of a box have to be as fine as its lattice, and how large the others may be: at least two cells of each size lie between the fine part and
-   * cells twice as large. The fine part is the zone of section `Coupling` around the cracks as they will be: at the end of the run, or, with
-   * `Zone = adaptive`, at the time when the mesh is adapted next; and that of `Fine where`, which alone counts for finite elements alone. The same on every process;
-   * nothing is collective unless stated.
+   * Which cells of a box have to be as fine as its lattice, and how large the others may be: at
+   * least two cells of each size lie between the fine part and cells twice as large. The fine part
+   * is the zone of section `Coupling` around the cracks as they will be: at the end of the run, or,
+   * with `Zone = adaptive`, at the time when the mesh is adapted next; and that of `Fine where`,
+   * which alone counts for finite elements alone. The same on every process; nothing is collective
+   * unless stated.
    */
   template <int dim>
   class Grading
@@ -28,7 +30,10 @@ namespace PeriDeal
     /** @param mesh that of the scene, or its coarse cells; on every process */
     Grading(const Scene<dim> &scene, const dealii::Triangulation<dim> &mesh);
 
-    /** `Zone = adaptive`: the time after t at which the mesh has to follow the cracks or the solution; infinity if it never has to. */
+    /**
+     * `Zone = adaptive`: the time after t at which the mesh has to follow the cracks or the
+     * solution; infinity if it never has to.
+     */
     double next_adaptation(const double t) const;
 
     /** Make the fine part that of time t. */
@@ -41,9 +46,10 @@ namespace PeriDeal
     void refine(dealii::Triangulation<dim> &mesh) const;
 
     /**
-     * Mark cells to be refined and coarsened: those too coarse are refined, and those with an indicator above @p target; those with a far smaller one are
-     * merged where the fine part allows it. @p indicators are squares, by active cell index. Returns whether any mark was set. Only for a mesh that p4est
-     * distributes. Collective.
+     * Mark cells to be refined and coarsened: those too coarse are refined, and those with an
+     * indicator above @p target; those with a far smaller one are merged where the fine part allows
+     * it. @p indicators are squares, by active cell index. Returns whether any mark was set. Only
+     * for a mesh that p4est distributes. Collective.
      */
     bool mark(dealii::Triangulation<dim> &mesh,
               const std::vector<double>  &indicators,
@@ -67,8 +73,9 @@ namespace PeriDeal
     std::function<unsigned int(const typename dealii::Triangulation<dim>::cell_iterator &cell)>;
 
   /**
-   * The nonzeros of a node's row in all models of a scene, by the place of the cell: in a zone also those of its bonds. With a zone that follows
-   * cracks it is the zone at the end of the run. Empty if all cells make the same.
+   * The nonzeros of a node's row in all models of a scene, by the place of the cell: in a zone also
+   * those of its bonds. With a zone that follows cracks it is the zone at the end of the run. Empty
+   * if all cells make the same.
    */
   template <int dim>
   CellWork<dim> work_of_cells(const Scene<dim> &scene);

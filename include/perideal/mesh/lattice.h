@@ -11,8 +11,8 @@
 namespace PeriDeal
 {
   /**
-   * The regular lattice on which the nodes of a box or of a plate with a hole lie. Sites are numbered per direction from 0; a site
-   * may carry no node (hole).
+   * The regular lattice on which the nodes of a box or of a plate with a hole lie. Sites are
+   * numbered per direction from 0; a site may carry no node (hole).
    */
   template <int dim>
   struct Lattice
@@ -24,7 +24,10 @@ namespace PeriDeal
     Index                  n_sites;
     bool                   at_centers = false; // sites at cell centres, else at cell vertices
 
-    /** Position of a site; the same on every process and exact at the body's corners. Sites outside the body are allowed. */
+    /**
+     * Position of a site; the same on every process and exact at the body's corners. Sites outside
+     * the body are allowed.
+     */
     dealii::Point<dim> position(const Index &index) const
     {
       dealii::Point<dim> p;

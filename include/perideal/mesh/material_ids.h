@@ -10,8 +10,8 @@
 namespace PeriDeal
 {
   /**
-   * Let regions given as `mesh(id)` know the material ids of the mesh. Asked for a point, they look through the coarse cells, which every process
-   * has all of. Keeps a reference to the mesh.
+   * Let regions given as `mesh(id)` know the material ids of the mesh. Asked for a point, they look
+   * through the coarse cells, which every process has all of. Keeps a reference to the mesh.
    *
    * Throws UserError for an id that no cell has. Not collective.
    */

@@ -32,8 +32,9 @@ namespace PeriDeal
 
 
   /**
-   * A node's share of the boundary: its part of the area (3D), length (2D) or 1 (1D) of the faces of one boundary id, or of a Part.
-   * Of regions and points, which have no area, the shares of all nodes have the sum 1.
+   * A node's share of the boundary: its part of the area (3D), length (2D) or 1 (1D) of the faces
+   * of one boundary id, or of a Part. Of regions and points, which have no area, the shares of all
+   * nodes have the sum 1.
    */
   struct BoundaryShare
   {
@@ -46,18 +47,21 @@ namespace PeriDeal
 
 
   /**
-   * Peridynamic nodes on a deal.II mesh: one per FE_Q(1) dof (mesh vertex; the volume is the node's share of the adjacent
-   * cells) or one per FE_DGQ(0) dof (cell centre; the volume is the cell's measure).
+   * Peridynamic nodes on a deal.II mesh: one per FE_Q(1) dof (mesh vertex; the volume is the node's
+   * share of the adjacent cells) or one per FE_DGQ(0) dof (cell centre; the volume is the cell's
+   * measure).
    *
-   * Node l < n_owned() is the dof with global index first_owned() + l; ghosts follow once a halo has been added. All positions,
-   * volumes and shares are the same to the last bit on any number of processes.
+   * Node l < n_owned() is the dof with global index first_owned() + l; ghosts follow once a halo
+   * has been added. All positions, volumes and shares are the same to the last bit on any number of
+   * processes.
    */
   template <int dim>
   class Nodes
   {
   public:
     /**
-     * @param dof_handler FE_Q(1) or FE_DGQ(0) with dofs distributed; on a lattice renumber them first with number_along_lattice().
+     * @param dof_handler FE_Q(1) or FE_DGQ(0) with dofs distributed; on a lattice renumber them
+     *                    first with number_along_lattice().
      * Collective.
      */
     Nodes(const dealii::DoFHandler<dim> &dof_handler,
@@ -75,17 +79,21 @@ namespace PeriDeal
     double                    volume(const unsigned int node) const;
 
     /**
-     * The point that decides on which side of a crack the node is: its position, or for a node doubled by a crack cut into the mesh a
-     * point slightly inside its own cells.
+     * The point that decides on which side of a crack the node is: its position, or for a node
+     * doubled by a crack cut into the mesh a point slightly inside its own cells.
      */
     dealii::Point<dim> crack_point(const unsigned int node) const;
 
-    /** Shares of owned nodes in boundary faces (both faces of a crack cut into the mesh are not listed). */
+    /**
+     * Shares of owned nodes in boundary faces (both faces of a crack cut into the mesh are not
+     * listed).
+     */
     const std::vector<BoundaryShare> &boundary_shares() const;
 
     /**
-     * Find the shares of parts: a node on a part of a side has what of the area that it stands for lies in the part (with vertices the integral of
-     * its shape function, so that sums are those of the part), a node of a region its share of the region's volume.
+     * Find the shares of parts: a node on a part of a side has what of the area that it stands for
+     * lies in the part (with vertices the integral of its shape function, so that sums are those of
+     * the part), a node of a region its share of the region's volume.
      *
      * Throws UserError for parts without area, regions without nodes. Returns *this. Collective.
      */
@@ -94,7 +102,10 @@ namespace PeriDeal
     /** Those of boundary_shares() and behind them those of parts. */
     const std::vector<BoundaryShare> &condition_shares() const;
 
-    /** Where formulas of a condition are taken for a share: at the node, or in the middle of the share's area if a part cuts it. */
+    /**
+     * Where formulas of a condition are taken for a share: at the node, or in the middle of the
+     * share's area if a part cuts it.
+     */
     dealii::Point<dim> place_of(const BoundaryShare &share) const;
 
     /** The lattice of a box or a plate with a hole. Empty on mesh files. */
@@ -106,7 +117,10 @@ namespace PeriDeal
     /** Some cells of the lattice are merged (`Coarsening`), so that sites in them have no node. */
     bool is_graded() const;
 
-    /** A node whose value follows from its neighbours', because it lies on the side of a larger cell. For owned nodes. */
+    /**
+     * A node whose value follows from its neighbours', because it lies on the side of a larger
+     * cell. For owned nodes.
+     */
     bool is_hanging(const unsigned int node) const;
 
     /** Smallest edge of the lattice, or of the mesh's cells. */
@@ -123,7 +137,10 @@ namespace PeriDeal
     /** Owned nodes and halo, for vectors. Valid after set_ghosts(). */
     const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &partitioner() const;
 
-    /** Share of the body's volume that owned nodes have for which the test, of their local number, holds. Collective. */
+    /**
+     * Share of the body's volume that owned nodes have for which the test, of their local number,
+     * holds. Collective.
+     */
     double volume_share(const std::function<bool(const unsigned int)> &holds) const;
 
     /** Bytes held, for the report. */
@@ -151,7 +168,10 @@ namespace PeriDeal
   };
 
 
-  /** Renumber dofs so that on each process x runs fastest, then y, then z. Only for meshes of a box. Collective. */
+  /**
+   * Renumber dofs so that on each process x runs fastest, then y, then z. Only for meshes of a box.
+   * Collective.
+   */
   template <int dim>
   void number_along_lattice(dealii::DoFHandler<dim> &dof_handler, const Domain<dim> &domain);
 } // namespace PeriDeal

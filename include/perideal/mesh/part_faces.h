@@ -13,7 +13,10 @@
 
 namespace PeriDeal
 {
-  /** Points of a face with the area (length, 1) that each stands for, in the coordinates of the cell and of the body. */
+  /**
+   * Points of a face with the area (length, 1) that each stands for, in the coordinates of the cell
+   * and of the body.
+   */
   template <int dim>
   struct FacePoints
   {
@@ -27,9 +30,10 @@ namespace PeriDeal
   /**
    * Gauss points on what of a face lies in a part of a side.
    *
-   * Where the formula of the part changes along a face of two dimensions is found by bisection: lengths are exact to round-off if no piece is shorter than 1/16 of the
-   * face. In three dimensions this is done on 32 lines across the face: areas under a smooth rim are good to about 1e-3 of the faces that it cuts, and pieces
-   * narrower than 1/8 of a face may be overlooked.
+   * Where the formula of the part changes along a face of two dimensions is found by bisection:
+   * lengths are exact to round-off if no piece is shorter than 1/16 of the face. In three
+   * dimensions this is done on 32 lines across the face: areas under a smooth rim are good to about
+   * 1e-3 of the faces that it cuts, and pieces narrower than 1/8 of a face may be overlooked.
    *
    * @param vertices of the cell, which is mapped (bi-, tri-)linearly
    * @param n_points Gauss points along each direction of a face or piece

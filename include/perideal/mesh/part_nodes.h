@@ -12,7 +12,10 @@
 
 namespace PeriDeal
 {
-  /** A node of a region, or the one nearest to a point, and its share of the region's volume; the shares of a part have the sum 1. */
+  /**
+   * A node of a region, or the one nearest to a point, and its share of the region's volume; the
+   * shares of a part have the sum 1.
+   */
   struct PartNode
   {
     unsigned int               node; // local number
@@ -23,7 +26,8 @@ namespace PeriDeal
   /**
    * The nodes of regions and points among those of this process.
    *
-   * @param positions, volumes of this process's own nodes. Of nodes equally near to a point the one with the smallest coordinates counts.
+   * @param positions, volumes of this process's own nodes. Of nodes equally near to a point the one
+   *                   with the smallest coordinates counts.
    * Throws UserError for a region without nodes. Collective.
    */
   template <int dim>
@@ -32,7 +36,10 @@ namespace PeriDeal
                                        const std::vector<double>             &volumes,
                                        const MPI_Comm                         communicator);
 
-  /** An error on all processes if the area found for a part of a side, of this process, is zero everywhere. Collective. */
+  /**
+   * An error on all processes if the area found for a part of a side, of this process, is zero
+   * everywhere. Collective.
+   */
   template <int dim>
   void require_areas(const BoundaryConditions<dim> &conditions,
                      const std::vector<double>     &areas,

@@ -13,8 +13,9 @@
 namespace PeriDeal
 {
   /**
-   * How the sum over the bonds of each node, y_i = sum_j W_ij (u_i - u_j), is stored and evaluated. All forms give the same numbers to
-   * round-off. Evaluation allocates nothing and is not collective.
+   * How the sum over the bonds of each node, y_i = sum_j W_ij (u_i - u_j), is stored and evaluated.
+   * All forms give the same numbers to round-off. Evaluation allocates nothing and is not
+   * collective.
    */
   class BondForm
   {
@@ -28,8 +29,8 @@ namespace PeriDeal
      * @param values  owned and ghost values
      * @param outside values of the fictitious nodes (may be null if there are none)
      * @param y       n_owned sums, overwritten
-     * @param finish  if not empty, called once for each node when its sum is known and still in cache, many nodes at a time; it
-     *                may change y of these nodes, but no values
+     * @param finish  if not empty, called once for each node when its sum is known and still in
+     *                cache, many nodes at a time; it may change y of these nodes, but no values
      */
     virtual void apply(double            *y,
                        const double      *values,
@@ -42,20 +43,24 @@ namespace PeriDeal
     }
 
     /**
-     * The sum of W_ij over each owned node's family. Returns the number of this process's unbroken bonds; one between two real nodes
-     * counts half at each.
+     * The sum of W_ij over each owned node's family. Returns the number of this process's unbroken
+     * bonds; one between two real nodes counts half at each.
      */
     virtual double row_sums(double *sums) const = 0;
 
     /**
-     * The conductances of these owned nodes' bonds have changed (Families::set_cracks_of(), set_node_factors()): take them anew, and write the
-     * rows' sums of W_ij to sums[node]. Costs in proportion to the rows, apart from a copy of the stored corrections.
+     * The conductances of these owned nodes' bonds have changed (Families::set_cracks_of(),
+     * set_node_factors()): take them anew, and write the rows' sums of W_ij to sums[node]. Costs in
+     * proportion to the rows, apart from a copy of the stored corrections.
      *
      * @param rows in ascending order
      */
     virtual void update_rows(const std::vector<unsigned int> &rows, double *sums) = 0;
 
-    /** The conductivities of all nodes have changed (Families::take_conductivities_at()): scale each bond, and write the sums of all rows. */
+    /**
+     * The conductivities of all nodes have changed (Families::take_conductivities_at()): scale each
+     * bond, and write the sums of all rows.
+     */
     virtual void update_conductivities(double *sums) = 0;
 
     /** Bytes held. */
@@ -74,14 +79,18 @@ namespace PeriDeal
   std::unique_ptr<BondForm> make_stored_form(const Families<dim> &families);
 
   /**
-   * No bond stored: the family of a lattice is the same everywhere, so the sum is a convolution on a grid padded with zeros, minus a
-   * diagonal that knows the body's edge. Bonds that differ from the template (cut by a crack, other conductivity, self term at edges) are
-   * kept as a list of corrections. Only for nodes with unique lattice sites.
+   * No bond stored: the family of a lattice is the same everywhere, so the sum is a convolution on
+   * a grid padded with zeros, minus a diagonal that knows the body's edge. Bonds that differ from
+   * the template (cut by a crack, other conductivity, self term at edges) are kept as a list of
+   * corrections. Only for nodes with unique lattice sites.
    */
   template <int dim>
   std::unique_ptr<BondForm> make_lattice_form(const Families<dim> &families);
 
-  /** Whether the lattice form is possible and pays: unique sites and one conductivity. Says why not in @p reason. */
+  /**
+   * Whether the lattice form is possible and pays: unique sites and one conductivity. Says why not
+   * in @p reason.
+   */
   template <int dim>
   bool lattice_form_suits(const Families<dim> &families, std::string &reason);
 } // namespace PeriDeal

@@ -12,16 +12,21 @@
 namespace PeriDeal
 {
   /**
-   * Peridynamic diffusion: rho c V_i dT_i/dt = sum_j W_ij (T_j - T_i) + loads (Bobaru 2012 eq 12 times the node's volume).
+   * Peridynamic diffusion: rho c V_i dT_i/dt = sum_j W_ij (T_j - T_i) + loads (Bobaru 2012 eq 12
+   * times the node's volume).
    *
-   * Loads are the volume source, the natural flux through the node's share of a side, and convection as a surface source h A (T_inf - T).
-   * Vectors have the horizon-wide halo of the nodes.
+   * Loads are the volume source, the natural flux through the node's share of a side, and
+   * convection as a surface source h A (T_inf - T). Vectors have the horizon-wide halo of the
+   * nodes.
    */
   template <int dim>
   class BondOperator : public DiffusionOperator
   {
   public:
-    /** Collective. Throws UserError, among others for isolated nodes, a storage that is not positive, a form that does not suit. */
+    /**
+     * Collective. Throws UserError, among others for isolated nodes, a storage that is not
+     * positive, a form that does not suit.
+     */
     BondOperator(Nodes<dim> &nodes, const Scene<dim> &scene);
 
     void          initialize_vector(Vector &vector) const override;
@@ -96,15 +101,19 @@ namespace PeriDeal
     /** Returns the sum of what it adds to free unknowns. */
     double add_loads_now(Vector &r, const double t) const;
 
-    // The parts of entering(), each of this process: what the rows [begin, end) of prescribed nodes say (y = K x without loads there), what is not a load of
-    // nodes, and what comes from fictitious nodes with these values.
+    // The parts of entering(), each of this process: what the rows [begin, end) of prescribed nodes
+    // say (y = K x without loads there), what is not a load of nodes, and what comes from
+    // fictitious nodes with these values.
     double through_prescribed(const Vector      &y,
                               const unsigned int begin,
                               const unsigned int end) const;
     double through_sides(const Vector &x, const double *outside) const;
     double through_slaves(const double t) const;
 
-    /** Sums of the conductances of bonds to fictitious nodes, so that what they bring is a sum over nodes. */
+    /**
+     * Sums of the conductances of bonds to fictitious nodes, so that what they bring is a sum over
+     * nodes.
+     */
     struct OutsideSums
     {
       bool                                         known = false;

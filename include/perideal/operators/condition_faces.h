@@ -19,7 +19,10 @@
 
 namespace PeriDeal
 {
-  /** Quadrature points on what of a face lies in a part, with what is asked of an FEFaceValues there. */
+  /**
+   * Quadrature points on what of a face lies in a part, with what is asked of an FEFaceValues
+   * there.
+   */
   template <int dim>
   class PartValues
   {
@@ -97,7 +100,8 @@ namespace PeriDeal
     }
 
     /**
-     * Call visit(condition, values) for each condition of a list on a boundary face of an own cell, with the quadrature points of what of the face it acts on.
+     * Call visit(condition, values) for each condition of a list on a boundary face of an own cell,
+     * with the quadrature points of what of the face it acts on.
      * @param whole is set to the face if some condition acts on all of it
      */
     template <typename Condition, typename Visit>
@@ -136,7 +140,8 @@ namespace PeriDeal
   };
 
   /**
-   * The regions and points among the parts: this process's unknowns there. The volume of an unknown is an equal share of its cells.
+   * The regions and points among the parts: this process's unknowns there. The volume of an unknown
+   * is an equal share of its cells.
    * @param dofs with one component. Collective.
    */
   template <int dim>
@@ -173,7 +178,8 @@ namespace PeriDeal
 
 
   /**
-   * An error if a condition on a part prescribes nothing: no node lies in it, or what is named before it holds them all.
+   * An error if a condition on a part prescribes nothing: no node lies in it, or what is named
+   * before it holds them all.
    * @param counts of each condition of the list, on this process. Collective.
    */
   template <typename Condition, int dim>

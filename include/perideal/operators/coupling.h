@@ -16,12 +16,14 @@
 namespace PeriDeal
 {
   /**
-   * How peridynamic bonds in a zone and finite elements Q1 share one body: which bonds there are, with which conductance, and what is left of
-   * each cell's matrix. Both act on the same unknowns, the nodes on the vertices of the mesh; FEMOperator adds up
+   * How peridynamic bonds in a zone and finite elements Q1 share one body: which bonds there are,
+   * with which conductance, and what is left of each cell's matrix. Both act on the same unknowns,
+   * the nodes on the vertices of the mesh; FEMOperator adds up
    *
    *   K = sum of bonds W_ij (e_i - e_j)(e_i - e_j)^T + sum of cells R_c.
    *
-   * Every process asks for the bonds of its own nodes and for its own cells only. Not collective unless stated.
+   * Every process asks for the bonds of its own nodes and for its own cells only. Not collective
+   * unless stated.
    */
   template <int dim>
   class Coupling
@@ -32,15 +34,22 @@ namespace PeriDeal
 
     virtual ~Coupling() = default;
 
-    /** What the row of an owned node has of bonds, in a fixed order: `weight` and `intact` as in Families, broken bonds included. */
+    /**
+     * What the row of an owned node has of bonds, in a fixed order: `weight` and `intact` as in
+     * Families, broken bonds included.
+     */
     virtual void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const = 0;
 
-    /** Nodes that an owned node may ever have a bond to, however the zone moves. @p neighbors is overwritten. */
+    /**
+     * Nodes that an owned node may ever have a bond to, however the zone moves. @p neighbors is
+     * overwritten.
+     */
     virtual void possible_neighbors_of(const unsigned int         node,
                                        std::vector<unsigned int> &neighbors) const = 0;
 
     /**
-     * Turn the matrix K_c of an intact cell into what is left of it, R_c; broken bonds count as whole ones. Returns whether anything has changed.
+     * Turn the matrix K_c of an intact cell into what is left of it, R_c; broken bonds count as
+     * whole ones. Returns whether anything has changed.
      */
     virtual bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const = 0;
 
@@ -53,7 +62,9 @@ namespace PeriDeal
       return false;
     }
 
-    /** The bonds are better kept as a form of their own than in a matrix. The same on all processes. */
+    /**
+     * The bonds are better kept as a form of their own than in a matrix. The same on all processes.
+     */
     virtual bool has_form() const
     {
       return false;
@@ -71,12 +82,16 @@ namespace PeriDeal
     /** K is symmetric and R_c positive semidefinite. */
     virtual bool symmetric() const = 0;
 
-    /** Boxes around the nodes that join the zone on the way to the cracks of that representative time. */
+    /**
+     * Boxes around the nodes that join the zone on the way to the cracks of that representative
+     * time.
+     */
     virtual std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const = 0;
 
     /**
-     * Move on to the cracks of that representative time, and the zone with them. A bond's conductance follows from the cracks as they are
-     * then, their whole way included: bonds that join find themselves broken where a crack has passed before.
+     * Move on to the cracks of that representative time, and the zone with them. A bond's
+     * conductance follows from the cracks as they are then, their whole way included: bonds that
+     * join find themselves broken where a crack has passed before.
      */
     virtual void set_cracks_of(const double time) = 0;
 

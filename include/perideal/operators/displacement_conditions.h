@@ -24,8 +24,9 @@ namespace PeriDeal
 
 
   /**
-   * Which components of the displacement are not free: those that `Displacement` names, and the normal one on sides of `Symmetry`. Where sides meet, each
-   * component is that of the side named first; symmetry comes last. Unknowns are interleaved (ElasticOperator).
+   * Which components of the displacement are not free: those that `Displacement` names, and the
+   * normal one on sides of `Symmetry`. Where sides meet, each component is that of the side named
+   * first; symmetry comes last. Unknowns are interleaved (ElasticOperator).
    */
   template <int dim>
   class DisplacementConditions
@@ -34,9 +35,11 @@ namespace PeriDeal
     /**
      * @param nodes on the sides
      * @param positions of this process's own nodes, for those in `Displacement layer`
-     * @param at_centers the nodes lie at the centres of cells; then none is held by a plane of symmetry beyond which families go on
+     * @param at_centers the nodes lie at the centres of cells; then none is held by a plane of
+     *                   symmetry beyond which families go on
      *
-     * Collective. Throws UserError for a side of symmetry that is not normal to an axis, and for sides without nodes.
+     * Collective. Throws UserError for a side of symmetry that is not normal to an axis, and for
+     * sides without nodes.
      */
     DisplacementConditions(const std::vector<NodeOnSide<dim>>    &nodes,
                            const std::vector<dealii::Point<dim>> &positions,
@@ -44,7 +47,10 @@ namespace PeriDeal
                            const bool                             at_centers,
                            const MPI_Comm                         communicator);
 
-    /** Hold the pins of the scene's islands. @param positions of this process's own nodes; @param at_centers which pins are meant. Not collective. */
+    /**
+     * Hold the pins of the scene's islands. @param positions of this process's own nodes;
+     * @param at_centers which pins are meant. Not collective.
+     */
     void pin(const std::vector<dealii::Point<dim>> &positions,
              const Scene<dim>                      &scene,
              const bool                             at_centers);
@@ -57,7 +63,10 @@ namespace PeriDeal
 
     bool depends_on_time() const;
 
-    /** Add the components of a vector that belong to prescribed unknowns to the force of their side. Not collective. */
+    /**
+     * Add the components of a vector that belong to prescribed unknowns to the force of their side.
+     * Not collective.
+     */
     void add_reactions(const Vector                                                 &v,
                        std::map<dealii::types::boundary_id, dealii::Tensor<1, dim>> &forces) const;
 
@@ -81,8 +90,9 @@ namespace PeriDeal
 
 
   /**
-   * The forces of all processes by the names of the sides: of those with displacements, symmetry or tractions. What belongs to no side
-   * (dealii::numbers::internal_face_boundary_id) is the body force. Collective.
+   * The forces of all processes by the names of the sides: of those with displacements, symmetry or
+   * tractions. What belongs to no side (dealii::numbers::internal_face_boundary_id) is the body
+   * force. Collective.
    */
   template <int dim>
   ForceBalance gather_forces(

@@ -19,13 +19,15 @@
 namespace PeriDeal
 {
   /**
-   * How peridynamic bonds in a zone and finite elements Q1 share one elastic body: which forces the bonds exert, and what is left of each cell's matrix. Both
-   * act on the same nodes, the vertices of the mesh; ElasticElements adds up
+   * How peridynamic bonds in a zone and finite elements Q1 share one elastic body: which forces the
+   * bonds exert, and what is left of each cell's matrix. Both act on the same nodes, the vertices
+   * of the mesh; ElasticElements adds up
    *
    *   force on i = sum_j B_ij (u_j - u_i) - (sum of families K_f u)_i - (sum of cells R_c u)_i.
    *
-   * Bonds that act one by one are pairs; where a dilatation joins all bonds of a node, they are a family with a matrix over all of its nodes.
-   * Every process asks for the bonds of its own nodes and for its own cells only. Not collective unless stated.
+   * Bonds that act one by one are pairs; where a dilatation joins all bonds of a node, they are a
+   * family with a matrix over all of its nodes. Every process asks for the bonds of its own nodes
+   * and for its own cells only. Not collective unless stated.
    */
   template <int dim>
   class ElasticCoupling
@@ -56,7 +58,10 @@ namespace PeriDeal
 
     virtual ~ElasticCoupling() = default;
 
-    /** What the rows of an owned node have of pairs, in a fixed order, broken bonds included. @p bonds is overwritten. */
+    /**
+     * What the rows of an owned node have of pairs, in a fixed order, broken bonds included.
+     * @p bonds is overwritten.
+     */
     virtual void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const = 0;
 
     /**
@@ -83,14 +88,15 @@ namespace PeriDeal
     }
 
     /**
-     * Turn the matrix K_c of an intact cell (rows and columns interleaved) into what is left of it, R_c; broken bonds count as whole ones. Returns whether anything has
-     * changed.
+     * Turn the matrix K_c of an intact cell (rows and columns interleaved) into what is left of it,
+     * R_c; broken bonds count as whole ones. Returns whether anything has changed.
      */
     virtual bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const = 0;
 
     /**
-     * Planes of symmetry beyond which families go on: what the other half of the body does normal to them acts on all nodes near them, not on those in the plane alone. At most
-     * one along each axis.
+     * Planes of symmetry beyond which families go on: what the other half of the body does normal
+     * to them acts on all nodes near them, not on those in the plane alone. At most one along each
+     * axis.
      */
     virtual std::vector<dealii::types::boundary_id> mirrors() const
     {
@@ -118,7 +124,9 @@ namespace PeriDeal
   std::unique_ptr<ElasticCoupling<dim>> make_elastic_coupling(Nodes<dim>       &nodes,
                                                               const Scene<dim> &scene);
 
-  /** Families everywhere, with nothing left to the elements: peridynamics alone. Otherwise the same. */
+  /**
+   * Families everywhere, with nothing left to the elements: peridynamics alone. Otherwise the same.
+   */
   template <int dim>
   std::unique_ptr<ElasticCoupling<dim>> make_families_everywhere(Nodes<dim>       &nodes,
                                                                  const Scene<dim> &scene);

@@ -22,17 +22,22 @@ namespace dealii::TrilinosWrappers
 namespace PeriDeal
 {
   /**
-   * Linear elasticity with finite elements Qp: K_ab = int lambda grad_a (x) grad_b + mu (grad_b (x) grad_a + grad_a . grad_b I), in 2D with the lambda of plane
-   * stress or plane strain, in 1D with Young's modulus. Material, thermal strain and loads are evaluated at quadrature points, a temperature at nodes interpolated there. The thermal strain
-   * alpha dT (in plane strain (1 + nu) alpha dT) makes the load int grad_a (dim lambda + 2 mu) alpha dT.
+   * Linear elasticity with finite elements Qp: K_ab = int lambda grad_a (x) grad_b + mu (grad_b (x)
+   * grad_a + grad_a . grad_b I), in 2D with the lambda of plane stress or plane strain, in 1D with
+   * Young's modulus. Material, thermal strain and loads are evaluated at quadrature points, a
+   * temperature at nodes interpolated there. The thermal strain alpha dT (in plane strain (1 + nu)
+   * alpha dT) makes the load int grad_a (dim lambda + 2 mu) alpha dT.
    *
    * One scalar DoFHandler numbers the nodes; each has dim unknowns, interleaved.
    *
-   * With a coupling its bonds and families are added, with their thermal loads, and the cells changed (ElasticCoupling); K is as symmetric as the coupling. Cells that a crack cuts carry nothing (`Mesh = removed`), so that in a zone the
-   * bonds around the crack alone hold what they do; unless the crack is cut into the mesh. Thermal strains of bonds are the means of both ends.
+   * With a coupling its bonds and families are added, with their thermal loads, and the cells
+   * changed (ElasticCoupling); K is as symmetric as the coupling. Cells that a crack cuts carry
+   * nothing (`Mesh = removed`), so that in a zone the bonds around the crack alone hold what they
+   * do; unless the crack is cut into the mesh. Thermal strains of bonds are the means of both ends.
    *
-   * Crack-side scaling: at nodes with broken bonds and on cut cells g_i = V_i C_abab/(-(1/2) sum_j tr K_ij r_ij^2), C_abab = dim lambda + dim (dim + 1) mu, clipped
-   * to [0.5, 4]; elsewhere g = 1. Bonds are multiplied by the mean of both ends, cells by that of their vertices.
+   * Crack-side scaling: at nodes with broken bonds and on cut cells g_i = V_i C_abab/(-(1/2) sum_j
+   * tr K_ij r_ij^2), C_abab = dim lambda + dim (dim + 1) mu, clipped to [0.5, 4]; elsewhere g = 1.
+   * Bonds are multiplied by the mean of both ends, cells by that of their vertices.
    */
   template <int dim>
   class ElasticElements : public ElasticOperator
@@ -87,12 +92,16 @@ namespace PeriDeal
     const std::vector<bool> &cut_cells() const;
 
     /**
-     * K of the body without its cracks and conditions, with the bonds of the zone or without any. Collective.
+     * K of the body without its cracks and conditions, with the bonds of the zone or without any.
+     * Collective.
      */
     void assemble_intact(dealii::TrilinosWrappers::SparseMatrix &matrix,
                          const bool                              with_bonds) const;
 
-    /** Lowest eigenvalue of what the coupling leaves of any cell, in units of its shear modulus times h^(dim-2). Collective. */
+    /**
+     * Lowest eigenvalue of what the coupling leaves of any cell, in units of its shear modulus
+     * times h^(dim-2). Collective.
+     */
     double lowest_remainder() const;
 
   protected:
@@ -157,7 +166,10 @@ namespace PeriDeal
   };
 
 
-  /** The rigid motions of nodes at the given places: dim translations, then the rotations. @p layout sets the vectors' layout. */
+  /**
+   * The rigid motions of nodes at the given places: dim translations, then the rotations. @p layout
+   * sets the vectors' layout.
+   */
   template <int dim>
   std::vector<Vector> rigid_motions(const std::vector<dealii::Point<dim>> &positions,
                                     const Vector                          &layout);

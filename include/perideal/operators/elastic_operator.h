@@ -11,7 +11,10 @@
 
 namespace PeriDeal
 {
-  /** The forces on a body at rest, each with one component for each direction (N; in 2D per unit thickness). */
+  /**
+   * The forces on a body at rest, each with one component for each direction (N; in 2D per unit
+   * thickness).
+   */
   struct ForceBalance
   {
     std::map<std::string, std::vector<double>> sides; // reactions and tractions, by the side's name
@@ -25,7 +28,10 @@ namespace PeriDeal
   };
 
 
-  /** Where a body has been turned inside out: nodes have passed through neighbours to which bonds or elements hold them. */
+  /**
+   * Where a body has been turned inside out: nodes have passed through neighbours to which bonds or
+   * elements hold them.
+   */
   struct Inversion
   {
     unsigned long long n_nodes = 0;
@@ -37,25 +43,36 @@ namespace PeriDeal
   /** Where the first bonds of a body broke. */
   struct BreakPlaces
   {
-    std::vector<double>
-      first; // the middle of the bond that was stretched most of all that broke first; empty: none has broken
-    /** How many bonds within a horizon of a side or part in `Traction` broke, by its name, before any did elsewhere. */
+    /**
+     * The middle of the bond that was stretched most of all that broke first; empty: none has
+     * broken.
+     */
+    std::vector<double> first;
+    /**
+     * How many bonds within a horizon of a side or part in `Traction` broke, by its name, before
+     * any did elsewhere.
+     */
     std::map<std::string, unsigned long long> beside_loads;
     bool                                      elsewhere = false; // some broke there, too
   };
 
 
   /**
-   * A body of linear elastic material: M u'' = f(t) - K u, u the displacement. Component c of node i is the unknown dim i + c. K is symmetric and positive
-   * semidefinite, its null space the rigid motions of the body and of parts that nothing holds together. C of the interface is the lumped mass M.
+   * A body of linear elastic material: M u'' = f(t) - K u, u the displacement. Component c of node
+   * i is the unknown dim i + c. K is symmetric and positive semidefinite, its null space the rigid
+   * motions of the body and of parts that nothing holds together. C of the interface is the lumped
+   * mass M.
    *
-   * Where nonlinear(), residual() is that of the deformed body, and K of apply() and multiply() its tangent at the last linearize(), at first that of the
-   * undeformed body.
+   * Where nonlinear(), residual() is that of the deformed body, and K of apply() and multiply() its
+   * tangent at the last linearize(), at first that of the undeformed body.
    */
   class ElasticOperator : public Operator
   {
   public:
-    /** Reactions, tractions and body forces at a state of rest; u must have been through distribute(u, t). Collective. */
+    /**
+     * Reactions, tractions and body forces at a state of rest; u must have been through
+     * distribute(u, t). Collective.
+     */
     virtual ForceBalance forces(const Vector &u, const double t) const = 0;
 
     /** The strain energy (J; in 2D per unit thickness), thermal strain taken off. Collective. */
@@ -64,27 +81,38 @@ namespace PeriDeal
     /** y = K x without conditions. Collective. */
     virtual void multiply(Vector &y, const Vector &x) const = 0;
 
-    /** As residual(), but of all unknowns: of those that are prescribed it is minus the force of the support. Collective. */
+    /**
+     * As residual(), but of all unknowns: of those that are prescribed it is minus the force of the
+     * support. Collective.
+     */
     virtual void unbalanced(Vector &r, const Vector &u, const double t) const = 0;
 
     /** Gives a vector the layout of one number for each node. Not collective. */
     virtual void initialize_nodal_vector(Vector &vector) const = 0;
 
-    /** Let the body be warmer at its nodes by so much than when it is unstressed; K stays as it is. A new equilibrium is to be found. Collective. */
+    /**
+     * Let the body be warmer at its nodes by so much than when it is unstressed; K stays as it is.
+     * A new equilibrium is to be found. Collective.
+     */
     virtual void set_temperature_change(const Vector &nodal) = 0;
 
-    /** What set_temperature_change() was given, with up-to-date ghosts; empty: the formula of the scene holds. */
+    /**
+     * What set_temperature_change() was given, with up-to-date ghosts; empty: the formula of the
+     * scene holds.
+     */
     const Vector &temperature_change() const
     {
       return nodal_change;
     }
 
-    /** Tractions and body forces at time t, all unknowns; thermal strain loads nothing. Collective. */
+    /**
+     * Tractions and body forces at time t, all unknowns; thermal strain loads nothing. Collective.
+     */
     virtual void mechanical_loads(Vector &loads, const double t) const = 0;
 
     /**
-     * y = D v, zero on unknowns that are not free: a viscosity of one second, that is, K's own forces at the rate v of u. D is symmetric and
-     * damps no rigid motion. Collective.
+     * y = D v, zero on unknowns that are not free: a viscosity of one second, that is, K's own
+     * forces at the rate v of u. D is symmetric and damps no rigid motion. Collective.
      */
     virtual void damping_force(Vector &y, const Vector &v) const
     {
@@ -109,15 +137,19 @@ namespace PeriDeal
     /** Make K the tangent at u. Collective. */
     virtual void linearize(const Vector &) {}
 
-    /** The largest |Y|/x - 1, either sign, of unbroken bonds Y that were x long; 0 where nonlinear() is not. Collective. */
+    /**
+     * The largest |Y|/x - 1, either sign, of unbroken bonds Y that were x long; 0 where nonlinear()
+     * is not. Collective.
+     */
     virtual double largest_stretch(const Vector & /*u*/) const
     {
       return 0.;
     }
 
     /**
-     * The nodes at which a corner of a cell that u deforms has no positive volume (cell_corners()); those do not count that have lost a bond, since what has broken
-     * off may fold over. Collective.
+     * The nodes at which a corner of a cell that u deforms has no positive volume (cell_corners());
+     * those do not count that have lost a bond, since what has broken off may fold over.
+     * Collective.
      */
     virtual Inversion inverted(const Vector & /*u*/) const
     {
@@ -131,8 +163,9 @@ namespace PeriDeal
     }
 
     /**
-     * Break for good what is stretched too far at u, which must have been through distribute(). Returns how many bonds; K and its diagonal have changed if any, and
-     * its spectrum has hardly grown (none of the springs; dilatations of more than a pressure may a little). Collective.
+     * Break for good what is stretched too far at u, which must have been through distribute().
+     * Returns how many bonds; K and its diagonal have changed if any, and its spectrum has hardly
+     * grown (none of the springs; dilatations of more than a pressure may a little). Collective.
      *
      * @param share of the largest stretch over critical stretch: only bonds above it
      */

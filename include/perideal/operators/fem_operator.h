@@ -24,23 +24,27 @@ namespace PeriDeal
   /**
    * Heat conduction with continuous finite elements Q1 to Q3 on the mesh as it is.
    *
-   * Cracks: `faces` are in the mesh already (doubled vertices). `pairs` (Q1): in each cell with a pair of vertices that a crack separates, the
-   * cell matrix is replaced by the pair conductances w_ab = max(0, -K_ab) of the pairs that are not separated; a separated pair keeps the
-   * crack's transmission (doc/theory.md). With `Surface correction = crack scaling` the cell matrices next to cracks are multiplied by the mean of their vertices' factors.
-   * `removed`: cut cells conduct nothing.
+   * Cracks: `faces` are in the mesh already (doubled vertices). `pairs` (Q1): in each cell with a
+   * pair of vertices that a crack separates, the cell matrix is replaced by the pair conductances
+   * w_ab = max(0, -K_ab) of the pairs that are not separated; a separated pair keeps the crack's
+   * transmission (doc/theory.md). With `Surface correction = crack scaling` the cell matrices next
+   * to cracks are multiplied by the mean of their vertices' factors. `removed`: cut cells conduct
+   * nothing.
    *
-   * With a coupling the cells keep what it leaves of them, and its bonds are added: the model `coupled`. Then the elements are Q1, and vectors
-   * have the horizon-wide halo of the nodes. Otherwise vectors have the locally relevant dofs as ghosts.
+   * With a coupling the cells keep what it leaves of them, and its bonds are added: the model
+   * `coupled`. Then the elements are Q1, and vectors have the horizon-wide halo of the nodes.
+   * Otherwise vectors have the locally relevant dofs as ghosts.
    *
-   * Hanging nodes of a graded mesh follow from their neighbours: K is C^T K C, and their rows are those of unknowns that are not free.
+   * Hanging nodes of a graded mesh follow from their neighbours: K is C^T K C, and their rows are
+   * those of unknowns that are not free.
    */
   template <int dim>
   class FEMOperator : public DiffusionOperator
   {
   public:
     /**
-     * With the cracks of time @p start, whatever the coupling has had before. Collective. Throws UserError for material values that are not positive and
-     * for nodes that `removed` isolates.
+     * With the cracks of time @p start, whatever the coupling has had before. Collective. Throws
+     * UserError for material values that are not positive and for nodes that `removed` isolates.
      */
     FEMOperator(const dealii::DoFHandler<dim> &dof_handler,
                 const Scene<dim>              &scene,
@@ -83,13 +87,17 @@ namespace PeriDeal
     /** Only in the model `coupled`. */
     const Coupling<dim> &bonds() const;
 
-    /** K of the body without its cracks, with the bonds of the zone as it is now (or without any), constraints left out. Collective. */
+    /**
+     * K of the body without its cracks, with the bonds of the zone as it is now (or without any),
+     * constraints left out. Collective.
+     */
     void assemble_intact(dealii::TrilinosWrappers::SparseMatrix &matrix,
                          const bool                              with_bonds) const;
 
     /**
-     * Call visit(owned unknown, other unknown, conductance) for all pairs between which bonds or cells conduct, by local numbers: the entries off the diagonal of K,
-     * with the sign changed. A pair may come in several parts, and at both of its ends. Only with a coupling.
+     * Call visit(owned unknown, other unknown, conductance) for all pairs between which bonds or
+     * cells conduct, by local numbers: the entries off the diagonal of K, with the sign changed. A
+     * pair may come in several parts, and at both of its ends. Only with a coupling.
      */
     void visit_conductances(
       const std::function<void(const unsigned int, const unsigned int, const double)> &visit) const;
@@ -97,24 +105,32 @@ namespace PeriDeal
     /** y = K x, constraints left out. Collective. */
     void multiply(Vector &y, const Vector &x) const;
 
-    /** Numbers in [-1, 1] that look random but depend on the unknowns' positions alone. Collective. */
+    /**
+     * Numbers in [-1, 1] that look random but depend on the unknowns' positions alone. Collective.
+     */
     const Vector &noise() const;
 
-    /** Heat in the body, which must have constant capacities; u has been through distribute(). Collective. */
+    /**
+     * Heat in the body, which must have constant capacities; u has been through distribute().
+     * Collective.
+     */
     double heat(const Vector &u) const;
 
     /** Set the owned hanging nodes of v to what follows from their neighbours. Collective. */
     void interpolate_hanging(Vector &v) const;
 
-    /** Give what owned hanging nodes have of an integral, a load for instance, to the nodes they follow from. Collective. */
+    /**
+     * Give what owned hanging nodes have of an integral, a load for instance, to the nodes they
+     * follow from. Collective.
+     */
     void condense(Vector &loads) const;
 
     /** Set the entries of v for owned hanging nodes. Not collective. */
     void set_hanging(Vector &v, const double value) const;
 
     /**
-     * Lowest eigenvalue of what the coupling leaves of any cell before cracks cut it, in units of the conductivity times h^(dim-2); infinite if it
-     * leaves all cells as they are. Collective.
+     * Lowest eigenvalue of what the coupling leaves of any cell before cracks cut it, in units of
+     * the conductivity times h^(dim-2); infinite if it leaves all cells as they are. Collective.
      */
     double lowest_remainder() const;
 
@@ -126,7 +142,10 @@ namespace PeriDeal
       const SideCondition *condition;
     };
 
-    /** An owned node on the side of a larger cell, and the nodes whose weighted mean it has (local numbers). */
+    /**
+     * An owned node on the side of a larger cell, and the nodes whose weighted mean it has (local
+     * numbers).
+     */
     struct HangingNode
     {
       unsigned int                                 dof;
@@ -141,7 +160,10 @@ namespace PeriDeal
     /** Some rows of bonds: numbers of neighbours (local) and conductances. */
     using BondRows = std::vector<std::vector<std::pair<unsigned int, double>>>;
 
-    /** The rows of the cells' matrix that are not empty, by local numbers, where the bonds are a form of their own. */
+    /**
+     * The rows of the cells' matrix that are not empty, by local numbers, where the bonds are a
+     * form of their own.
+     */
     struct RemainderRows
     {
       std::vector<unsigned int> rows, starts, columns;
@@ -199,8 +221,9 @@ namespace PeriDeal
     void                      assemble_loads(Vector &loads, const double t) const;
     void                      find_convection_sums();
 
-    // The parts of entering(), each of this process: what the rows [begin, end) of prescribed unknowns say, loads left out; the part of convection that is
-    // linear in x; and the sum of loads of all unknowns but the prescribed ones.
+    // The parts of entering(), each of this process: what the rows [begin, end) of prescribed
+    // unknowns say, loads left out; the part of convection that is linear in x; and the sum of
+    // loads of all unknowns but the prescribed ones.
     double through_prescribed(const Vector      &y,
                               const unsigned int begin,
                               const unsigned int end) const;

@@ -18,12 +18,16 @@ namespace PeriDeal
 
 
   /**
-   * The bonds of the linear peridynamic solid that lead beyond the sides of the body, to fictitious nodes (FictitiousExtension, of meshes BoundaryImage) whose displacement u_g = P u is linear in that of the nodes. Only
-   * families of nodes of the body have energy: a bond (i, g) is one of i alone, in theta_i and q_i, with the spring (b_i/q_i)/(W x^2) of its own end. The force on i is that of any
-   * bond; the opposite one on g is passed on through P^T, so that K stays symmetric and forces and moments balance.
+   * The bonds of the linear peridynamic solid that lead beyond the sides of the body, to fictitious
+   * nodes (FictitiousExtension, of meshes BoundaryImage) whose displacement u_g = P u is linear in
+   * that of the nodes. Only families of nodes of the body have energy: a bond (i, g) is one of i
+   * alone, in theta_i and q_i, with the spring (b_i/q_i)/(W x^2) of its own end. The force on i is
+   * that of any bond; the opposite one on g is passed on through P^T, so that K stays symmetric and
+   * forces and moments balance.
    *
-   * A bond whose node is cut off by a crack from one that g follows is none; beyond a plane of symmetry cracks are mirrored. Vectors: u has a value for each component of owned nodes and ghosts, the latter up to
-   * date.
+   * A bond whose node is cut off by a crack from one that g follows is none; beyond a plane of
+   * symmetry cracks are mirrored. Vectors: u has a value for each component of owned nodes and
+   * ghosts, the latter up to date.
    */
   template <int dim>
   class FictitiousBonds
@@ -50,7 +54,10 @@ namespace PeriDeal
     /** Add sum W x^2/V_i to q of the owned nodes. */
     void add_weights(Vector &q) const;
 
-    /** Make the springs those of b_i/q_i at the owned nodes; @p full keeps what full kinematics need. */
+    /**
+     * Make the springs those of b_i/q_i at the owned nodes; @p full keeps what full kinematics
+     * need.
+     */
     void find_springs(const std::function<double(const unsigned int)> &stiffness, const bool full);
 
     /** @param strain of owned nodes and ghosts */
@@ -91,7 +98,10 @@ namespace PeriDeal
     /** Y, with full kinematics W x Y/|Y|, else the moment. */
     dealii::Tensor<1, dim> direction(const Bond &bond, const double *u) const;
 
-    /** Beginning a sum of forces; then pull() for each force of a bond on its image, and pass_on() to add what the nodes get of them. The last one is collective. */
+    /**
+     * Beginning a sum of forces; then pull() for each force of a bond on its image, and pass_on()
+     * to add what the nodes get of them. The last one is collective.
+     */
     void begin_forces() const;
     void pull(const Bond &bond, const dealii::Tensor<1, dim> &force) const
     {
@@ -100,16 +110,25 @@ namespace PeriDeal
     }
     void pass_on(Vector &y) const;
 
-    /** Let forces_of_planes() count the present forces to all later ones: those of thermal strains, which are loads. */
+    /**
+     * Let forces_of_planes() count the present forces to all later ones: those of thermal strains,
+     * which are loads.
+     */
     void keep_forces();
 
     /** The image is that of the node itself in a plane of symmetry alone. */
     bool is_own_image(const Bond &bond) const;
 
-    /** What planes of symmetry have added to the sum of all forces since begin_forces(), by side; on this process. */
+    /**
+     * What planes of symmetry have added to the sum of all forces since begin_forces(), by side; on
+     * this process.
+     */
     std::map<dealii::types::boundary_id, dealii::Tensor<1, dim>> forces_of_planes() const;
 
-    /** K x of what does not depend on dilatations, and with tau of owned nodes of what does: adds to y. Collective. */
+    /**
+     * K x of what does not depend on dilatations, and with tau of owned nodes of what does: adds to
+     * y. Collective.
+     */
     void add_forces(Vector &y, const Vector &x, const double *tau) const;
 
     /** Visit what an image follows from: visit(node, factors of the components). */
@@ -120,7 +139,10 @@ namespace PeriDeal
         visit(terms[k].node, terms[k].of_component);
     }
 
-    /** Sum of W x and of the factors of all nodes that follow: how much a displacement of 1 may count. */
+    /**
+     * Sum of W x and of the factors of all nodes that follow: how much a displacement of 1 may
+     * count.
+     */
     double sum_of_lengths(const unsigned int i) const;
 
     /** Of the largest factor of each of these. */
@@ -130,7 +152,10 @@ namespace PeriDeal
     void   set_tangent(const Bond &bond, const dealii::Tensor<1, dim> &moment, const double across);
     double stiffness_across(const Bond &bond) const;
 
-    /** Beyond planes of symmetry bonds break as those of the whole body; a bond that lies in the plane counts at no end. */
+    /**
+     * Beyond planes of symmetry bonds break as those of the whole body; a bond that lies in the
+     * plane counts at no end.
+     */
     bool         may_break(const Bond &bond) const;
     unsigned int n_ends(const Bond &bond) const;
     void         break_bond(const std::size_t number);
@@ -139,7 +164,10 @@ namespace PeriDeal
     unsigned int origin(const unsigned int image) const;
     double       volume(const unsigned int image) const;
 
-    /** Break those bonds of a node that others, broken by now, would have to hold: of its neighbours @p lost in the body. Returns whether there were any. */
+    /**
+     * Break those bonds of a node that others, broken by now, would have to hold: of its neighbours
+     * @p lost in the body. Returns whether there were any.
+     */
     bool break_dependent(const unsigned int node, const std::vector<unsigned int> &lost);
 
     std::size_t size() const;

@@ -10,7 +10,10 @@
 
 namespace PeriDeal
 {
-  /** Heat per volume from one temperature to another: the integral of rho c, by n Gauss points where rho c depends on the temperature. */
+  /**
+   * Heat per volume from one temperature to another: the integral of rho c, by n Gauss points where
+   * rho c depends on the temperature.
+   */
   template <int dim, int n = 3>
   double heat_between_temperatures(const Material           &material,
                                    const dealii::Point<dim> &p,
@@ -24,7 +27,10 @@ namespace PeriDeal
   }
 
 
-  /** Heat per volume at a temperature: the integral of rho c over the temperature from 0 on, in pieces until halving them changes nothing. */
+  /**
+   * Heat per volume at a temperature: the integral of rho c over the temperature from 0 on, in
+   * pieces until halving them changes nothing.
+   */
   template <int dim>
   double heat_content(const Material           &material,
                       const dealii::Point<dim> &p,

@@ -17,11 +17,13 @@
 namespace PeriDeal
 {
   /**
-   * The active bonds of an exchange on a lattice of equal cells, and the cells that they pass: what diffusion and elasticity have in common.
+   * The active bonds of an exchange on a lattice of equal cells, and the cells that they pass: what
+   * diffusion and elasticity have in common.
    *
-   * A bond has the strength w(xi) V_i V_j k, with k the smallest stiffness (conductivity) of the cells on its way. It is active if both nodes are in the zone, its
-   * way lies within the body's cells of lattice size, and the stiffness on it varies by less than the factor largest_contrast. On a graded mesh hanging nodes and
-   * others on the side of a larger cell have no bonds.
+   * A bond has the strength w(xi) V_i V_j k, with k the smallest stiffness (conductivity) of the
+   * cells on its way. It is active if both nodes are in the zone, its way lies within the body's
+   * cells of lattice size, and the stiffness on it varies by less than the factor largest_contrast.
+   * On a graded mesh hanging nodes and others on the side of a larger cell have no bonds.
    */
   template <int dim>
   class LatticeBonds
@@ -67,11 +69,17 @@ namespace PeriDeal
                  const Zone<dim>  &zone,
                  const Stiffness  &stiffness = {});
 
-    /** Visit (neighbour, offset, strength) for the active bonds of an owned node, broken ones included, in a fixed order. */
+    /**
+     * Visit (neighbour, offset, strength) for the active bonds of an owned node, broken ones
+     * included, in a fixed order.
+     */
     template <typename Visit>
     void for_each_bond(const unsigned int node, const Visit &visit) const;
 
-    /** Visit (passage, strength of the bond in this cell) for the active bonds that pass the cell with that lowest corner. */
+    /**
+     * Visit (passage, strength of the bond in this cell) for the active bonds that pass the cell
+     * with that lowest corner.
+     */
     template <typename Visit>
     void for_each_passage(const Site &cell, const Visit &visit) const;
 

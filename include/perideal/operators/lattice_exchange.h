@@ -12,16 +12,19 @@
 namespace PeriDeal
 {
   /**
-   * Bondwise exchange on a lattice of equal cells (doc/coupling.md): each active bond is added, and what the finite elements conduct along that very bond is
-   * taken away from the cells that it passes,
+   * Bondwise exchange on a lattice of equal cells (doc/coupling.md): each active bond is added, and
+   * what the finite elements conduct along that very bond is taken away from the cells that it
+   * passes,
    *
    *   R_c = K_c + kappa_c (M - Q[A]) - sum of active bonds W_b share L_b,
    *
-   * M = sum over the full family of w V^2 share L, A = (1/2) sum w V xi xi^T over the full family, Q[A] the cell matrix of the conductivity A; M = Q[A]
-   * on linear fields. So a linear field conducts the same with and without bonds, for any set of them, and R_c is
-   * positive semidefinite.
+   * M = sum over the full family of w V^2 share L, A = (1/2) sum w V xi xi^T over the full family,
+   * Q[A] the cell matrix of the conductivity A; M = Q[A] on linear fields. So a linear field
+   * conducts the same with and without bonds, for any set of them, and R_c is positive
+   * semidefinite.
    *
-   * W_b = w(xi) V_i V_j kappa, kappa the smallest conductivity of the cells on the bond's way. Which bonds are active: LatticeBonds.
+   * W_b = w(xi) V_i V_j kappa, kappa the smallest conductivity of the cells on the bond's way.
+   * Which bonds are active: LatticeBonds.
    */
   template <int dim>
   class LatticeExchange : public Coupling<dim>

@@ -14,14 +14,16 @@
 namespace PeriDeal
 {
   /**
-   * Bondwise exchange on any mesh of quadrilaterals or hexahedra (doc/coupling.md): each bond is followed through the cells on its way, and cells may be
-   * distorted. What the bonds of a zone would take from a distorted cell can be more than it has: with lambda_c the largest eigenvalue of sum W_b L_b against
-   * K_c on linear fields each bond is scaled by
+   * Bondwise exchange on any mesh of quadrilaterals or hexahedra (doc/coupling.md): each bond is
+   * followed through the cells on its way, and cells may be distorted. What the bonds of a zone
+   * would take from a distorted cell can be more than it has: with lambda_c the largest eigenvalue
+   * of sum W_b L_b against K_c on linear fields each bond is scaled by
    *
    *   s_b = min(1, 0.9 min over its way of 1/lambda_c),
    *
-   * and R_c = K_c + H E H^T - sum s_b W_b L_b, H orthonormal and orthogonal to linear fields, E the smallest that makes R_c positive semidefinite:
-   * the positive part of B^T A^+ B - C, with A, B, C the linear, mixed and hourglass blocks of K_c - sum s_b W_b L_b.
+   * and R_c = K_c + H E H^T - sum s_b W_b L_b, H orthonormal and orthogonal to linear fields, E the
+   * smallest that makes R_c positive semidefinite: the positive part of B^T A^+ B - C, with A, B, C
+   * the linear, mixed and hourglass blocks of K_c - sum s_b W_b L_b.
    */
   template <int dim>
   class MeshExchange : public Coupling<dim>
@@ -30,7 +32,10 @@ namespace PeriDeal
     using typename Coupling<dim>::Bond;
     using typename Coupling<dim>::Cell;
 
-    /** Collective. Throws UserError for a zone without nodes, and for cells so distorted that hardly any bond is left. */
+    /**
+     * Collective. Throws UserError for a zone without nodes, and for cells so distorted that hardly
+     * any bond is left.
+     */
     MeshExchange(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone);
     ~MeshExchange() override;
 
@@ -75,7 +80,10 @@ namespace PeriDeal
                      const std::vector<std::size_t>  &way_ends);
     bool follow(const ZoneBond &bond, std::vector<PathPiece<dim>> &way);
 
-    /** Which end of a bond it is followed from: a matter of round-off on the surface of the body, so it is that of lower coordinates, on any process. */
+    /**
+     * Which end of a bond it is followed from: a matter of round-off on the surface of the body, so
+     * it is that of lower coordinates, on any process.
+     */
     bool starts_at(const unsigned int one, const unsigned int other) const;
 
     void take(const double weight, const std::vector<PathPiece<dim>> &way);

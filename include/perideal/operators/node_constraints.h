@@ -13,11 +13,12 @@
 namespace PeriDeal
 {
   /**
-   * Which peridynamic nodes are not free: those that carry a Dirichlet value, and slaves whose value follows from other nodes so that a given heat
-   * flux comes out (`Flux treatment = extrapolation`, Bobaru 2012 section 3.2; `layer extrapolation`, Bobaru 2010 eq 22).
+   * Which peridynamic nodes are not free: those that carry a Dirichlet value, and slaves whose
+   * value follows from other nodes so that a given heat flux comes out (`Flux treatment =
+   * extrapolation`, Bobaru 2012 section 3.2; `layer extrapolation`, Bobaru 2010 eq 22).
    *
-   * Slaves near a corner depend on each other. Their small system is assembled and factored once on every process, and solved at each
-   * distribution.
+   * Slaves near a corner depend on each other. Their small system is assembled and factored once on
+   * every process, and solved at each distribution.
    */
   template <int dim>
   class NodeConstraints
@@ -50,7 +51,10 @@ namespace PeriDeal
     /** Something is prescribed on some process. */
     bool any_prescribed() const;
 
-    /** Set prescribed values and slaves for time t. Ghosts are exchanged if there are slaves. Collective. */
+    /**
+     * Set prescribed values and slaves for time t. Ghosts are exchanged if there are slaves.
+     * Collective.
+     */
     void distribute(Vector &u, const double t) const;
 
     /** The same with zero values and fluxes. Collective. */

@@ -12,7 +12,10 @@
 
 namespace PeriDeal
 {
-  /** What splice and blending give to peridynamics at each node of this process, ghosts too: beta = 1 in the zone, falling linearly to 0 over the overlap outside of it. */
+  /**
+   * What splice and blending give to peridynamics at each node of this process, ghosts too: beta =
+   * 1 in the zone, falling linearly to 0 over the overlap outside of it.
+   */
   template <int dim>
   class NodeWeights
   {

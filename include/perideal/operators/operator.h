@@ -56,11 +56,13 @@ namespace PeriDeal
 
 
   /**
-   * A semi-discrete model C du/dt = f(t) - K u with some unknowns prescribed (Dirichlet values) and some slaved to others. Every
-   * model has this one interface, so time steppers and solvers know nothing of bonds or elements.
+   * A semi-discrete model C du/dt = f(t) - K u with some unknowns prescribed (Dirichlet values) and
+   * some slaved to others. Every model has this one interface, so time steppers and solvers know
+   * nothing of bonds or elements.
    *
-   * Vectors come from initialize_vector(). K is positive semidefinite; f, K u are in power (W; per unit thickness in 2D). "Free" are the unknowns
-   * that are neither prescribed nor slaves. All functions are collective unless stated; ghosts are exchanged inside, arguments need no
+   * Vectors come from initialize_vector(). K is positive semidefinite; f, K u are in power (W; per
+   * unit thickness in 2D). "Free" are the unknowns that are neither prescribed nor slaves. All
+   * functions are collective unless stated; ghosts are exchanged inside, arguments need no
    * up-to-date ghost values.
    */
   class Operator
@@ -74,17 +76,20 @@ namespace PeriDeal
     virtual void initialize_vector(Vector &vector) const = 0;
 
     /**
-     * y = K x on free unknowns for homogeneous conditions: prescribed values of x must be zero, its slaves are filled in here.
-     * Entries of y that are not free are set to zero.
+     * y = K x on free unknowns for homogeneous conditions: prescribed values of x must be zero, its
+     * slaves are filled in here. Entries of y that are not free are set to zero.
      */
     virtual void apply(Vector &y, const Vector &x) const = 0;
 
-    /** r = f(t) - K u on free unknowns, zero elsewhere. u must have been through distribute(u, t). */
+    /**
+     * r = f(t) - K u on free unknowns, zero elsewhere. u must have been through distribute(u, t).
+     */
     virtual void residual(Vector &r, const Vector &u, const double t) const = 0;
 
     /**
-     * As apply(), and finish(begin, end) once for each owned unknown when its y is final, many unknowns at a time and, where the
-     * operator can, while y and x are still in cache. finish must not change x.
+     * As apply(), and finish(begin, end) once for each owned unknown when its y is final, many
+     * unknowns at a time and, where the operator can, while y and x are still in cache. finish must
+     * not change x.
      */
     virtual void apply_then(Vector &y, const Vector &x, const RowsAction &finish) const
     {
@@ -127,8 +132,9 @@ namespace PeriDeal
     }
 
     /**
-     * y = what each unknown takes up from the temperatures u to v: the integral of C along the straight line between both, whatever take_material_at() was given.
-     * The sum of y is the change of the content of the body.
+     * y = what each unknown takes up from the temperatures u to v: the integral of C along the
+     * straight line between both, whatever take_material_at() was given. The sum of y is the change
+     * of the content of the body.
      */
     virtual void heat_between(Vector &y, const Vector &u, const Vector &v) const
     {
@@ -138,8 +144,10 @@ namespace PeriDeal
     }
 
     /**
-     * What entered, per time, through the sides and from sources at the last residual(): this process's share of Balance::throughput(), read off the rows of prescribed
-     * unknowns. After apply() the part of it that is linear in x. 0 where nobody keeps it (elastic bodies). Not collective.
+     * What entered, per time, through the sides and from sources at the last residual(): this
+     * process's share of Balance::throughput(), read off the rows of prescribed unknowns. After
+     * apply() the part of it that is linear in x. 0 where nobody keeps it (elastic bodies). Not
+     * collective.
      */
     double entering() const
     {
@@ -152,18 +160,24 @@ namespace PeriDeal
     /** Bounds of the spectrum of C^{-1} K (with diagonal C). Kept until K may have grown. */
     virtual Spectrum spectrum() const = 0;
 
-    /** K is symmetric on the free unknowns: CG and Chebyshev expansions are allowed. Not collective. */
+    /**
+     * K is symmetric on the free unknowns: CG and Chebyshev expansions are allowed. Not collective.
+     */
     virtual bool symmetric() const = 0;
 
     /** Loads or prescribed values change with time. Not collective. */
     virtual bool depends_on_time() const = 0;
 
-    /** Some unknown is prescribed or held by convection, so that a steady state is determined. Not collective. */
+    /**
+     * Some unknown is prescribed or held by convection, so that a steady state is determined. Not
+     * collective.
+     */
     virtual bool has_steady_state() const = 0;
 
     /**
-     * A sparse matrix spectrally near K on the free unknowns, cheap enough for algebraic multigrid: K itself for finite elements, the graph
-     * Laplacian of the nearest neighbours, cut where bonds are cut, for peridynamics. Rows not free are those of the identity.
+     * A sparse matrix spectrally near K on the free unknowns, cheap enough for algebraic multigrid:
+     * K itself for finite elements, the graph Laplacian of the nearest neighbours, cut where bonds
+     * are cut, for peridynamics. Rows not free are those of the identity.
      */
     virtual void surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const = 0;
 
@@ -173,39 +187,53 @@ namespace PeriDeal
       return 1;
     }
 
-    /** For multigrid: what K maps to nearly nothing away from prescribed unknowns, in their absence to zero. None: the constant. Collective. */
+    /**
+     * For multigrid: what K maps to nearly nothing away from prescribed unknowns, in their absence
+     * to zero. None: the constant. Collective.
+     */
     virtual std::vector<Vector> near_null_space() const
     {
       return {};
     }
 
-    /** The surrogate is K itself, so that multigrid on it needs no further smoothing. Not collective. */
+    /**
+     * The surrogate is K itself, so that multigrid on it needs no further smoothing. Not
+     * collective.
+     */
     virtual bool surrogate_is_exact() const = 0;
 
-    /** First time after t at which K changes by itself, infinity if it never does: cracks that grow or close. Not collective. */
+    /**
+     * First time after t at which K changes by itself, infinity if it never does: cracks that grow
+     * or close. Not collective.
+     */
     virtual double next_event(const double) const
     {
       return std::numeric_limits<double>::infinity();
     }
 
     /**
-     * Make K that of the span of time between events that holds t (an event belongs to the span that begins with it). Returns whether K has
-     * changed; then steppers have to be restarted. Heat stays where it is: only conductances change.
+     * Make K that of the span of time between events that holds t (an event belongs to the span
+     * that begins with it). Returns whether K has changed; then steppers have to be restarted. Heat
+     * stays where it is: only conductances change.
      */
     virtual bool update(const double)
     {
       return false;
     }
 
-    /** K or C depend on the solution itself: temperature-dependent conductivity or capacity. Not collective. */
+    /**
+     * K or C depend on the solution itself: temperature-dependent conductivity or capacity. Not
+     * collective.
+     */
     virtual bool depends_on_solution() const
     {
       return false;
     }
 
     /**
-     * Make K and C those of the temperatures u, which must have been through distribute(). Bounds and diagonals change with them, and so do
-     * values of slaves: distribute() again before residual().
+     * Make K and C those of the temperatures u, which must have been through distribute(). Bounds
+     * and diagonals change with them, and so do values of slaves: distribute() again before
+     * residual().
      */
     virtual void take_material_at(const Vector &) {}
 
@@ -235,11 +263,17 @@ namespace PeriDeal
   };
 
 
-  /** A model of diffusion: u is a temperature, a wetness or a potential, and heat, moisture or charge is conserved. */
+  /**
+   * A model of diffusion: u is a temperature, a wetness or a potential, and heat, moisture or
+   * charge is conserved.
+   */
   class DiffusionOperator : public Operator
   {
   public:
-    /** Heat through each side and in the body; u must have been through distribute(u, t). @p steady leaves out storage. */
+    /**
+     * Heat through each side and in the body; u must have been through distribute(u, t). @p steady
+     * leaves out storage.
+     */
     virtual Balance balance(const Vector &u, const double t, const bool steady) const = 0;
   };
 } // namespace PeriDeal

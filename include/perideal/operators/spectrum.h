@@ -12,10 +12,12 @@
 namespace PeriDeal
 {
   /**
-   * Upper estimate of the largest eigenvalue of C^{-1} K: Lanczos iterations in the inner product of C if K is symmetric (largest Ritz
-   * value plus the larger of its residual and 0.4 %), else power iterations with a margin of 5 %. Rounded up to three digits, so that it does not depend on
-   * the number of processes, and never above the Gershgorin bound. The start vector is made from positions by @p fill. Iterations end early once the
-   * bound has come down to @p enough. Collective.
+   * Upper estimate of the largest eigenvalue of C^{-1} K: Lanczos iterations in the inner product
+   * of C if K is symmetric (largest Ritz value plus the larger of its residual and 0.4 %), else
+   * power iterations with a margin of 5 %. Rounded up to three digits, so that it does not depend
+   * on the number of processes, and never above the Gershgorin bound. The start vector is made from
+   * positions by @p fill. Iterations end early once the bound has come down to @p enough.
+   * Collective.
    *
    * @param metric symmetric K only: the diagonal that stands for C, if another is meant
    */

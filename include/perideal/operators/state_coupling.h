@@ -15,16 +15,23 @@
 namespace PeriDeal
 {
   /**
-   * What splice and blending of state-based peridynamics with finite elements share. Each node has a weight beta_i of peridynamics, 1 in the zone, falling linearly to 0
-   * over the overlap outside of it. The strain energy of the family of node i is u . K_i u/2 with
+   * What splice and blending of state-based peridynamics with finite elements share. Each node has
+   * a weight beta_i of peridynamics, 1 in the zone, falling linearly to 0 over the overlap outside
+   * of it. The strain energy of the family of node i is u . K_i u/2 with
    *
-   *   K_i = c d/(V_i q_i^2) g_i g_i^T + b/q_i sum_j W_ij M_ij M_ij^T,   g_i . u = sum_j W_ij xi . (u_j - u_i),   M_ij . u = xi/x . (u_j - u_i),
+   *   K_i = c d/(V_i q_i^2) g_i g_i^T + b/q_i sum_j W_ij M_ij M_ij^T,
+   *   g_i . u = sum_j W_ij xi . (u_j - u_i),   M_ij . u = xi/x . (u_j - u_i),
    *
-   * the symbols as in StateOperator (d, c, b the factors of StateLaw); the sum of all K_i is its K. Families are cut off at the surface of the body;
-   * with `Surface correction = fictitious nodes` they are completed beyond flat sides by nodes whose displacement follows from those inside (FictitiousExtension), in K_i only, since what is beyond has no energy. So K stays symmetric
-   * and positive semidefinite, and away from holes and cracks a uniform strain has its energy at each node; its forces are those of the stress on the sides, but for one horizon from edges and corners. q_i is summed over the bonds that are left by cracks.
+   * the symbols as in StateOperator (d, c, b the factors of StateLaw); the sum of all K_i is its K.
+   * Families are cut off at the surface of the body; with `Surface correction = fictitious nodes`
+   * they are completed beyond flat sides by nodes whose displacement follows from those inside
+   * (FictitiousExtension), in K_i only, since what is beyond has no energy. So K stays symmetric
+   * and positive semidefinite, and away from holes and cracks a uniform strain has its energy at
+   * each node; its forces are those of the stress on the sides, but for one horizon from edges and
+   * corners. q_i is summed over the bonds that are left by cracks.
    *
-   * In one dimension there is no dilatation, and the bonds of a family are visited one by one, so that rows reach one horizon and not two.
+   * In one dimension there is no dilatation, and the bonds of a family are visited one by one, so
+   * that rows reach one horizon and not two.
    */
   template <int dim>
   class StateCoupling : public ElasticCoupling<dim>
@@ -119,8 +126,10 @@ namespace PeriDeal
 
 
   /**
-   * Energy blending (as the Arlequin method and its kin): sum_i beta_i K_i plus (1 - mean of beta at the vertices) K_c for each cell. Symmetric and positive semidefinite, and since
-   * no K_i strains a rigid motion, forces and moments balance; but linear fields are not exact where beta changes.
+   * Energy blending (as the Arlequin method and its kin): sum_i beta_i K_i plus (1 - mean of beta
+   * at the vertices) K_c for each cell. Symmetric and positive semidefinite, and since no K_i
+   * strains a rigid motion, forces and moments balance; but linear fields are not exact where beta
+   * changes.
    */
   template <int dim>
   class StateBlending : public StateCoupling<dim>
@@ -139,8 +148,10 @@ namespace PeriDeal
 
 
   /**
-   * Splice: the rows of each node are beta_i times those of peridynamics, plus 1 - beta_i times those of finite elements. Linear fields are exact where the zone with its overlap stays more than
-   * two horizons clear of the surface; but K is not symmetric, and forces do not balance where the zone ends.
+   * Splice: the rows of each node are beta_i times those of peridynamics, plus 1 - beta_i times
+   * those of finite elements. Linear fields are exact where the zone with its overlap stays more
+   * than two horizons clear of the surface; but K is not symmetric, and forces do not balance where
+   * the zone ends.
    */
   template <int dim>
   class StateSplice : public StateCoupling<dim>

@@ -19,7 +19,7 @@
 
 namespace PeriDeal
 {
-  /** Stress and strain at the nodes, for output: the components xx, yy, xy in 2D, xx, yy, zz, xy, xz, yz in 3D. */
+  /** At the nodes, for output: xx, yy, xy in 2D, xx, yy, zz, xy, xz, yz in 3D. */
   template <int dim>
   struct NodalTensors
   {
@@ -32,40 +32,39 @@ namespace PeriDeal
 
 
   /**
-   * Linear peridynamic solid (Silling 2007; in 2D Le 2014 section 2 in the corrected form of doc/elasticity.md), and the bond-based
-   * solid as the same without dilatation. With xi the bond, x its length, M = xi/x, the extension e = M . (u_j - u_i) - s x, s the mean thermal strain of
+   * Linear peridynamic solid (Silling 2007; in 2D Le 2014 section 2 in the corrected form of
+   * doc/elasticity.md), and the bond-based solid as the same without dilatation. With xi the bond,
+   * x its length, M = xi/x, the extension e = M . (u_j - u_i) - s x, s the mean thermal strain of
    * both ends, and W_ij = V_i V_j omega f (f the volume fraction) over unbroken bonds:
    *
    *   q_i = sum_j W_ij x^2 / V_i,  theta_i = d sum_j W_ij x e_ij / (V_i q_i)
    *   F_i = sum_j W_ij [ (c_i theta_i/q_i + c_j theta_j/q_j) x + (b_i/q_i + b_j/q_j) e_ij ] M
    *
-   * `Surface correction` multiplies W by a bond's factor a in theta and in the forces from it, by s in those of e, and changes q (surface_factors.h), or lets families go on beyond the
-   * sides (FictitiousBonds).
+   * with d, c, b the factors dilatation, volumetric and extension of StateLaw. The prefactor of
+   * omega drops out. `Surface correction` multiplies W by a bond's factor a in theta and in the
+   * forces from it, by s in those of e, and changes q (surface_factors.h), or lets families go on
+   * beyond the sides (FictitiousBonds). An application takes two passes over the bonds, the
+   * dilatations first. On a lattice in 2D and 3D, with linear kinematics, where nothing breaks and
+   * no surface is corrected, nodes without cut bonds store none (StateLattice). Other bonds are
+   * stored at both ends: W xi, one number, a column.
    *
-   * with d, c, b the factors dilatation, volumetric and extension of StateLaw. The prefactor of omega drops out. An application takes two passes over
-   * the bonds, the dilatations first. On a lattice in 2D and 3D, with linear kinematics, where nothing breaks and no surface is corrected, nodes without cut bonds store none (StateLattice). Other
-   * bonds are stored at both ends: W xi, one number, a column.
+   * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a
+   * rotation makes none. q is that of the undeformed body. The tangent of linearize() has W x Y/|Y|
+   * in the place of W xi, and across the bond the stiffness force/|Y|.
    *
-   * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a rotation makes none. q is that of the undeformed body. The tangent
-   * of linearize() has W x Y/|Y| in the place of W xi, and across the bond the stiffness force/|Y|.
-   *
-   * Bonds break for good at a stretch e/x of the material's critical value s, of its smaller one at both ends. It is given, or follows from the fracture energy: what
-   * crosses a plane has stored, at this stretch while all else is at rest, G_0 = s^2 (b B + c d D) with
-   *
-   *   B = 1/q sum over half the family of omega f V xi_n x^2,  D = h_n sum over the layers on one side of (1/q sum over what crosses of omega f V x^2)^2
-   *
-   * on the lattice, the mean over its axes n. q stays that of the body before.
-   *
-   * Viscosity is in the bonds and parallel to them (Le 2014 eq 2.43): D is K without the dilatations.
+   * Bonds break for good at a stretch e/x of the smaller critical value s of both ends' materials.
+   * It is given, or follows from the fracture energy: what crosses a plane of the lattice, mean
+   * over the axes n, has stored, at this stretch while all else is at rest, s^2 (b B + c d D) with
+   *   B = 1/q sum over half the family of omega f V xi_n x^2,
+   *   D = h_n sum over the layers on one side of (1/q sum over what crosses of omega f V x^2)^2.
+   * q stays that of the body before. Viscosity is in the bonds and parallel to them (Le 2014
+   * eq 2.43): its matrix is K without the dilatations.
    */
   template <int dim>
   class StateOperator : public ElasticOperator
   {
   public:
-    /**
-     * Adds the halo to the nodes. Collective. Throws UserError: isolated nodes, nodes all of whose bonds lie in one line, `Operator form = lattice` where there
-     * is none.
-     */
+    /** Adds the halo to the nodes. Collective. Throws UserError, among others: isolated nodes. */
     StateOperator(Nodes<dim> &nodes, const Scene<dim> &scene);
     ~StateOperator() override;
 
@@ -106,29 +105,33 @@ namespace PeriDeal
 
     const Families<dim> &families() const;
 
-    /** K of multiply() as a matrix, for factorisations, eigenvalues and other programs. Rows reach two horizons, some (4m)^dim nodes (bond-based: one, (2m)^dim). Collective. */
+    /** K of multiply(); rows hold some (4m)^dim nodes (bond-based: (2m)^dim). Collective. */
     void matrix(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
     /** How many of this process's bonds are stored, each counted at both ends. */
     std::size_t n_stored_bonds() const;
 
-    /** With `Surface correction = moments`: the nodes of all processes that it leaves as they are, and SurfaceFactors::gap. */
+    /** Of all processes, those that `moments` leaves as they are; and SurfaceFactors::gap. */
     unsigned long long n_uncorrected_nodes() const;
     double             gap_of_moments() const;
 
     /** Of the owned nodes and their ghosts; empty where bonds do not break. */
     const std::vector<double> &critical_stretches() const;
 
-    /** 1 - the sum of the volumes of neighbours over unbroken bonds over that of the whole family, at the owned nodes; bonds that cracks of the scene cut count as broken, those that voids cut as none. */
+    /**
+     * 1 - the volume of neighbours over unbroken bonds over that of the whole family, at the owned
+     * nodes; bonds that cracks of the scene cut count as broken, those that voids cut as none.
+     */
     std::vector<double> damage() const;
 
     /** theta, thermal extension taken off. Collective. */
     void dilatations(const Vector &u, std::vector<double> &theta) const;
 
     /**
-     * The collapsed stress of the owned nodes, sum_j t_ij M (x) xi V_j (Le 2014 eq 1.26), or the mean with that of the bonds' other ends (eq 3.1) where there are
-     * several phases, and the strain of the nonlocal deformation gradient F (eq 1.25). With full kinematics the stress is Cauchy's, sum t_ij M (x) Y V_j/det F, and the
-     * strain Green's, (F^T F - I)/2. Collective.
+     * The collapsed stress of the owned nodes, sum_j t_ij M (x) xi V_j (Le 2014 eq 1.26), or the
+     * mean with that of the bonds' other ends (eq 3.1) where there are several phases, and the
+     * strain of the nonlocal deformation gradient F (eq 1.25). With full kinematics Cauchy's
+     * stress, sum t_ij M (x) Y V_j/det F, and Green's strain, (F^T F - I)/2. Collective.
      */
     NodalTensors<dim> tensors(const Vector &u) const;
 
@@ -209,9 +212,7 @@ namespace PeriDeal
     unsigned int break_images(); // ends of bonds
 
     bool holds(const CellCorner<dim> &corner) const; // no bond of its node has broken
-    dealii::Tensor<1, dim> deformed_bond(const double *u,
-                                         unsigned int  i,
-                                         unsigned int  j) const; // Y
+    dealii::Tensor<1, dim> deformed_bond(const double *u, unsigned int i, unsigned int j) const;
 
     /** W x e of a bond of an owned node, thermal extension taken off. */
     double extension_moment(const double *u, const unsigned int i, const Bond &bond) const
@@ -246,16 +247,15 @@ namespace PeriDeal
     std::vector<unsigned int>           neighbors;
     std::vector<dealii::Tensor<1, dim>> moments; // W xi, of the tangent W x Y/|Y|
     std::vector<double>                 springs; // (b_i/q_i + b_j/q_j)/(W x^2)
-    std::vector<double>                 lengths,
-      across; // full kinematics: W x, and the tangent's stiffness across the bond
+    std::vector<double> lengths, across; // full kinematics: W x; tangent's stiffness across bonds
     bool   full = false, volumetric = false, any_thermal = false, several_phases = false;
     double n_bonds = 0., released = 0., moments_gap = 0.;
     unsigned long long              n_broken = 0, n_not_corrected = 0;
     std::vector<TractionShare<dim>> tractions;
     std::vector<double>       critical; // stretch, of owned nodes and ghosts; empty: nothing breaks
     std::vector<unsigned int> loaded_side; // which in `Traction` is within a horizon of these
-    std::vector<std::pair<std::size_t, double>> breaking,
-      breaking_images; // overstretched bonds: place, stretch over critical stretch
+    // Overstretched bonds: place, stretch over critical stretch.
+    std::vector<std::pair<std::size_t, double>> breaking, breaking_images;
     bool           breaks = false, loads_vary = false; // some bond may break, on any process
     Vector         mass, stiffness_diagonal, thermal_loads, constant_loads;
     mutable Vector scratch, source, tau;          // tau_i = c_i theta_i/q_i

@@ -12,8 +12,9 @@
 namespace PeriDeal
 {
   /**
-   * What splice and blending share: each node has a weight b_i of peridynamics, 1 in the zone, falling linearly to 0 over the overlap outside of it. Nodes with b > 0
-   * have whole families, cut off at the surface of the body.
+   * What splice and blending share: each node has a weight b_i of peridynamics, 1 in the zone,
+   * falling linearly to 0 over the overlap outside of it. Nodes with b > 0 have whole families, cut
+   * off at the surface of the body.
    */
   template <int dim>
   class WeightedCoupling : public Coupling<dim>
@@ -49,8 +50,9 @@ namespace PeriDeal
 
 
   /**
-   * Energy blending: both energies, weighted. W_ij (b_i + b_j)/2 for each bond, 1 - b (mean of the vertices) times K_c for each cell. Symmetric and positive semidefinite, but a
-   * linear field is not exact where b changes.
+   * Energy blending: both energies, weighted. W_ij (b_i + b_j)/2 for each bond, 1 - b (mean of the
+   * vertices) times K_c for each cell. Symmetric and positive semidefinite, but a linear field is
+   * not exact where b changes.
    */
   template <int dim>
   class Blending : public WeightedCoupling<dim>
@@ -68,8 +70,9 @@ namespace PeriDeal
 
 
   /**
-   * Splice: the row of each node is b_i times its row of peridynamics, plus 1 - b_i times that of finite elements. Linear and quadratic fields are exact, but K is not
-   * symmetric and heat is not conserved where b changes.
+   * Splice: the row of each node is b_i times its row of peridynamics, plus 1 - b_i times that of
+   * finite elements. Linear and quadratic fields are exact, but K is not symmetric and heat is not
+   * conserved where b changes.
    */
   template <int dim>
   class Splice : public WeightedCoupling<dim>

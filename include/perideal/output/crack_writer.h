@@ -12,19 +12,25 @@
 
 namespace PeriDeal
 {
-  /** The corners of each piece of the cracks: two a segment, three or more a polygon. Missing coordinates are 0. */
+  /**
+   * The corners of each piece of the cracks: two a segment, three or more a polygon. Missing
+   * coordinates are 0.
+   */
   using CrackCorners = std::vector<std::vector<std::array<double, 3>>>;
 
   /**
-   * The geometry of the cracks for ParaView: lines and polygons in `fields/cracks_NNNN.vtu`, listed with their times in `cracks.pvd`. Cracks that stay as they are
-   * have one file for all times. Each cell has the number of its `piece`.
+   * The geometry of the cracks for ParaView: lines and polygons in `fields/cracks_NNNN.vtu`, listed
+   * with their times in `cracks.pvd`. Cracks that stay as they are have one file for all times.
+   * Each cell has the number of its `piece`.
    */
   class CrackWriter
   {
   public:
     explicit CrackWriter(ResultFolder &folder);
 
-    /** Write the pieces, if there are any, on rank 0. What cannot be written is kept in the folder. */
+    /**
+     * Write the pieces, if there are any, on rank 0. What cannot be written is kept in the folder.
+     */
     void write(const CrackCorners &pieces, const double time);
 
   private:

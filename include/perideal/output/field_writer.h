@@ -15,7 +15,10 @@
 
 namespace PeriDeal
 {
-  /** A named field for output: one component, or one per coordinate direction. Vectors need up-to-date ghosts. */
+  /**
+   * A named field for output: one component, or one per coordinate direction. Vectors need
+   * up-to-date ghosts.
+   */
   struct OutputField
   {
     std::string         name;
@@ -24,12 +27,15 @@ namespace PeriDeal
 
 
   /**
-   * Writes fields of one model at one time: VTU with a PVTU record (single precision; the stress as a tensor, too), and HDF5 (`/nodes`, `/cells`, one table per field, double
-   * precision) with, but for 1D, an XDMF description (version 3). Cells are written straight from the dofs (vertex dofs, or cell centres as constants per cell), so that
-   * vertices doubled by a crack stay apart and vectors need no finite element system.
+   * Writes fields of one model at one time: VTU with a PVTU record (single precision; the stress as
+   * a tensor, too), and HDF5 (`/nodes`, `/cells`, one table per field, double precision) with, but
+   * for 1D, an XDMF description (version 3). Cells are written straight from the dofs (vertex dofs,
+   * or cell centres as constants per cell), so that vertices doubled by a crack stay apart and
+   * vectors need no finite element system.
    *
-   * Rank 0 writes, with what it gets from one process after the other, each file under another name until it is whole. (Open MPI 4 writes in parallel
-   * under the protection of a semaphore that is named after the file alone: a stale one, or a second run on the machine, stops it for ever.)
+   * Rank 0 writes, with what it gets from one process after the other, each file under another name
+   * until it is whole. (Open MPI 4 writes in parallel under the protection of a semaphore that is
+   * named after the file alone: a stale one, or a second run on the machine, stops it for ever.)
    */
   template <int dim>
   class FieldWriter : public dealii::DataOutInterface<dim>
@@ -47,7 +53,8 @@ namespace PeriDeal
                 const Choice                  &shows = {});
 
     /**
-     * Returns the name of the HDF5 file relative to the directory (empty if not asked for). What cannot be written is kept in the folder. Collective.
+     * Returns the name of the HDF5 file relative to the directory (empty if not asked for). What
+     * cannot be written is kept in the folder. Collective.
      */
     std::string write(const std::vector<OutputField> &fields,
                       const double                    time,
@@ -73,7 +80,10 @@ namespace PeriDeal
     void build_patches(const std::vector<OutputField> &fields);
     void write_vtu_series(const double time);
 
-    /** The cells of this process as part of a VTU file, and what deal.II cannot write there: a tensor of nine components in 2D. */
+    /**
+     * The cells of this process as part of a VTU file, and what deal.II cannot write there: a
+     * tensor of nine components in 2D.
+     */
     std::string vtu_piece() const;
     std::string tensor_text() const;
 
@@ -98,8 +108,8 @@ namespace PeriDeal
 
 
   /**
-   * To be called by a program before MPI_Init: else HDF5 ends with MPI, tries again then to close files that could not be closed since the disk is full, and
-   * fails over them.
+   * To be called by a program before MPI_Init: else HDF5 ends with MPI, tries again then to close
+   * files that could not be closed since the disk is full, and fails over them.
    */
   void start_hdf5();
 } // namespace PeriDeal

@@ -8,8 +8,8 @@
 namespace PeriDeal
 {
   /**
-   * Holds a folder for this process by a lock on a file, as long as the object lives. The lock goes with the process, so that one that was killed
-   * leaves none. Used on one process of a run.
+   * Holds a folder for this process by a lock on a file, as long as the object lives. The lock goes
+   * with the process, so that one that was killed leaves none. Used on one process of a run.
    */
   class FolderLock
   {

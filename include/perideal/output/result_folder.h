@@ -14,15 +14,20 @@
 namespace PeriDeal
 {
   /**
-   * The output directory of one run. The folder `.perideal` in it holds the list of the files that runs have written there, each named before it is
-   * written, a lock while a run goes on, and the results of the run before until the new one has results of its own.
+   * The output directory of one run. The folder `.perideal` in it holds the list of the files that
+   * runs have written there, each named before it is written, a lock while a run goes on, and the
+   * results of the run before until the new one has results of its own.
    *
-   * - One run at a time: a second one is refused. The lock goes with the process, so that a run that was killed leaves none.
-   * - Only files of the list are ever moved, replaced or deleted; where a file of another origin has the name of a result, the run is refused.
-   * - A run that ends by an error before commit() leaves the directory as it was. One that is killed or told to end before leaves the results before it in
-   *   `.perideal/previous`, until another run has results.
+   * - One run at a time: a second one is refused. The lock goes with the process, so that a run
+   *   that was killed leaves none.
+   * - Only files of the list are ever moved, replaced or deleted; where a file of another origin
+   *   has the name of a result, the run is refused.
+   * - A run that ends by an error before commit() leaves the directory as it was. One that is
+   *   killed or told to end before leaves the results before it in `.perideal/previous`, until
+   *   another run has results.
    *
-   * Files are written by rank 0. What goes wrong there is kept, and check() throws it on all processes.
+   * Files are written by rank 0. What goes wrong there is kept, and check() throws it on all
+   * processes.
    */
   class ResultFolder
   {
@@ -30,7 +35,8 @@ namespace PeriDeal
     /**
      * Takes the directory and sets aside what an earlier run wrote there.
      *
-     * @param scene_file must not be among the results @param names of files that the run is going to write or its report is, relative to the directory;
+     * @param scene_file must not be among the results @param names of files that the run is going
+     *                   to write or its report is, relative to the directory;
      * `*` at the end stands for anything
      *
      * Throws UserError. Collective.
@@ -60,13 +66,19 @@ namespace PeriDeal
     /** Whether results of a run before lie in `.perideal/previous`. Not collective. */
     bool has_earlier_results() const;
 
-    /** Name a file as the run's own, before it is written; returns where it lies, or nothing if it must not be written since the list cannot be. Only where writes(). */
+    /**
+     * Name a file as the run's own, before it is written; returns where it lies, or nothing if it
+     * must not be written since the list cannot be. Only where writes().
+     */
     std::string claim(const std::string &name);
 
     /** Write a file whole or not at all. Does nothing where not writes(). */
     void write(const std::string &name, const std::string &text);
 
-    /** Something could not be written, for the reason that the system gave (an error number, 0 if it gave none). The first such message counts. */
+    /**
+     * Something could not be written, for the reason that the system gave (an error number, 0 if it
+     * gave none). The first such message counts.
+     */
     void keep_failure(const std::string &name, const int reason);
 
     /** Throws a UserError on all processes if anything could not be written. Collective. */
@@ -101,10 +113,16 @@ namespace PeriDeal
   };
 
 
-  /** Take away what the list of a directory names, so that nothing of an earlier run can be taken for that of another scene. Call it on one process. */
+  /**
+   * Take away what the list of a directory names, so that nothing of an earlier run can be taken
+   * for that of another scene. Call it on one process.
+   */
   void remove_results(const std::string &directory);
 
-  /** Write a file whole or not at all (new file, then rename); returns 0 or the error number. Call it on one process. */
+  /**
+   * Write a file whole or not at all (new file, then rename); returns 0 or the error number. Call
+   * it on one process.
+   */
   int replace_file(const std::string &name, const std::string &text);
 
   /** As replace_file(), throws UserError. */

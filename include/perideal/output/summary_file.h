@@ -12,8 +12,9 @@
 namespace PeriDeal
 {
   /**
-   * summary.json from the start of a run to its end. Its entry `status` is `running` until the run says how it ended; a run that is killed leaves that,
-   * one that is told to end (SIGTERM, SIGINT) leaves `stopped` and what the last update() knew. Rank 0 writes; nothing here is collective.
+   * summary.json from the start of a run to its end. Its entry `status` is `running` until the run
+   * says how it ended; a run that is killed leaves that, one that is told to end (SIGTERM, SIGINT)
+   * leaves `stopped` and what the last update() knew. Rank 0 writes; nothing here is collective.
    */
   class SummaryFile
   {
@@ -26,7 +27,10 @@ namespace PeriDeal
     /** The process needs no farewell any more. */
     ~SummaryFile();
 
-    /** @param summary what is known now @param reached how far the run is, as it reads after "Results" */
+    /**
+     * @param summary what is known now @param reached how far the run is, as it reads after
+     *                "Results"
+     */
     void update(const Json &summary, const std::string &reached);
 
     void complete(const Json &summary);

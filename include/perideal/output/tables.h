@@ -11,13 +11,17 @@
 namespace PeriDeal
 {
   /**
-   * A table (.csv) that is written as the run goes on: the rows of one time at once, so that a run that ends early leaves whole lines. (The machine may cut the
-   * last one if it kills a run within this very call.)
+   * A table (.csv) that is written as the run goes on: the rows of one time at once, so that a run
+   * that ends early leaves whole lines. (The machine may cut the last one if it kills a run within
+   * this very call.)
    */
   class Table
   {
   public:
-    /** The file exists with its header from now on. Writes where the folder does; failures are kept there. */
+    /**
+     * The file exists with its header from now on. Writes where the folder does; failures are kept
+     * there.
+     */
     Table(ResultFolder &folder, const std::string &name, const std::string &header);
     ~Table();
 
@@ -41,8 +45,8 @@ namespace PeriDeal
 
 
   /**
-   * The rows `time,model,x,y,z,value` of probes.csv and line.csv, with other columns for other physics; 15 significant digits, coordinates as given in the
-   * scene.
+   * The rows `time,model,x,y,z,value` of probes.csv and line.csv, with other columns for other
+   * physics; 15 significant digits, coordinates as given in the scene.
    */
   class PointTable
   {

@@ -20,14 +20,19 @@ namespace PeriDeal
 
 
   /**
-   * Of the sides left, right, bottom, top, back, front. With `Surface correction = fictitious nodes` all go on. With `auto` they do where the scene allows, for `Models = peridynamics`; in motion, and where bonds may
-   * break those with conditions alone, since bonds at free sides break as those of their own families. Not collective.
+   * Of the sides left, right, bottom, top, back, front. With `Surface correction = fictitious
+   * nodes` all go on. With `auto` they do where the scene allows, for `Models = peridynamics`; in
+   * motion, and where bonds may break those with conditions alone, since bonds at free sides break
+   * as those of their own families. Not collective.
    */
   template <int dim>
   std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene);
 
 
-  /** Families of an elastic body on a mesh from a file go on beyond its sides, with `Surface correction = auto`. Not collective. */
+  /**
+   * Families of an elastic body on a mesh from a file go on beyond its sides, with `Surface
+   * correction = auto`. Not collective.
+   */
   template <int dim>
   bool completes_mesh(const Scene<dim> &scene);
 
@@ -37,20 +42,27 @@ namespace PeriDeal
   bool goes_on_beyond(const Scene<dim> &scene, const dealii::types::boundary_id side);
 
 
-  /** With `Surface correction = auto`: why no families can go on; empty where they can, and with other corrections. */
+  /**
+   * With `Surface correction = auto`: why no families can go on; empty where they can, and with
+   * other corrections.
+   */
   template <int dim>
   std::string hindrance_of_fictitious_nodes(const Scene<dim> &scene);
 
 
   /**
-   * For `Models = peridynamics`: that families end at the sides, with `none` or since `auto` is hindered, and where one row of nodes bears what acts there; with what to do. With `none` empty
+   * For `Models = peridynamics`: that families end at the sides, with `none` or since `auto` is
+   * hindered, and where one row of nodes bears what acts there; with what to do. With `none` empty
    * where nothing is held or loaded so. Not collective.
    */
   template <int dim>
   std::string note_on_cut_sides(const Scene<dim> &scene);
 
 
-  /** What `Surface correction = auto` does, for reports: "fictitious nodes beyond left, right", or "none" and why. */
+  /**
+   * What `Surface correction = auto` does, for reports: "fictitious nodes beyond left, right", or
+   * "none" and why.
+   */
   template <int dim>
   std::string automatic_correction(const Scene<dim> &scene);
 } // namespace PeriDeal

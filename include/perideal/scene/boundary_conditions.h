@@ -20,7 +20,10 @@ namespace PeriDeal
   /** Boundary id of the hole of a plate with a hole. */
   constexpr dealii::types::boundary_id hole_boundary_id = 6;
 
-  /** Name of a side for messages and results: of a box side or the hole (@p box_sides), else the number. */
+  /**
+   * Name of a side for messages and results: of a box side or the hole (@p box_sides), else the
+   * number.
+   */
   std::string name_of_side(const dealii::types::boundary_id id, const bool box_sides);
 
   /**
@@ -60,7 +63,10 @@ namespace PeriDeal
     static const SideCondition *find(const std::vector<SideCondition> &list,
                                      const dealii::types::boundary_id  id);
 
-    /** The first condition of the list that holds at a place on a side, on the whole side or on a part of it; or nullptr. */
+    /**
+     * The first condition of the list that holds at a place on a side, on the whole side or on a
+     * part of it; or nullptr.
+     */
     const SideCondition *first_at(const std::vector<SideCondition> &list,
                                   const dealii::types::boundary_id  side,
                                   const dealii::Point<dim>         &p) const;
@@ -71,20 +77,28 @@ namespace PeriDeal
     /** The side that a condition of this id is on; invalid_boundary_id for regions and points. */
     dealii::types::boundary_id side_of(const dealii::types::boundary_id id) const;
 
-    /** Whether a condition of this id holds at a place (of its side, for a part of one): true for sides, false for points. */
+    /**
+     * Whether a condition of this id holds at a place (of its side, for a part of one): true for
+     * sides, false for points.
+     */
     bool holds_at(const dealii::types::boundary_id id, const dealii::Point<dim> &p) const;
 
-    /** How messages and results name a side or part: as the user did, else by its name in the mesh file, or its number. */
+    /**
+     * How messages and results name a side or part: as the user did, else by its name in the mesh
+     * file, or its number.
+     */
     std::string name_of(const dealii::types::boundary_id id) const;
 
     /** Some value, flux, ambient value, displacement or traction changes with time. */
     bool depends_on_time() const;
 
     /**
-     * @param box_sides whether sides have the names of a box; else they are numbers (mesh boundary ids) and
+     * @param box_sides whether sides have the names of a box; else they are numbers (mesh boundary
+     *                  ids) and
      * `physical_names`.
      * @param hole      whether there is a side `hole` (boundary id 6).
-     * @param physics   elasticity has displacements and tractions, all others have values and fluxes.
+     * @param physics   elasticity has displacements and tractions, all others have values and
+     *                  fluxes.
      * @param with_heat elasticity with a computed temperature, which has both.
      * Throws UserError: unknown sides, sides named twice, conditions that contradict each other on
      * a side, wrong formulas, conditions of another physics.
@@ -117,7 +131,10 @@ namespace PeriDeal
 
     void refuse_other_physics(const Physics physics, const bool with_heat) const;
 
-    /** Contradictions between values, fluxes and symmetry; and between displacements, tractions and symmetry. */
+    /**
+     * Contradictions between values, fluxes and symmetry; and between displacements, tractions and
+     * symmetry.
+     */
     void check_scalar_conditions() const;
     void check_vector_conditions() const;
 

@@ -120,7 +120,10 @@ namespace PeriDeal
     bond_based
   };
 
-  /** By what the stiffness of a bond of the bond-based solid is divided: q of the families of its ends as they are, or of a complete one. */
+  /**
+   * By what the stiffness of a bond of the bond-based solid is divided: q of the families of its
+   * ends as they are, or of a complete one.
+   */
   enum class Micromodulus
   {
     family,

@@ -20,12 +20,12 @@ namespace PeriDeal
   public:
     TimeControl();
 
-    bool        steady   = false;
-    double      end_time = 1.;
-    std::string stepper =
-      "auto"; // auto | euler | rk4 | rkc2 | chebyshev | crank nicolson | bdf2 | sdirk2 | verlet | newmark
-    double time_step = -1.; // negative: auto
-    double tolerance = 1e-4;
+    bool   steady   = false;
+    double end_time = 1.;
+    // auto | euler | rk4 | rkc2 | chebyshev | crank nicolson | bdf2 | sdirk2 | verlet | newmark
+    std::string stepper   = "auto";
+    double      time_step = -1.; // negative: auto
+    double      tolerance = 1e-4;
 
     void parse();
   };
@@ -73,8 +73,8 @@ namespace PeriDeal
     bool starts_at_zero() const;
 
     /**
-     * The vertices of the lattices of `Grid` in the box with these corners, one lattice after the other, x fastest. Throws UserError, also
-     * if the body is no @p box.
+     * The vertices of the lattices of `Grid` in the box with these corners, one lattice after the
+     * other, x fastest. Throws UserError, also if the body is no @p box.
      */
     void make_grid(const bool                box,
                    const dealii::Point<dim> &lower,

@@ -41,7 +41,10 @@ namespace PeriDeal
     double         adaptive_tolerance =
       0.02; // of the zone `adaptive`: relative error of the flux, by recovery
 
-    /** Throws UserError for a zone that is none, a width or an overlap below 0, contradicting entries. */
+    /**
+     * Throws UserError for a zone that is none, a width or an overlap below 0, contradicting
+     * entries.
+     */
     void parse();
 
     /** The entries `Zone` and `Scheme` as given. */

@@ -14,10 +14,11 @@ namespace PeriDeal
   /**
    * One straight piece of a crack: a segment in 2D, a planar polygon in 3D. Pure geometry.
    *
-   * The normal points to the crack's *left* side: in 2D the direction from start to end turned by +90 degrees, in 3D the polygon's
-   * right-hand normal. A point exactly on the crack (within 1e-10 of the crack's size) belongs to that side, so that
-   * a crack through a row of nodes acts like the same crack moved by an infinitesimal distance against its normal. A strict crossing
-   * test would let such nodes keep all of their bonds, and heat would leak through the crack.
+   * The normal points to the crack's *left* side: in 2D the direction from start to end turned by
+   * +90 degrees, in 3D the polygon's right-hand normal. A point exactly on the crack (within 1e-10
+   * of the crack's size) belongs to that side, so that a crack through a row of nodes acts like the
+   * same crack moved by an infinitesimal distance against its normal. A strict crossing test would
+   * let such nodes keep all of their bonds, and heat would leak through the crack.
    */
   template <int dim>
   class CrackGeometry
@@ -27,25 +28,39 @@ namespace PeriDeal
     explicit CrackGeometry(const std::vector<dealii::Point<dim>> &corners);
 
     /**
-     * Whether the straight line between two points crosses the crack. Symmetric in its arguments. What passes through a tip (in 3D an
-     * edge), or within 1e-7 of the crack's size, does not: mirror images of a bond about the crack or through a tip are treated
-     * alike. Ends on another crack or on the surface of the body are no tips; there it does.
+     * Whether the straight line between two points crosses the crack. Symmetric in its arguments.
+     * What passes through a tip (in 3D an edge), or within 1e-7 of the crack's size, does not:
+     * mirror images of a bond about the crack or through a tip are treated alike. Ends on another
+     * crack or on the surface of the body are no tips; there it does.
      */
     bool separates(const dealii::Point<dim> &a, const dealii::Point<dim> &b) const;
 
-    /** Signed distance to the crack's line or plane, positive on the left side; points on it count as positive. */
+    /**
+     * Signed distance to the crack's line or plane, positive on the left side; points on it count
+     * as positive.
+     */
     double signed_distance(const dealii::Point<dim> &p) const;
 
-    /** Whether the point lies on the crack itself, tips included (not only on its line or plane). */
+    /**
+     * Whether the point lies on the crack itself, tips included (not only on its line or plane).
+     */
     bool contains(const dealii::Point<dim> &p) const;
 
-    /** Whether a point near the crack's line or plane lies beside the crack itself, tips included. */
+    /**
+     * Whether a point near the crack's line or plane lies beside the crack itself, tips included.
+     */
     bool covers(const dealii::Point<dim> &p) const;
 
-    /** Whether the end (3D: the edge) of the crack that is nearest to a point on its line or plane is closed. */
+    /**
+     * Whether the end (3D: the edge) of the crack that is nearest to a point on its line or plane
+     * is closed.
+     */
     bool is_closed_near(const dealii::Point<dim> &p) const;
 
-    /** Whether the ball of the given radius about p meets the crack's bounding box and its line or plane: a quick test to skip far nodes. */
+    /**
+     * Whether the ball of the given radius about p meets the crack's bounding box and its line or
+     * plane: a quick test to skip far nodes.
+     */
     bool is_near(const dealii::Point<dim> &p, const double radius) const;
 
     const dealii::Tensor<1, dim> &normal() const;
@@ -56,8 +71,9 @@ namespace PeriDeal
     const std::vector<dealii::Point<dim>> &corners() const;
 
     /**
-     * Close the ends (3D: the edges) that lie on another crack, so that cracks that meet leave no gap: each acts
-     * from an infinitesimal distance beside its line, and bonds through the very joint would else slip through between them.
+     * Close the ends (3D: the edges) that lie on another crack, so that cracks that meet leave no
+     * gap: each acts from an infinitesimal distance beside its line, and bonds through the very
+     * joint would else slip through between them.
      */
     void close_joints(const CrackGeometry &other);
 

@@ -12,12 +12,15 @@
 namespace PeriDeal
 {
   /**
-   * When the cracks of a scene change: a list of events, between which cracks and their transmission are taken as constant.
+   * When the cracks of a scene change: a list of events, between which cracks and their
+   * transmission are taken as constant.
    *
-   * Between two events no tip advances more than the growth step s, and the cracks are those of the middle of that span: a bond is cut at most
-   * s/(2 v) too early or too late, v the tip's speed, which makes an error of second order in s where the solution is smooth in time. With steps
-   * of fixed size events lie at whole numbers of steps, so that they divide none. A transmission that changes with time is taken
-   * at the middle too, with events so close that it changes by at most 0.02 between them, jumps excepted.
+   * Between two events no tip advances more than the growth step s, and the cracks are those of the
+   * middle of that span: a bond is cut at most s/(2 v) too early or too late, v the tip's speed,
+   * which makes an error of second order in s where the solution is smooth in time. With steps of
+   * fixed size events lie at whole numbers of steps, so that they divide none. A transmission that
+   * changes with time is taken at the middle too, with events so close that it changes by at most
+   * 0.02 between them, jumps excepted.
    *
    * The same on all processes; nothing here is collective.
    */
@@ -29,7 +32,8 @@ namespace PeriDeal
      * @param step      the growth step, a length; the entry of section `Cracks` if that is given
      * @param time_step of a stepper with fixed steps, else negative
      *
-     * Throws UserError: tips faster than one growth step in one time step, more than a million events, a transmission outside 0 to 1.
+     * Throws UserError: tips faster than one growth step in one time step, more than a million
+     * events, a transmission outside 0 to 1.
      */
     CrackHistory(const Cracks<dim> &cracks,
                  const double       step,
@@ -39,7 +43,10 @@ namespace PeriDeal
     /** First event after time t, infinity if there is none. */
     double next_event(const double t) const;
 
-    /** The time whose cracks hold at t: the middle of the span between events. At an event the span that begins. */
+    /**
+     * The time whose cracks hold at t: the middle of the span between events. At an event the span
+     * that begins.
+     */
     double representative(const double t) const;
 
     /** The pieces of all cracks, whole history included, at that very time. */
@@ -47,7 +54,10 @@ namespace PeriDeal
 
     double transmission(const double t) const;
 
-    /** Boxes around all that changes with the cracks between two times, t_1 < t_2. Empty if nothing does. */
+    /**
+     * Boxes around all that changes with the cracks between two times, t_1 < t_2. Empty if nothing
+     * does.
+     */
     std::vector<dealii::BoundingBox<dim>> changes(const double t_1, const double t_2) const;
 
     /** Something changes at some time. */

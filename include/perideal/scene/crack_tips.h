@@ -16,14 +16,15 @@ namespace PeriDeal
   {
     std::vector<dealii::Point<dim>> corners;
     unsigned int                    crack; // from 0, in the order of the scene
-    std::vector<bool>
-      closed; // ends (2D) or edges (3D, from each corner to the next) on the surface of the body; empty: none
+    // Ends (2D) or edges (3D, from each corner to the next) on the body's surface; empty: none.
+    std::vector<bool> closed;
   };
 
 
   /**
-   * How an end of a crack (2D) or a corner of one (3D) moves: at rest until the first time of its path, straight and with constant speed from
-   * point to point, and on with the last velocity after the last time.
+   * How an end of a crack (2D) or a corner of one (3D) moves: at rest until the first time of its
+   * path, straight and with constant speed from point to point, and on with the last velocity after
+   * the last time.
    */
   template <int dim>
   struct CrackTip
@@ -41,8 +42,9 @@ namespace PeriDeal
 
 
   /**
-   * The pieces of all cracks at time t, the whole way of each tip included. In 2D a crack is followed from its first end to its second, so that
-   * all of its pieces have the same left side; pieces in one line are one. Pieces without length are left out.
+   * The pieces of all cracks at time t, the whole way of each tip included. In 2D a crack is
+   * followed from its first end to its second, so that all of its pieces have the same left side;
+   * pieces in one line are one. Pieces without length are left out.
    *
    * @param corners of each crack before it grows
    */

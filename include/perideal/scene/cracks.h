@@ -16,7 +16,10 @@
 
 namespace PeriDeal
 {
-  /** What FEM and the mesh do with a crack (entry `Mesh` of section `Cracks`). The scene resolves `automatic`. */
+  /**
+   * What FEM and the mesh do with a crack (entry `Mesh` of section `Cracks`). The scene resolves
+   * `automatic`.
+   */
   enum class CrackMesh
   {
     pairs,
@@ -65,7 +68,8 @@ namespace PeriDeal
 
     /**
      * Throws UserError: wrong points, no length or area, not planar, cracks of another dimension,
-     * contradicting entries, tips twice or not there or going back, polygons that do not grow in their plane.
+     * contradicting entries, tips twice or not there or going back, polygons that do not grow in
+     * their plane.
      */
     void parse(const Physics physics = Physics::heat);
 
@@ -76,15 +80,19 @@ namespace PeriDeal
     bool conduct() const;
 
     /**
-     * The pieces of all cracks at time t, the whole way of each tip included. With @p cut_at_tips their ends are closed: what touches a
-     * tip is cut. Ends on a side of the box always are, and without a box all ends.
+     * The pieces of all cracks at time t, the whole way of each tip included. With @p cut_at_tips
+     * their ends are closed: what touches a tip is cut. Ends on a side of the box always are, and
+     * without a box all ends.
      */
     std::vector<CrackPiece<dim>> pieces(const double t, const bool cut_at_tips = true) const;
 
     /** What `Bonds through tips` means for bonds with this correction. */
     bool cuts_bonds_at_tips(const SurfaceCorrection correction) const;
 
-    /** The box that the body fills, so that ends on its sides are known. Without it any end may lie on the surface of the body. */
+    /**
+     * The box that the body fills, so that ends on its sides are known. Without it any end may lie
+     * on the surface of the body.
+     */
     void set_box(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper);
 
     /** Throws UserError naming the first crack that lies completely outside a box. */

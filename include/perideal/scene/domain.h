@@ -17,7 +17,10 @@
 
 namespace PeriDeal
 {
-  /** The body: a box of equal cells, such a box with a hole, a mesh from a file, or the pixels of an image. */
+  /**
+   * The body: a box of equal cells, such a box with a hole, a mesh from a file, or the pixels of an
+   * image.
+   */
   enum class Shape
   {
     box,
@@ -41,7 +44,10 @@ namespace PeriDeal
     pin
   };
 
-  /** A component of the displacement that is held at 0 to keep an island where it is: at a mesh vertex, or at a cell centre for nodes there. */
+  /**
+   * A component of the displacement that is held at 0 to keep an island where it is: at a mesh
+   * vertex, or at a cell centre for nodes there.
+   */
   template <int dim>
   struct Pin
   {
@@ -82,7 +88,10 @@ namespace PeriDeal
     Expression        fine;           // they stay fine where greater than 0
     bool              fine_by_formula = false; // else in the zone of section `Coupling`
 
-    /** Rows of cells beyond each side (left, right, bottom, ...), which are in no result, and the body between them. */
+    /**
+     * Rows of cells beyond each side (left, right, bottom, ...), which are in no result, and the
+     * body between them.
+     */
     std::array<unsigned int, 2 * dim> extra_layers{};
     dealii::Point<dim>                body_lower, body_upper;
 
@@ -114,21 +123,32 @@ namespace PeriDeal
     void parse();
 
     /**
-     * Whether a point lies in the box of the body, without extra layers, its boundary included (relative slack
-     * 1e-9).
+     * Whether a point lies in the box of the body, without extra layers, its boundary included
+     * (relative slack 1e-9).
      */
     bool contains(const dealii::Point<dim> &p) const;
 
-    /** From a point to the nearest hole, or less (of a square one the distance to the circle around it); the largest number without holes. */
+    /**
+     * From a point to the nearest hole, or less (of a square one the distance to the circle around
+     * it); the largest number without holes.
+     */
     double distance_to_holes(const dealii::Point<dim> &p) const;
 
-    /** Plate with holes: whether the point lies in one. A cell whose centre does so does not exist. */
+    /**
+     * Plate with holes: whether the point lies in one. A cell whose centre does so does not exist.
+     */
     bool in_hole(const dealii::Point<dim> &p) const;
 
-    /** Whether a cell of the lattice with this centre exists: not in a hole, nor an empty one of an image. */
+    /**
+     * Whether a cell of the lattice with this centre exists: not in a hole, nor an empty one of an
+     * image.
+     */
     bool has_cell_at(const dealii::Point<dim> &center) const;
 
-    /** Whether the straight way between two points of the lattice leads through cells that do not exist. Along edges of cells one side has to exist. */
+    /**
+     * Whether the straight way between two points of the lattice leads through cells that do not
+     * exist. Along edges of cells one side has to exist.
+     */
     bool leaves_body(const dealii::Point<dim> &a, const dealii::Point<dim> &b) const;
 
     /** Whether cells of the lattice are missing. */
@@ -136,7 +156,9 @@ namespace PeriDeal
 
     bool has_extra_layers() const;
 
-    /** Whether what is at a point of the mesh belongs to the results: anywhere but in extra layers. */
+    /**
+     * Whether what is at a point of the mesh belongs to the results: anywhere but in extra layers.
+     */
     bool shows(const dealii::Point<dim> &p) const;
 
     /** The image without extra layers. */

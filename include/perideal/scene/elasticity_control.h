@@ -22,8 +22,8 @@ namespace PeriDeal
     Micromodulus micromodulus = Micromodulus::family; // bond-based only
     PlaneState   plane      = PlaneState::stress; // two dimensions only
     Kinematics   kinematics = Kinematics::linear;
-    Expression
-                  temperature_change; // of x, y, z; what strains the body is this times `Thermal expansion`; 0 where it is computed
+    // Of x, y, z; what strains the body is this times `Thermal expansion`; 0 where it is computed.
+    Expression    temperature_change;
     bool          computes_temperature  = false; // by the heat problem of the same scene
     double        reference_temperature = 0.;    // of the unstressed body, where it is computed
     ElasticSolver solver                = ElasticSolver::linear;
@@ -36,8 +36,9 @@ namespace PeriDeal
     const std::string &solver_name() const;
 
     /**
-     * Throws UserError: a `Micromodulus` of another model than `bond-based`, a `Plane` where there is none, full kinematics by the linear solver, a temperature change that depends on t or is computed for a body in
-     * motion, and with another physics any entry that is given.
+     * Throws UserError: a `Micromodulus` of another model than `bond-based`, a `Plane` where there
+     * is none, full kinematics by the linear solver, a temperature change that depends on t or is
+     * computed for a body in motion, and with another physics any entry that is given.
      */
     void parse(const Physics physics = Physics::elasticity, const unsigned int dim = 2);
   };

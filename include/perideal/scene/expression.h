@@ -36,8 +36,8 @@ namespace PeriDeal
                const bool         with_temperature = false);
 
     /**
-     * Value at a point; coordinates beyond dim are zero. Throws UserError if it is not finite, or gives NaN while
-     * DeferredFormulaErrors collects such errors.
+     * Value at a point; coordinates beyond dim are zero. Throws UserError if it is not finite, or
+     * gives NaN while DeferredFormulaErrors collects such errors.
      */
     template <int dim>
     double value(const dealii::Point<dim> &p,
@@ -66,15 +66,20 @@ namespace PeriDeal
   };
 
 
-  /** Throws the UserError, or keeps it while DeferredFormulaErrors collects such errors: found when a formula's value is used. */
+  /**
+   * Throws the UserError, or keeps it while DeferredFormulaErrors collects such errors: found when
+   * a formula's value is used.
+   */
   void report_formula_error(const std::string &message);
 
 
   /**
-   * While this is alive, a formula whose value is not finite gives NaN, and the first such error is kept instead of thrown.
+   * While this is alive, a formula whose value is not finite gives NaN, and the first such error is
+   * kept instead of thrown.
    *
-   * The processes evaluate formulas at different points. An error thrown by one of them alone would leave the others waiting for it;
-   * the run asks here from time to time instead, on all processes together. One at a time.
+   * The processes evaluate formulas at different points. An error thrown by one of them alone would
+   * leave the others waiting for it; the run asks here from time to time instead, on all processes
+   * together. One at a time.
    */
   class DeferredFormulaErrors
   {

@@ -31,7 +31,8 @@ namespace PeriDeal
   };
 
   /**
-   * `circle: x, y, radius`, `rectangle: x, y of the lower left corner, x, y of the upper right one` and `polygon: x, y of its corners`, separated by `;`.
+   * `circle: x, y, radius`, `rectangle: x, y of the lower left corner, x, y of the upper right one`
+   * and `polygon: x, y of its corners`, separated by `;`.
    * @param where entry and section for messages. Throws UserError.
    */
   std::vector<Hole> parse_holes(const std::string &text, const std::string &where);

@@ -36,7 +36,9 @@ namespace PeriDeal
   std::pair<std::string, std::string> name_and_value(const std::string &text,
                                                      const std::string &where);
 
-  /** What to add to a message where @p n words stand without the commas that lists need, or nothing. */
+  /**
+   * What to add to a message where @p n words stand without the commas that lists need, or nothing.
+   */
   std::string hint_at_commas(const std::string &text, const unsigned int n);
 
   /** A finite decimal number and nothing else. */

@@ -16,9 +16,10 @@
 namespace PeriDeal
 {
   /**
-   * Section `Material`: what diffusion takes, conductivity and storage (Density x Heat capacity) as expressions of x, y, z and the
-   * temperature T; what elasticity takes, two moduli, density, thermal expansion and strength as expressions of x, y, z; and in its
-   * subsection `Phases` those of parts of the body. Properties that a physics does not take are read and not used.
+   * Section `Material`: what diffusion takes, conductivity and storage (Density x Heat capacity) as
+   * expressions of x, y, z and the temperature T; what elasticity takes, two moduli, density,
+   * thermal expansion and strength as expressions of x, y, z; and in its subsection `Phases` those
+   * of parts of the body. Properties that a physics does not take are read and not used.
    */
   class Material : public SceneSection
   {
@@ -45,8 +46,8 @@ namespace PeriDeal
     bool depends_on_temperature() const;
 
     /**
-     * Elasticity only. Throws the UserError of formulas whose values are out of range at the point, or defers it
-     * (report_formula_error()).
+     * Elasticity only. Throws the UserError of formulas whose values are out of range at the point,
+     * or defers it (report_formula_error()).
      */
     template <int dim>
     Moduli moduli(const dealii::Point<dim> &p) const;
@@ -55,12 +56,13 @@ namespace PeriDeal
     bool uniform_moduli() const;
 
     /**
-     * The storage may be 0 with electricity only, which is then steady. With elasticity exactly two moduli are needed, in one dimension
-     * the Young modulus alone will do.
+     * The storage may be 0 with electricity only, which is then steady. With elasticity exactly two
+     * moduli are needed, in one dimension the Young modulus alone will do.
      *
      * @param plane of elasticity in two dimensions: in plane stress the Poisson ratio may be 1/2
      * @param image whose phases are phases of the material, or null
-     * @param needs_storage something changes in time: density and heat capacity (elasticity: density) have to be greater than 0, else they may be 0
+     * @param needs_storage something changes in time: density and heat capacity (elasticity:
+     *                      density) have to be greater than 0, else they may be 0
      */
     void parse(const Physics                          physics       = Physics::heat,
                const unsigned int                     dim           = 2,
@@ -102,7 +104,10 @@ namespace PeriDeal
     std::vector<Expression> initial_displacement,
       initial_velocity; // of x, y, z per component, or none
 
-    /** @param with_heat elasticity with a computed temperature, which has an initial value and a source, too */
+    /**
+     * @param with_heat elasticity with a computed temperature, which has an initial value and a
+     *                  source, too
+     */
     void parse(const Physics      physics   = Physics::heat,
                const unsigned int dim       = 2,
                const bool         with_heat = false);

@@ -11,8 +11,9 @@
 namespace PeriDeal
 {
   /**
-   * Moduli of an isotropic three-dimensional solid, also where a scene has one or two dimensions. The bulk modulus may be infinite
-   * (Poisson ratio 1/2): young() and poisson() are finite then, lambda() is not.
+   * Moduli of an isotropic three-dimensional solid, also where a scene has one or two dimensions.
+   * The bulk modulus may be infinite (Poisson ratio 1/2): young() and poisson() are finite then,
+   * lambda() is not.
    */
   struct Moduli
   {
@@ -29,7 +30,10 @@ namespace PeriDeal
   };
 
 
-  /** One of the numbers of which two make the moduli; in the order of the entries of section `Material`. */
+  /**
+   * One of the numbers of which two make the moduli; in the order of the entries of section
+   * `Material`.
+   */
   enum class Modulus
   {
     bulk,
@@ -50,11 +54,14 @@ namespace PeriDeal
    * | G, nu | 2 G (1 + nu)/(3 (1 - 2 nu)) | G |
    * | E, nu | E/(3 (1 - 2 nu)) | E/(2 (1 + nu)) |
    *
-   * Two that contradict each other give moduli that are not positive, or infinite ones. A Poisson ratio of 1/2 makes the bulk
-   * modulus infinite, or with a given K the shear modulus 0.
+   * Two that contradict each other give moduli that are not positive, or infinite ones. A Poisson
+   * ratio of 1/2 makes the bulk modulus infinite, or with a given K the shear modulus 0.
    */
   Moduli moduli_from(const Modulus a, const double value_a, const Modulus b, const double value_b);
 
-  /** The Poisson ratio that they make, in or out of its range (-1, 1/2]: what a message can say about numbers that do not fit. */
+  /**
+   * The Poisson ratio that they make, in or out of its range (-1, 1/2]: what a message can say
+   * about numbers that do not fit.
+   */
   double poisson_from(const Modulus a, const double value_a, const Modulus b, const double value_b);
 } // namespace PeriDeal

@@ -17,10 +17,11 @@ namespace PeriDeal
   constexpr dealii::types::boundary_id first_part_id = 0xf0000000u;
 
   /**
-   * A place for a condition that is no whole side: a part of a side, the nodes of a region, or the node nearest to a point.
+   * A place for a condition that is no whole side: a part of a side, the nodes of a region, or the
+   * node nearest to a point.
    *
-   * A part of a side has the area where its formula holds. Regions and points have none: fluxes and tractions there are totals
-   * (power, force), shared by the nodes in proportion to their volume.
+   * A part of a side has the area where its formula holds. Regions and points have none: fluxes and
+   * tractions there are totals (power, force), shared by the nodes in proportion to their volume.
    */
   struct Part
   {

@@ -25,25 +25,34 @@ namespace PeriDeal
     static constexpr int empty = -1, unknown = -2; // beside the phases 0, 1, ...
 
     /**
-     * @param text      `silver: rgb(255,255,255) ; bi2212: 40..140 ; void: 0`: a colour, a range of greys with its ends, or one grey. A name may come several times.
-     * @param tolerance largest distance of a pixel from a colour, as the length of the difference in (red, green, blue)
+     * @param text      `silver: rgb(255,255,255) ; bi2212: 40..140 ; void: 0`: a colour, a range of
+     *                  greys with its ends, or one grey. A name may come several times.
+     * @param tolerance largest distance of a pixel from a colour, as the length of the difference
+     *                  in (red, green, blue)
      * @param where     entry and section for messages. Throws UserError.
      */
     ImageColors(const std::string &text, const double tolerance, const std::string &where);
 
     /**
-     * The phase of the nearest colour within the tolerance, of two equally near the one named first; else that of the range that the grey of the pixel lies in,
-     * 0.299 red + 0.587 green + 0.114 blue. Pixels that are more transparent than not are empty.
+     * The phase of the nearest colour within the tolerance, of two equally near the one named
+     * first; else that of the range that the grey of the pixel lies in, 0.299 red + 0.587 green +
+     * 0.114 blue. Pixels that are more transparent than not are empty.
      */
     int phase_of(const Pixel &pixel) const;
 
     /** The phases in the order of their first mention. */
     const std::vector<std::string> &names() const;
 
-    /** The first colour of a phase, or of `void` (empty); of a range the grey in its middle. Black where none is named. */
+    /**
+     * The first colour of a phase, or of `void` (empty); of a range the grey in its middle. Black
+     * where none is named.
+     */
     Pixel color_of(const int phase) const;
 
-    /** The name of the colour nearest to a pixel and how far it is, for messages; no name if there are only ranges. */
+    /**
+     * The name of the colour nearest to a pixel and how far it is, for messages; no name if there
+     * are only ranges.
+     */
     std::pair<std::string, double> nearest(const Pixel &pixel) const;
 
   private:
@@ -66,7 +75,8 @@ namespace PeriDeal
 
 
   /**
-   * A body of square or rectangular cells, each of one phase or empty, as read from an image. The first row of cells is the lowest one. Known in full to every process.
+   * A body of square or rectangular cells, each of one phase or empty, as read from an image. The
+   * first row of cells is the lowest one. Known in full to every process.
    */
   struct PhaseMap
   {
@@ -101,7 +111,8 @@ namespace PeriDeal
     std::array<int, 2> place(const std::size_t cell) const;
 
     /**
-     * The phase at a point. On edges and corners of cells that of most of the cells around that are not empty, of equally many the one named first.
+     * The phase at a point. On edges and corners of cells that of most of the cells around that are
+     * not empty, of equally many the one named first.
      */
     int at(const double x, const double y) const;
 
@@ -114,7 +125,8 @@ namespace PeriDeal
     Picture picture() const;
 
     /**
-     * The connected parts of the cells that are not empty: for each cell the number of its part from 0 on, or -1.
+     * The connected parts of the cells that are not empty: for each cell the number of its part
+     * from 0 on, or -1.
      * @param offsets half of the differences between connected cells, as (1, 0) and (0, 1)
      */
     std::vector<int> parts(const std::vector<std::array<int, 2>> &offsets) const;
@@ -122,8 +134,10 @@ namespace PeriDeal
 
 
   /**
-   * The cells of an image: blocks of @p pixels_per_cell x the same, each of the phase of its middle pixel (of an even number the one right of and below the middle), and each of
-   * those divided into @p cells_per_pixel x the same. Incomplete blocks at the right and at the lower edge are left out. Place and size of the cells are left to be set.
+   * The cells of an image: blocks of @p pixels_per_cell x the same, each of the phase of its middle
+   * pixel (of an even number the one right of and below the middle), and each of those divided into
+   * @p cells_per_pixel x the same. Incomplete blocks at the right and at the lower edge are left
+   * out. Place and size of the cells are left to be set.
    *
    * Throws UserError: pixels of unknown colours, none with material.
    */

@@ -16,26 +16,33 @@
 
 namespace PeriDeal
 {
-  /** The material ids of a mesh file's cells, known once the mesh is (set_material_ids() of the room mesh). */
+  /**
+   * The material ids of a mesh file's cells, known once the mesh is (set_material_ids() of the room
+   * mesh).
+   */
   struct MeshMaterials
   {
-    /** Of the cell that holds a point, given by three coordinates; the smallest where several do. */
+    /**
+     * Of the cell that holds a point, given by three coordinates; the smallest where several do.
+     */
     std::function<int(const double *)> id_at;
   };
 
 
   /**
-   * A part of the body with a material of its own: where a formula of x, y, z is greater than 0, or one of the shapes circle, rectangle,
-   *polygon (2D), sphere, box (3D) with its rim, given by numbers, or the cells of a mesh file with a material id.
+   * A part of the body with a material of its own: where a formula of x, y, z is greater than 0, or
+   * one of the shapes circle, rectangle, polygon (2D), sphere, box (3D) with its rim, given by
+   * numbers, or the cells of a mesh file with a material id.
    */
   class Region
   {
   public:
     /**
-     * @param text  a formula, `circle(x, y, r)`, `rectangle(x0, y0, x1, y1)`, `polygon(x0, y0, x1, y1, x2, y2, ...)`, `sphere(x, y, z, r)`
-     *              or `box(x0, y0, z0, x1, y1, z1)`
-          * @param mesh  what `mesh(id)` asks
-     * @param where entry and section for messages. Throws UserError for wrong formulas and shapes of no size.
+     * @param text  a formula, `circle(x, y, r)`, `rectangle(x0, y0, x1, y1)`, `polygon(x0, y0, x1,
+     *              y1, x2, y2, ...)`, `sphere(x, y, z, r)` or `box(x0, y0, z0, x1, y1, z1)`
+     * @param mesh  what `mesh(id)` asks
+     * @param where entry and section for messages. Throws UserError for wrong formulas and shapes
+     *              of no size.
      */
     Region(const std::string                          &text,
            const std::string                          &where,
@@ -69,8 +76,8 @@ namespace PeriDeal
 
 
   /**
-   * The named regions of a scene. They must not overlap; where none is, the phases of the image hold, and where there are none either, the entries of section
-   * `Material`.
+   * The named regions of a scene. They must not overlap; where none is, the phases of the image
+   * hold, and where there are none either, the entries of section `Material`.
    */
   struct Regions
   {
@@ -83,13 +90,19 @@ namespace PeriDeal
     /** Some region is given by a material id. */
     bool need_mesh() const;
 
-    /** Number of the region at a point from 0 on, or -1. Throws the UserError of an overlap, or defers it (report_formula_error()). */
+    /**
+     * Number of the region at a point from 0 on, or -1. Throws the UserError of an overlap, or
+     * defers it (report_formula_error()).
+     */
     template <int dim>
     int at(const dealii::Point<dim> &p) const;
   };
 
 
-  /** A property of the material, one formula of x, y, z for each phase that has its own and one for all else. */
+  /**
+   * A property of the material, one formula of x, y, z for each phase that has its own and one for
+   * all else.
+   */
   class MaterialProperty
   {
   public:
@@ -102,7 +115,10 @@ namespace PeriDeal
                      const std::shared_ptr<const Regions>         &regions,
                      const std::vector<std::optional<Expression>> &of_regions);
 
-    /** @param temperature the T of its formulas, the unknown field itself (the wetness with moisture) */
+    /**
+     * @param temperature the T of its formulas, the unknown field itself (the wetness with
+     *                    moisture)
+     */
     template <int dim>
     double value(const dealii::Point<dim> &p, const double temperature = 0.) const;
 
@@ -149,8 +165,8 @@ namespace PeriDeal
     Phases();
 
     /**
-     * Throws UserError: names twice, regions without a material that the physics takes, materials of regions that do not exist, wrong
-     * formulas.
+     * Throws UserError: names twice, regions without a material that the physics takes, materials
+     * of regions that do not exist, wrong formulas.
      * @param image      whose phases are phases of the material, or null
      * @param may_vanish which of the entries that have to be positive may be 0
      */

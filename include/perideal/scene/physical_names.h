@@ -13,9 +13,11 @@
 namespace PeriDeal
 {
   /**
-   * The physical names of a Gmsh file for sides of bodies of dimension @p dim (those of dimension dim - 1), with their boundary ids.
+   * The physical names of a Gmsh file for sides of bodies of dimension @p dim (those of dimension
+   * dim - 1), with their boundary ids.
    *
-   * The file is looked for as it is named and in @p folder. What is missing or broken has no names here; it is reported when the mesh is read. Collective.
+   * The file is looked for as it is named and in @p folder. What is missing or broken has no names
+   * here; it is reported when the mesh is read. Collective.
    */
   std::map<std::string, dealii::types::boundary_id> read_physical_names(
     const std::string &file_name,

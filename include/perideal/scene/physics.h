@@ -14,10 +14,12 @@ namespace PeriDeal
    * | | u | kappa | rho c | flux |
    * |---|---|---|---|---|
    * | heat | temperature | conductivity | density x heat capacity | heat flux |
-   * | moisture | wetness, concentration over saturated concentration (Diyaroglu 2017, section II.B) | diffusivity | 1 | wetness flux |
-   * | electricity | potential | electrical conductivity | capacitance; 0: steady | current density |
+   * | moisture | wetness | diffusivity | 1 | wetness flux |
+   * | electricity | potential | electrical conductivity | capacitance; 0: steady | current |
    *
-   * but elasticity, whose unknown is the displacement, a vector: div sigma + body force = rho d^2u/dt^2.
+   * (wetness: concentration over saturated concentration, Diyaroglu 2017, section II.B; the flux of
+   * electricity is the current density) but elasticity, whose unknown is the displacement, a
+   * vector: div sigma + body force = rho d^2u/dt^2.
    */
   enum class Physics
   {

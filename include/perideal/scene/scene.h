@@ -80,7 +80,10 @@ namespace PeriDeal
     Reference               reference;
     Units                   units;
 
-    /** The heat problem of `Temperature change = computed`: this scene with `Physics = heat` and without what elasticity alone has; else null. */
+    /**
+     * The heat problem of `Temperature change = computed`: this scene with `Physics = heat` and
+     * without what elasticity alone has; else null.
+     */
     std::shared_ptr<const Scene<dim>> heat;
 
     /**
@@ -90,12 +93,15 @@ namespace PeriDeal
     double horizon() const;
 
     /**
-     * When the cracks change, and how they are in between. Throws UserError, among others where a mesh file needs `Growth step`.
-     * The scene must outlive it.
+     * When the cracks change, and how they are in between. Throws UserError, among others where a
+     * mesh file needs `Growth step`. The scene must outlive it.
      */
     CrackHistory<dim> crack_history() const;
 
-    /** An elastic body in equilibrium at each time, under loads or with a temperature that depend on time. */
+    /**
+     * An elastic body in equilibrium at each time, under loads or with a temperature that depend on
+     * time.
+     */
     bool is_loaded_slowly() const;
 
     /** An elastic body whose temperature is computed and changes in time. */
@@ -108,10 +114,15 @@ namespace PeriDeal
     void parse_and_validate();
 
   private:
-    /** Changes `Cells` where a crack runs along a row of nodes, or says in a note what that means. */
+    /**
+     * Changes `Cells` where a crack runs along a row of nodes, or says in a note what that means.
+     */
     void keep_cracks_off_nodes();
 
-    /** What `Boundary treatment = auto` means here. Throws UserError where `exchange` is asked for and not possible. */
+    /**
+     * What `Boundary treatment = auto` means here. Throws UserError where `exchange` is asked for
+     * and not possible.
+     */
     void resolve_boundary_treatment();
 
     void check_adaptive_zone() const;

@@ -14,8 +14,10 @@
 namespace PeriDeal
 {
   /**
-   * A displacement, a velocity or a traction on one side or part, one formula of x, y, z, t per component. A component without one is free: nothing holds the
-   * displacement in that direction. With `if(condition, formula, free)` it is free where `held` is 0. Tractions have all components.
+   * A displacement, a velocity or a traction on one side or part, one formula of x, y, z, t per
+   * component. A component without one is free: nothing holds the displacement in that direction.
+   * With `if(condition, formula, free)` it is free where `held` is 0. Tractions have all
+   * components.
    */
   struct VectorCondition
   {
@@ -38,7 +40,8 @@ namespace PeriDeal
                                         const dealii::types::boundary_id    id);
 
   /**
-   * `formula, free`: one formula of x, y, z, t for each of @p dim components, into values, held and texts of @p condition.
+   * `formula, free`: one formula of x, y, z, t for each of @p dim components, into values, held and
+   * texts of @p condition.
    *
    * @param may_be_free whether `free` may stand for a formula; not for all of them
    * @param where       entry, section and side for messages. Throws UserError.
@@ -64,7 +67,10 @@ namespace PeriDeal
   /** `free` alone or as a whole branch of `if(condition, a, b)`; UserError elsewhere. */
   FreeBranch split_free(const std::string &text, const std::string &where);
 
-  /** The integral of a rate over time, from @p from to @p to at a place: adaptive Simpson rule, exact for constants. */
+  /**
+   * The integral of a rate over time, from @p from to @p to at a place: adaptive Simpson rule,
+   * exact for constants.
+   */
   template <int dim>
   double integral_over_time(const Expression         &rate,
                             const dealii::Point<dim> &p,

@@ -15,9 +15,11 @@
 namespace PeriDeal
 {
   /**
-   * The part of the body that peridynamics gets: a test of points, the same on every process. A bond is active if both of its nodes are in the zone.
+   * The part of the body that peridynamics gets: a test of points, the same on every process. A
+   * bond is active if both of its nodes are in the zone.
    *
-   * With `cracks: c` the zone is all that lies within c horizons of a crack as it is at some time; cracks grow, so the zone does.
+   * With `cracks: c` the zone is all that lies within c horizons of a crack as it is at some time;
+   * cracks grow, so the zone does.
    */
   template <int dim>
   class Zone
@@ -31,7 +33,10 @@ namespace PeriDeal
     /** Where a formula is greater than 0. */
     explicit Zone(const Expression &formula);
 
-    /** Formulas need no values outside of this box, the body's: no part of the zone is looked for there. */
+    /**
+     * Formulas need no values outside of this box, the body's: no part of the zone is looked for
+     * there.
+     */
     void stay_in(const dealii::BoundingBox<dim> &body);
 
     /** The cracks from whose pieces the distance counts. */
@@ -40,8 +45,8 @@ namespace PeriDeal
     bool contains(const dealii::Point<dim> &p) const;
 
     /**
-     * How far outside the zone a point lies, at most @p farthest. The distance to the zone of a formula is that in the nearest of a number of
-     * directions (24 in 2D, 64 in 3D).
+     * How far outside the zone a point lies, at most @p farthest. The distance to the zone of a
+     * formula is that in the nearest of a number of directions (24 in 2D, 64 in 3D).
      */
     double distance(const dealii::Point<dim> &p, const double farthest) const;
 

@@ -26,7 +26,10 @@ namespace PeriDeal
 {
   struct CouplingCertificate;
 
-  /** One model of an elastic body during a run: its nodes on the shared mesh, its operator, its displacement. All functions are collective. */
+  /**
+   * One model of an elastic body during a run: its nodes on the shared mesh, its operator, its
+   * displacement. All functions are collective.
+   */
   template <int dim>
   class ElasticRun
   {
@@ -39,7 +42,10 @@ namespace PeriDeal
     /** One for each node; each has dim unknowns, interleaved. */
     virtual const dealii::DoFHandler<dim> &dofs() const = 0;
 
-    /** Nodes on a lattice, for reading values at points without a mesh search; nullptr for finite elements. */
+    /**
+     * Nodes on a lattice, for reading values at points without a mesh search; nullptr for finite
+     * elements.
+     */
     virtual const Nodes<dim> *nodes() const = 0;
 
     virtual ElasticOperator &op() const = 0;
@@ -50,7 +56,10 @@ namespace PeriDeal
     /** What an owned node has of the body's volume. Not collective. */
     virtual double volume(const unsigned int node) const = 0;
 
-    /** Displacement, stress and a computed temperature at points, in the order of elastic_columns(), one point after the other. */
+    /**
+     * Displacement, stress and a computed temperature at points, in the order of elastic_columns(),
+     * one point after the other.
+     */
     virtual std::vector<double> at_points(const PointEvaluator<dim>              &reader,
                                           const std::vector<std::vector<double>> &points) const = 0;
 
@@ -95,7 +104,10 @@ namespace PeriDeal
   };
 
 
-  /** ux, uy, uz, then the components of the stress and `von_mises`, and a computed `temperature`: the columns of probes.csv and line.csv. */
+  /**
+   * ux, uy, uz, then the components of the stress and `von_mises`, and a computed `temperature`:
+   * the columns of probes.csv and line.csv.
+   */
   template <int dim>
   std::vector<std::string> elastic_columns(const Scene<dim> &scene);
 

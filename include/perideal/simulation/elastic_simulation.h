@@ -23,15 +23,19 @@ namespace PeriDeal
   struct ResultRecord;
 
   /**
-   * Owns and wires the members of a run with `Physics = elasticity`: mesh, models, solvers, output, and with `Temperature change = computed` the heat problem
-   * that each model solves with its own nodes before it finds its equilibrium. All models of the scene are solved one after the other, or
-   * move from one output time to the next together, and are compared. No discretisation here. All functions are collective and throw UserError.
+   * Owns and wires the members of a run with `Physics = elasticity`: mesh, models, solvers, output,
+   * and with `Temperature change = computed` the heat problem that each model solves with its own
+   * nodes before it finds its equilibrium. All models of the scene are solved one after the other,
+   * or move from one output time to the next together, and are compared. No discretisation here.
+   * All functions are collective and throw UserError.
    */
   template <int dim>
   class ElasticSimulation
   {
   public:
-    /** @param scene parsed; @param text what it was read from; @param quiet no messages but errors */
+    /**
+     * @param scene parsed; @param text what it was read from; @param quiet no messages but errors
+     */
     ElasticSimulation(const Scene<dim> &scene,
                       const SceneText  &text,
                       const MPI_Comm    communicator,
@@ -62,7 +66,10 @@ namespace PeriDeal
     void                   set_start(ElasticRun<dim> &model) const;
     void                   move();
 
-    /** The share of the work of moving all models on by a time span that the first n have, as far as sizes tell it. Collective. */
+    /**
+     * The share of the work of moving all models on by a time span that the first n have, as far as
+     * sizes tell it. Collective.
+     */
     double share_of_models(const unsigned int n, const double span) const;
 
     void                   note_steps(const ElasticRun<dim> &model);

@@ -38,8 +38,9 @@ namespace PeriDeal
                                  const unsigned int         n_processes);
 
   /**
-   * The last lines of `perideal check` of a scene that has been built: time and memory of a run. @param computing in seconds, negative if it is not
-   * known. @param memory that the run needs at least, in bytes. Collective.
+   * The last lines of `perideal check` of a scene that has been built: time and memory of a run.
+   * @param computing in seconds, negative if it is not known. @param memory that the run needs at
+   * least, in bytes. Collective.
    */
   template <int dim>
   std::vector<std::string> describe_costs(const Scene<dim>          &scene,

@@ -7,7 +7,10 @@
 
 namespace PeriDeal
 {
-  /** What has come into a body (heat, moisture, charge) since the start, against what it holds more than then. */
+  /**
+   * What has come into a body (heat, moisture, charge) since the start, against what it holds more
+   * than then.
+   */
   struct CumulativeBalance
   {
     double entered = 0.; // through sides and from sources
@@ -21,8 +24,9 @@ namespace PeriDeal
 
 
   /**
-   * Keeps the cumulative balance of one transient model. The stepper knows what entered while it advanced (Stepper::entered()); here stands what else came, and what the
-   * body held at the start. Costs nothing between two times of output.
+   * Keeps the cumulative balance of one transient model. The stepper knows what entered while it
+   * advanced (Stepper::entered()); here stands what else came, and what the body held at the start.
+   * Costs nothing between two times of output.
    */
   class HeatLedger
   {
@@ -34,13 +38,19 @@ namespace PeriDeal
       came_otherwise   = 0.;
     }
 
-    /** Came in between two advances, of the whole body: what nodes that an adapted mesh has more on sides with given values need. */
+    /**
+     * Came in between two advances, of the whole body: what nodes that an adapted mesh has more on
+     * sides with given values need.
+     */
     void add(const double heat)
     {
       came_otherwise += heat;
     }
 
-    /** @param entered by the stepper, this process's share; @param content now, of the whole body. Collective. */
+    /**
+     * @param entered by the stepper, this process's share; @param content now, of the whole body.
+     *                Collective.
+     */
     CumulativeBalance balance(const double   entered,
                               const double   content,
                               const MPI_Comm communicator) const

@@ -26,8 +26,8 @@ namespace PeriDeal
   struct CouplingCertificate;
 
   /**
-   * One model of a scene during a run: its unknowns on the shared mesh, its operator, its solution, and what both have cost so far. All
-   * functions are collective.
+   * One model of a scene during a run: its unknowns on the shared mesh, its operator, its solution,
+   * and what both have cost so far. All functions are collective.
    */
   template <int dim>
   class ModelRun
@@ -40,7 +40,10 @@ namespace PeriDeal
 
     virtual const dealii::DoFHandler<dim> &dofs() const = 0;
 
-    /** Nodes on a lattice, for reading values at points without a mesh search; nullptr for finite elements. */
+    /**
+     * Nodes on a lattice, for reading values at points without a mesh search; nullptr for finite
+     * elements.
+     */
     virtual const Nodes<dim> *nodes() const = 0;
 
     /** Volume of an owned peridynamic node. Not for finite elements alone. */
@@ -54,7 +57,10 @@ namespace PeriDeal
     /** Initial value on the unknowns. */
     virtual void set_initial_value(Vector &u) const = 0;
 
-    /** Square of the error that the recovered flux shows in each cell (recovery_indicators()); u has up-to-date ghosts. */
+    /**
+     * Square of the error that the recovered flux shows in each cell (recovery_indicators()); u has
+     * up-to-date ghosts.
+     */
     virtual RecoveryIndicators indicators(const Vector &) const
     {
       Assert(false, dealii::ExcNotImplemented());
@@ -68,8 +74,9 @@ namespace PeriDeal
     }
 
     /**
-     * Unknowns, operator and solution on the mesh as it is now, with the cracks of time t. The heat in the body stays what it was, unless steady. Steppers
-     * of the old operator must not be used any more.
+     * Unknowns, operator and solution on the mesh as it is now, with the cracks of time t. The heat
+     * in the body stays what it was, unless steady. Steppers of the old operator must not be used
+     * any more.
      */
     virtual void after_remesh(const double, const bool)
     {
@@ -79,7 +86,9 @@ namespace PeriDeal
     /** Fields for output besides the temperature; u has up-to-date ghosts. */
     virtual std::vector<OutputField> derived_fields(const Vector &u, const double t) const = 0;
 
-    /** Moisture: the sum of C_sat w V in the body; u need not have up-to-date ghosts. Collective. */
+    /**
+     * Moisture: the sum of C_sat w V in the body; u need not have up-to-date ghosts. Collective.
+     */
     virtual double weight(const Vector &u) const = 0;
 
     virtual Difference error(
@@ -89,7 +98,10 @@ namespace PeriDeal
     /** What was chosen, for the report: name and value. */
     virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
 
-    /** What the user should know of the chosen settings: where they are known to fail, and what to choose instead. */
+    /**
+     * What the user should know of the chosen settings: where they are known to fail, and what to
+     * choose instead.
+     */
     virtual std::vector<std::string> notes() const
     {
       return {};

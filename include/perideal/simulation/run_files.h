@@ -16,24 +16,32 @@
 namespace PeriDeal
 {
   /**
-   * The files of a run of any physics, fields apart, from its start to its end: the scene as used, totals.csv, summary.json with its status. Until the
-   * first results the output directory can still go back to what it held before.
+   * The files of a run of any physics, fields apart, from its start to its end: the scene as used,
+   * totals.csv, summary.json with its status. Until the first results the output directory can
+   * still go back to what it held before.
    */
   class RunFiles
   {
   public:
     using Json = nlohmann::ordered_json;
 
-    /** Takes the output directory and writes what is known at the start. Throws UserError. Collective. */
+    /**
+     * Takes the output directory and writes what is known at the start. Throws UserError.
+     * Collective.
+     */
     template <int dim>
     RunFiles(const Scene<dim> &scene, const SceneText &text, const MPI_Comm communicator);
 
-    /** Rows for totals.csv, after all other output of that time; with them, unless anything could not be written, the run has results. Collective. */
+    /**
+     * Rows for totals.csv, after all other output of that time; with them, unless anything could
+     * not be written, the run has results. Collective.
+     */
     void add_totals(const std::string &rows);
 
     /**
-     * After output: throws what could not be written, and refreshes summary.json from time to time, so that this costs little. @param summary builds
-     * it, collectively; @param reached how far the run is. Collective.
+     * After output: throws what could not be written, and refreshes summary.json from time to time,
+     * so that this costs little. @param summary builds it, collectively; @param reached how far the
+     * run is. Collective.
      */
     void after_output(const std::function<Json()> &summary, const std::string &reached);
 
@@ -41,7 +49,8 @@ namespace PeriDeal
     void complete(const Json &summary);
 
     /**
-     * The run ends with an error: if it has results, which is returned, summary.json says how. Not collective, since a process may have failed alone.
+     * The run ends with an error: if it has results, which is returned, summary.json says how. Not
+     * collective, since a process may have failed alone.
      */
     bool end_early(const std::string &message, const bool diverged);
 
@@ -59,7 +68,10 @@ namespace PeriDeal
   };
 
 
-  /** Do it, and if it throws, end the files of the run accordingly and tell where results are; the error goes on. */
+  /**
+   * Do it, and if it throws, end the files of the run accordingly and tell where results are; the
+   * error goes on.
+   */
   void with_orderly_end(RunFiles                    &files,
                         const Progress              &progress,
                         const std::function<void()> &action);

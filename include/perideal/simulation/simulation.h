@@ -22,14 +22,17 @@ namespace PeriDeal
   struct ResultRecord;
 
   /**
-   * Owns and wires the members of a run: mesh, models, steppers, output. All models of the scene advance together from one output time
-   * to the next, so that they can be compared. No discretisation and no time stepping here. All functions are collective and throw UserError.
+   * Owns and wires the members of a run: mesh, models, steppers, output. All models of the scene
+   * advance together from one output time to the next, so that they can be compared. No
+   * discretisation and no time stepping here. All functions are collective and throw UserError.
    */
   template <int dim>
   class Simulation
   {
   public:
-    /** @param scene parsed; @param text what it was read from; @param quiet no messages but errors */
+    /**
+     * @param scene parsed; @param text what it was read from; @param quiet no messages but errors
+     */
     Simulation(const Scene<dim> &scene,
                const SceneText  &text,
                const MPI_Comm    communicator,
@@ -42,10 +45,16 @@ namespace PeriDeal
     /** Build everything, say what a run would need, compute and write nothing. */
     void dry_run();
 
-    /** Build everything on a mesh of the same scene, which others use too, for advance_to(). Nothing is written then. */
+    /**
+     * Build everything on a mesh of the same scene, which others use too, for advance_to(). Nothing
+     * is written then.
+     */
     void build_on(const std::shared_ptr<dealii::Triangulation<dim>> &given_mesh);
 
-    /** From the time reached so far, at first 0, to time t; where the scene is steady the steady state, whatever t. */
+    /**
+     * From the time reached so far, at first 0, to time t; where the scene is steady the steady
+     * state, whatever t.
+     */
     void advance_to(const double t);
 
     /** In the order of `Models`. Not collective. */
@@ -54,7 +63,10 @@ namespace PeriDeal
     /** Of the fields of a model, as many as it writes at a time. Collective. */
     unsigned int components_written(const unsigned int number) const;
 
-    /** Seconds that the models of a run take once they are built, as far as that can be told before; negative if not. Collective. */
+    /**
+     * Seconds that the models of a run take once they are built, as far as that can be told before;
+     * negative if not. Collective.
+     */
     double time_of_run() const;
 
     /** What the user should know. Not collective. */
@@ -92,7 +104,10 @@ namespace PeriDeal
     double                 time_of_run(const ModelRun<dim> &model) const;
     double                 time_of_application(const ModelRun<dim> &model) const;
 
-    /** The share of the run that is done when the first n models have got to @p t and the others are where they are now, as far as sizes tell it. Collective. */
+    /**
+     * The share of the run that is done when the first n models have got to @p t and the others are
+     * where they are now, as far as sizes tell it. Collective.
+     */
     double share_done(const unsigned int n, const double t) const;
 
     const Scene<dim>                                 &scene;

@@ -7,13 +7,17 @@
 
 namespace PeriDeal
 {
-  /** The sum of the owned entries of y that are not free, of this process. @p work is overwritten. Not collective. */
+  /**
+   * The sum of the owned entries of y that are not free, of this process. @p work is overwritten.
+   * Not collective.
+   */
   double sum_of_held(const Operator &op, const Vector &y, Vector &work);
 
 
   /**
-   * What prescribed unknowns take up while a stepper advances with a capacity that is constant: nothing unless their values change with time or, as slaves, with those of others
-   * (rows that are not symmetric), or share a capacity matrix with others.
+   * What prescribed unknowns take up while a stepper advances with a capacity that is constant:
+   * nothing unless their values change with time or, as slaves, with those of others (rows that are
+   * not symmetric), or share a capacity matrix with others.
    */
   class HeldHeat
   {
@@ -34,9 +38,11 @@ namespace PeriDeal
 
 
   /**
-   * Steps that keep the heat where the capacity depends on the temperature. A step with the capacity C of its beginning brings C_i (v_i - u_i) to a free unknown;
-   * what it then holds more is the integral of its capacity from u to v, which is another. correct() moves v until both agree: one step of Newton's method, with
-   * the slope that the two capacities tell. What is left is of second order in that change, and steps are of second order in time where they were of
+   * Steps that keep the heat where the capacity depends on the temperature. A step with the
+   * capacity C of its beginning brings C_i (v_i - u_i) to a free unknown; what it then holds more
+   * is the integral of its capacity from u to v, which is another. correct() moves v until both
+   * agree: one step of Newton's method, with the slope that the two capacities tell. What is left
+   * is of second order in that change, and steps are of second order in time where they were of
    * first order by the frozen capacity.
    */
   class ConservativeStep
@@ -48,8 +54,8 @@ namespace PeriDeal
     bool needed() const;
 
     /**
-     * From u with the operator's present capacity to v, both distributed; v has to be distributed again. Returns what prescribed unknowns take up, of this process.
-     * Collective.
+     * From u with the operator's present capacity to v, both distributed; v has to be distributed
+     * again. Returns what prescribed unknowns take up, of this process. Collective.
      */
     double correct(const Vector &u, Vector &v);
 

@@ -11,15 +11,17 @@
 namespace PeriDeal
 {
   /**
-   * Solves (a C + b K) x = rhs on the free unknowns: CG if K is symmetric, else restarted GMRES, with the multigrid preconditioner. The preconditioner
-   * is kept while b/a stays within a factor of three of what it was made for and, when K has changed, while it needs hardly more
-   * iterations than before.
+   * Solves (a C + b K) x = rhs on the free unknowns: CG if K is symmetric, else restarted GMRES,
+   * with the multigrid preconditioner. The preconditioner is kept while b/a stays within a factor
+   * of three of what it was made for and, when K has changed, while it needs hardly more iterations
+   * than before.
    */
   class LinearSolver
   {
   public:
     /**
-     * @param tolerance    relative residual. Throws UserError, naming the entries of section 'Solver', if it is not reached.
+     * @param tolerance    relative residual. Throws UserError, naming the entries of section
+     *                     'Solver', if it is not reached.
      * @param direct_up_to as of MultigridPreconditioner
      */
     LinearSolver(const Operator    &op,
@@ -28,7 +30,8 @@ namespace PeriDeal
                  const unsigned int direct_up_to = 2000);
 
     /**
-     * Returns the number of iterations. x is the start on entry; its entries that are not free must be zero. Collective.
+     * Returns the number of iterations. x is the start on entry; its entries that are not free must
+     * be zero. Collective.
      *
      * @param size stops at the tolerance times this l2 norm of the residual; 0: times that of rhs
      */
@@ -58,8 +61,9 @@ namespace PeriDeal
 
 
   /**
-   * The steady state f(t) = K u; u holds the start on entry. Returns the number of iterations. Throws UserError if nothing fixes the
-   * level of the solution in the body or in a part that cracks have cut off. Collective.
+   * The steady state f(t) = K u; u holds the start on entry. Returns the number of iterations.
+   * Throws UserError if nothing fixes the level of the solution in the body or in a part that
+   * cracks have cut off. Collective.
    */
   unsigned int solve_steady(Operator          &op,
                             Vector            &u,

@@ -19,9 +19,11 @@ namespace PeriDeal
   /**
    * Energies of a moving body (J; in 2D per unit thickness).
    *
-   * With H the sum of kinetic and strain energy steps of `verlet` keep H - dt^2/8 a.Ma of linear bodies exactly, a the accelerations, those of `newmark` H. So with `verlet` H goes up and
-   * down with the accelerations, by an amount of order dt^2, and changes for good where these jump because a load sets in or bonds break: the imbalance. The drift
-   * is what the steps have made beside that.
+   * With H the sum of kinetic and strain energy steps of `verlet` keep H - dt^2/8 a.Ma of linear
+   * bodies exactly, a the accelerations, those of `newmark` H. So with `verlet` H goes up and down
+   * with the accelerations, by an amount of order dt^2, and changes for good where these jump
+   * because a load sets in or bonds break: the imbalance. The drift is what the steps have made
+   * beside that.
    */
   struct MotionEnergy
   {
@@ -31,10 +33,14 @@ namespace PeriDeal
     double released = 0.; // by broken bonds since then
     double drift =
       0.; // change of what the steps keep, less the work: of linear bodies round-off at any step
-    double exchanged =
-      0.; // the most that start and work together have been so far: what the others are to be compared with
+    // The most that start and work together have been so far: what the others are to be compared
+    // with.
+    double exchanged = 0.;
 
-    /** What has come from nowhere: of order dt^2 with `verlet`, round-off of the linear solver with `newmark` and linear kinematics. */
+    /**
+     * What has come from nowhere: of order dt^2 with `verlet`, round-off of the linear solver with
+     * `newmark` and linear kinematics.
+     */
     double imbalance() const
     {
       return kinetic + strain + released - start - work;
@@ -53,14 +59,17 @@ namespace PeriDeal
     virtual std::string name() const = 0;
 
     /**
-     * From u and v at time t to exactly t_end > t in equal steps of at most current_step(), which may change on the way. u comes and goes distributed; prescribed unknowns have the velocity of
-     * their last step. Throws UserError, with what to change, if values are not finite, and what examine() throws, which is asked now and then. Collective.
+     * From u and v at time t to exactly t_end > t in equal steps of at most current_step(), which
+     * may change on the way. u comes and goes distributed; prescribed unknowns have the velocity of
+     * their last step. Throws UserError, with what to change, if values are not finite, and what
+     * examine() throws, which is asked now and then. Collective.
      */
     void advance(Vector &u, Vector &v, const double t, const double t_end);
 
     /**
-     * Throws UserError, with what to change, if the drift of the energy is more than allowed_drift of what start and loads have brought in, the body of full kinematics is
-     * inside out, or a given step is no longer stable. Costs two applications at most. Collective.
+     * Throws UserError, with what to change, if the drift of the energy is more than allowed_drift
+     * of what start and loads have brought in, the body of full kinematics is inside out, or a
+     * given step is no longer stable. Costs two applications at most. Collective.
      */
     void examine(const Vector &u, const Vector &v, const double t);
 
@@ -93,8 +102,8 @@ namespace PeriDeal
 
   protected:
     /**
-     * One step: u and v at t + dt, and unbalanced, which is that of u at t on entry, at t + dt. u and v keep their values at t in last and last_velocity,
-     * which the caller has set.
+     * One step: u and v at t + dt, and unbalanced, which is that of u at t on entry, at t + dt. u
+     * and v keep their values at t in last and last_velocity, which the caller has set.
      */
     virtual void step(Vector &u, Vector &v, const double t, const double dt) = 0;
 
@@ -148,8 +157,9 @@ namespace PeriDeal
   double stable_motion_step(const Operator &op);
 
   /**
-   * The one factory; `auto` is `verlet`. A step that is not given is 0.8 of the stable one of `verlet`, with `newmark` 5 times it. Throws UserError
-   * for a step of `verlet` above the stable one (with both numbers), and for nodes without mass. Collective.
+   * The one factory; `auto` is `verlet`. A step that is not given is 0.8 of the stable one of
+   * `verlet`, with `newmark` 5 times it. Throws UserError for a step of `verlet` above the stable
+   * one (with both numbers), and for nodes without mass. Collective.
    */
   std::unique_ptr<MotionStepper> make_motion_stepper(const std::string    &name,
                                                      ElasticOperator      &op,

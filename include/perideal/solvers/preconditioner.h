@@ -10,9 +10,10 @@
 namespace PeriDeal
 {
   /**
-   * Approximate inverse of a C + b K: algebraic multigrid (Trilinos ML) on the operator's surrogate matrix, plus, where that is not K itself, the inverse
-   * diagonal. Multigrid on the nearest neighbours' graph takes care of what varies slowly; on what varies fast it
-   * is too stiff by the number of bonds in a family, and there K is its diagonal. Symmetric positive definite.
+   * Approximate inverse of a C + b K: algebraic multigrid (Trilinos ML) on the operator's surrogate
+   * matrix, plus, where that is not K itself, the inverse diagonal. Multigrid on the nearest
+   * neighbours' graph takes care of what varies slowly; on what varies fast it is too stiff by the
+   * number of bonds in a family, and there K is its diagonal. Symmetric positive definite.
    */
   class MultigridPreconditioner
   {

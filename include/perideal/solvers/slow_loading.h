@@ -10,19 +10,22 @@
 
 namespace PeriDeal
 {
-  /** Energies of a body that goes from one equilibrium to the next (J; in 2D per unit thickness). */
+  /**
+   * Energies of a body that goes from one equilibrium to the next (J; in 2D per unit thickness).
+   */
   struct LoadingEnergy
   {
     double strain    = 0.;
     double start     = 0.; // strain energy of the first equilibrium, before any bond broke
     double work      = 0.; // of loads and supports since then
     double exchanged = 0.; // the most that start and work together have been so far
-    double dissipated =
-      0.; // by broken bonds, and by the motion that a real body would make before it is at rest again
+    // By broken bonds, and by the motion that a real body would make before it is at rest again.
+    double dissipated = 0.;
 
     /**
-     * What has come from nowhere: the rounding of the solver where forces are linear and loads change in proportion, else of second order in the load step. What is
-     * dissipated follows from the balance of energy while bonds break, so that this tells of the steps between.
+     * What has come from nowhere: the rounding of the solver where forces are linear and loads
+     * change in proportion, else of second order in the load step. What is dissipated follows from
+     * the balance of energy while bonds break, so that this tells of the steps between.
      */
     double imbalance() const
     {
@@ -32,9 +35,11 @@ namespace PeriDeal
 
 
   /**
-   * A body under loads that change so slowly that it is always at rest: equilibria at one load after the other, at each of which bonds break until none is
-   * stretched too far. Of those that are, the most stretched break first, and the others are asked again in the new equilibrium, so that a large step of the load
-   * does not shatter what a crack would relieve. Vectors are allocated once.
+   * A body under loads that change so slowly that it is always at rest: equilibria at one load
+   * after the other, at each of which bonds break until none is stretched too far. Of those that
+   * are, the most stretched break first, and the others are asked again in the new equilibrium, so
+   * that a large step of the load does not shatter what a crack would relieve. Vectors are
+   * allocated once.
    */
   class SlowLoading
   {
@@ -44,12 +49,16 @@ namespace PeriDeal
                 std::unique_ptr<StaticSolver> solver,
                 const StaticOptions          &options);
 
-    /** The first equilibrium, at time t; u is overwritten. Collective. Throws UserError as step() does. */
+    /**
+     * The first equilibrium, at time t; u is overwritten. Collective. Throws UserError as step()
+     * does.
+     */
     void begin(Vector &u, const double t);
 
     /**
-     * From the equilibrium u to that at time t. Collective. Throws UserError if there is none to be found, among others since the body has come apart under loads that
-     * nothing bears any more; u is the last equilibrium then. So it does where full kinematics end with the body inside out.
+     * From the equilibrium u to that at time t. Collective. Throws UserError if there is none to be
+     * found, among others since the body has come apart under loads that nothing bears any more; u
+     * is the last equilibrium then. So it does where full kinematics end with the body inside out.
      */
     void step(Vector &u, const double t);
 

@@ -31,10 +31,11 @@ namespace PeriDeal
     virtual std::string name() const = 0;
 
     /**
-     * From u, distributed, to equilibrium at time t. Returns the number of iterations. Collective. Throws UserError: the iterations do not suffice, or values are no
-     * longer finite.
+     * From u, distributed, to equilibrium at time t. Returns the number of iterations. Collective.
+     * Throws UserError: the iterations do not suffice, or values are no longer finite.
      *
-     * @param size stops at the tolerance times this l2 norm of the residual; 0: times that of the start
+     * @param size stops at the tolerance times this l2 norm of the residual; 0: times that of the
+     *             start
      */
     virtual unsigned int solve(Vector &u, const double t, const double size = 0.) = 0;
 
@@ -46,14 +47,19 @@ namespace PeriDeal
   /** All names that a scene may give. */
   const std::vector<std::string> &static_solver_names();
 
-  /** The one factory. Throws UserError for `linear` where forces are not linear in the displacement. Collective. */
+  /**
+   * The one factory. Throws UserError for `linear` where forces are not linear in the displacement.
+   * Collective.
+   */
   std::unique_ptr<StaticSolver> make_static_solver(const std::string   &name,
                                                    ElasticOperator     &op,
                                                    const StaticOptions &options);
 
   /**
-   * The l2 norm of the residual that prescribed displacements and loads at time t leave in a body that is undeformed but for these, with the stiffness K of the last linearize(). @p u becomes
-   * these displacements, @p residual the residual of the free unknowns, @p image is overwritten. Collective.
+   * The l2 norm of the residual that prescribed displacements and loads at time t leave in a body
+   * that is undeformed but for these, with the stiffness K of the last linearize(). @p u becomes
+   * these displacements, @p residual the residual of the free unknowns, @p image is overwritten.
+   * Collective.
    */
   double undeformed_residual(ElasticOperator &op,
                              Vector          &u,
@@ -62,9 +68,10 @@ namespace PeriDeal
                              const double     t);
 
   /**
-   * undeformed_residual(), by which residuals are measured, and the start of the iterations:
-   * the prescribed displacements, and where forces are not linear the solution of small displacements to three digits, since bonds that a jump at the side has turned
-   * over do not find back. @p u is overwritten. Collective.
+   * undeformed_residual(), by which residuals are measured, and the start of the iterations: the
+   * prescribed displacements, and where forces are not linear the solution of small displacements
+   * to three digits, since bonds that a jump at the side has turned over do not find back. @p u is
+   * overwritten. Collective.
    */
   double start_statics(ElasticOperator     &op,
                        Vector              &u,
@@ -88,7 +95,10 @@ namespace PeriDeal
   public:
     ResidualGoal(const std::string &solver, const StaticOptions &options, const double size);
 
-    /** Whether the residual is small enough. Throws UserError if it is not finite or if the iterations have been used up. Collective. */
+    /**
+     * Whether the residual is small enough. Throws UserError if it is not finite or if the
+     * iterations have been used up. Collective.
+     */
     bool reached(const Vector &r, const unsigned int n_iterations);
 
   private:

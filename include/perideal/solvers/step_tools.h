@@ -23,24 +23,36 @@ namespace PeriDeal
   /** Bytes of vectors. */
   std::size_t memory_of(const std::initializer_list<const Vector *> vectors);
 
-  /** sqrt(sum C_i v_i^2 / sum C_i): the root mean square in the measure of the capacity. Collective. */
+  /**
+   * sqrt(sum C_i v_i^2 / sum C_i): the root mean square in the measure of the capacity. Collective.
+   */
   double capacity_norm(const Operator &op, const Vector &v);
 
   /**
-   * Bound of the error of one step, relative to the solution, of methods whose steps are wrong by O(h^3). Their n steps come to n = O(bound^(-1/3)), and their errors
-   * add up to O(bound^(2/3)): so it goes with the power 3/2 of the accuracy wanted at the end.
+   * Bound of the error of one step, relative to the solution, of methods whose steps are wrong by
+   * O(h^3). Their n steps come to n = O(bound^(-1/3)), and their errors add up to O(bound^(2/3)):
+   * so it goes with the power 3/2 of the accuracy wanted at the end.
    */
   double local_tolerance(const double tolerance);
 
   /** Throws a UserError that says what to change if u is not finite. Collective. */
   void check_finite(const Vector &u, const std::string &stepper, const double t);
 
-  /** Throws UserError, with the place, if a node of a body that is to move has no mass, or a negative one. Collective. */
+  /**
+   * Throws UserError, with the place, if a node of a body that is to move has no mass, or a
+   * negative one. Collective.
+   */
   void require_mass(const ElasticOperator &op);
 
-  /** What to say of a body that is inside out: a sentence that goes on after a time, and what to change. */
+  /**
+   * What to say of a body that is inside out: a sentence that goes on after a time, and what to
+   * change.
+   */
   std::string inverted_text(const Inversion &found);
 
-  /** Number of equal steps, each at most dt, that fill a span; a span that is dt up to round-off counts as one. */
+  /**
+   * Number of equal steps, each at most dt, that fill a span; a span that is dt up to round-off
+   * counts as one.
+   */
   unsigned long long n_equal_steps(const double span, const double dt);
 } // namespace PeriDeal

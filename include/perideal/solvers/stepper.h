@@ -29,7 +29,8 @@ namespace PeriDeal
 
 
   /**
-   * Advances C du/dt = f(t) - K u of an Operator in time. Steppers allocate their vectors once, in the constructor.
+   * Advances C du/dt = f(t) - K u of an Operator in time. Steppers allocate their vectors once, in
+   * the constructor.
    */
   class Stepper
   {
@@ -40,8 +41,8 @@ namespace PeriDeal
     virtual std::string name() const = 0;
 
     /**
-     * From u at time t to exactly t_end > t. u must be distributed at t, and comes back distributed at t_end. Throws UserError as
-     * soon as values are no longer finite. Collective.
+     * From u at time t to exactly t_end > t. u must be distributed at t, and comes back distributed
+     * at t_end. Throws UserError as soon as values are no longer finite. Collective.
      */
     virtual void advance(Vector &u, const double t, const double t_end) = 0;
 
@@ -51,7 +52,10 @@ namespace PeriDeal
     /** The time step used last or planned; 0 if there is none yet. */
     virtual double current_step() const = 0;
 
-    /** Predicted operator applications to advance over a time span; 0 if unknown. For the estimate of a dry run. */
+    /**
+     * Predicted operator applications to advance over a time span; 0 if unknown. For the estimate
+     * of a dry run.
+     */
     virtual double expected_applications(const double time_span) const = 0;
 
     /** Bytes of this process's vectors. */
@@ -66,9 +70,11 @@ namespace PeriDeal
     }
 
     /**
-     * What entered through sides and from sources in all time advanced so far, this process's share: Operator::entering() integrated by the method's own steps, as if it
-     * were one more unknown, so that a linear operator which conserves heat keeps the balance to round-off. Prescribed unknowns take up what their values need
-     * besides (Operator::heat_between()): that is added. Not collective.
+     * What entered through sides and from sources in all time advanced so far, this process's
+     * share: Operator::entering() integrated by the method's own steps, as if it were one more
+     * unknown, so that a linear operator which conserves heat keeps the balance to round-off.
+     * Prescribed unknowns take up what their values need besides (Operator::heat_between()): that
+     * is added. Not collective.
      */
     double entered() const
     {
@@ -94,23 +100,30 @@ namespace PeriDeal
   const std::vector<std::string> &stepper_names();
 
   /**
-   * `auto`: the Chebyshev expansion of the exponential where it applies (symmetric K, diagonal C, material, loads and boundary values constant in time), adaptive RKC2
-   * where C is diagonal, else SDIRK2.
+   * `auto`: the Chebyshev expansion of the exponential where it applies (symmetric K, diagonal C,
+   * material, loads and boundary values constant in time), adaptive RKC2 where C is diagonal, else
+   * SDIRK2.
    */
   std::string choose_stepper(const Operator &op);
 
   /**
-   * The one factory. Throws UserError for a stepper that the operator does not allow, and for a step above the stability bound
-   * (with both bounds in the message). Collective.
+   * The one factory. Throws UserError for a stepper that the operator does not allow, and for a
+   * step above the stability bound (with both bounds in the message). Collective.
    */
   std::unique_ptr<Stepper> make_stepper(const std::string    &name,
                                         Operator             &op,
                                         const StepperOptions &options);
 
-  /** Largest stable step of an explicit method (`euler` 2/lambda, `rk4` 2.785/lambda); infinite for all others. */
+  /**
+   * Largest stable step of an explicit method (`euler` 2/lambda, `rk4` 2.785/lambda); infinite for
+   * all others.
+   */
   double stable_step(const std::string &name, const double largest_eigenvalue);
 
-  /** Throws UserError, with both bounds in the message, for a step of an explicit method above the stability bound. Collective. */
+  /**
+   * Throws UserError, with both bounds in the message, for a step of an explicit method above the
+   * stability bound. Collective.
+   */
   void refuse_unstable_step(const std::string &name, const Operator &op, const double dt);
 
   // One maker per family of methods, each in its own file.

@@ -9,7 +9,10 @@
 
 namespace PeriDeal
 {
-  /** Work of the loads and of the supports of a body along its way, by the trapezoidal rule: wrong by O(step^2). Vectors are allocated once. */
+  /**
+   * Work of the loads and of the supports of a body along its way, by the trapezoidal rule: wrong
+   * by O(step^2). Vectors are allocated once.
+   */
   class WorkOfForces
   {
   public:
@@ -17,12 +20,15 @@ namespace PeriDeal
     explicit WorkOfForces(ElasticOperator &op);
 
     /**
-     * The next step starts here, at time t. @param unbalanced ElasticOperator::unbalanced() there: what is left of it at prescribed unknowns is what the
-     * supports bear.
+     * The next step starts here, at time t. @param unbalanced ElasticOperator::unbalanced() there:
+     * what is left of it at prescribed unknowns is what the supports bear.
      */
     void begin(const Vector &unbalanced, const double t);
 
-    /** Work (J; in 2D per unit thickness) of the step du up to time t, and begin() there. Collective. */
+    /**
+     * Work (J; in 2D per unit thickness) of the step du up to time t, and begin() there.
+     * Collective.
+     */
     double step(const Vector &du, const Vector &unbalanced, const double t);
 
     /** Loads without the supports' forces at the end of the last step. */

@@ -16,8 +16,8 @@ namespace PeriDeal
   using Variation = std::pair<std::string, std::vector<std::string>>;
 
   /**
-   * "Section/Entry=v1 | v2 | v3" taken apart at single bars outside parentheses; two bars are the `or` of formulas. Throws UserError: another
-   * form, or an empty value.
+   * "Section/Entry=v1 | v2 | v3" taken apart at single bars outside parentheses; two bars are the
+   * `or` of formulas. Throws UserError: another form, or an empty value.
    */
   Variation parse_variation(const std::string &text);
 
@@ -25,13 +25,15 @@ namespace PeriDeal
   std::vector<std::vector<Setting>> combinations(const std::vector<Variation> &variations);
 
   /**
-   * "prefix, Cells = 24, 24, Horizon ratio = 2": sections are left out where the entries' own names tell them apart.
+   * "prefix, Cells = 24, 24, Horizon ratio = 2": sections are left out where the entries' own names
+   * tell them apart.
    */
   std::string combination_name(const std::string &prefix, const std::vector<Setting> &combination);
 
   /**
-   * One folder name for each row: its name with letters, digits, `.`, `-` and `_` only, and at most 100 characters. Names that would share a
-   * folder, also where upper and lower case are the same, get a hash of the name at the end.
+   * One folder name for each row: its name with letters, digits, `.`, `-` and `_` only, and at most
+   * 100 characters. Names that would share a folder, also where upper and lower case are the same,
+   * get a hash of the name at the end.
    */
   std::vector<std::string> folder_names(const std::vector<std::string> &names);
 

@@ -20,14 +20,21 @@ namespace PeriDeal
   /** Whether @p a is neither dearer nor more wrong than @p b, and better in one of the two. */
   bool dominates(const WorkPoint &a, const WorkPoint &b);
 
-  /** The points that none dominates, by rising cost; points equal in both are all in it, in the order given. */
+  /**
+   * The points that none dominates, by rising cost; points equal in both are all in it, in the
+   * order given.
+   */
   std::vector<std::size_t> pareto_front(const std::vector<WorkPoint> &points);
 
-  /** For each point the cheapest of the front that dominates it, the first of several; no_point on the front. */
+  /**
+   * For each point the cheapest of the front that dominates it, the first of several; no_point on
+   * the front.
+   */
   std::vector<std::size_t> dominating_points(const std::vector<WorkPoint> &points);
 
   /**
-   * The order p of error = C h^p by least squares in logarithms. NaN for fewer than two different spacings, or numbers that are not positive.
+   * The order p of error = C h^p by least squares in logarithms. NaN for fewer than two different
+   * spacings, or numbers that are not positive.
    */
   double observed_order(const std::vector<double> &spacings, const std::vector<double> &errors);
 
@@ -41,7 +48,9 @@ namespace PeriDeal
     {
       interpolated, // between two points of the family
       extrapolated, // beyond its finest point, with the slope of its last three
-      at_most, // the cost of a point that is better: of the coarsest, or of one no dearer than the point before
+      // The cost of a point that is better: of the coarsest, or of one no dearer than the point
+      // before.
+      at_most,
       none // fewer than two points, too far beyond them, or the error does not become smaller
     };
 
@@ -58,8 +67,8 @@ namespace PeriDeal
   CostAtError cost_at_error(const std::vector<WorkPoint> &family, const double error);
 
   /**
-   * The order p seen in three solutions on lattices refined by two, from the norms of their differences: log2(coarse/fine), where
-   * @p coarse is |u(2h) - u(4h)| and @p fine |u(h) - u(2h)|.
+   * The order p seen in three solutions on lattices refined by two, from the norms of their
+   * differences: log2(coarse/fine), where @p coarse is |u(2h) - u(4h)| and @p fine |u(h) - u(2h)|.
    */
   double order_of_differences(const double coarse, const double fine);
 

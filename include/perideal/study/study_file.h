@@ -47,16 +47,16 @@ namespace PeriDeal
     std::string              title, text, output;
     std::vector<StudyRow>    rows;
     std::vector<StudyFigure> figures;
-    std::vector<std::string>
-                          columns; // entries of scenes with a column of their own: those that rows set or vary, or figures name
-    std::set<std::string> varied; // those of them that rows vary
+    // Entries of scenes with a column of their own: those that rows set or vary, or figures name.
+    std::vector<std::string> columns;
+    std::set<std::string>    varied; // those of them that rows vary
   };
 
 
   /**
-   * Read a study file (JSON with comments), find its scenes relative to the working directory, the folder of the study file, or the parents
-   * of that. Whether entries exist is checked, whether scenes are valid is not. Throws UserError for all mistakes, with file, row and key;
-   * collective.
+   * Read a study file (JSON with comments), find its scenes relative to the working directory, the
+   * folder of the study file, or the parents of that. Whether entries exist is checked, whether
+   * scenes are valid is not. Throws UserError for all mistakes, with file, row and key; collective.
    */
   Study read_study(const std::string &file_name, const MPI_Comm communicator);
 
@@ -65,9 +65,15 @@ namespace PeriDeal
                         const std::vector<Variation>   &variations,
                         const MPI_Comm                  communicator);
 
-  /** Apply "Section/Entry=value" to all rows, stronger than what they say themselves. Throws UserError. */
+  /**
+   * Apply "Section/Entry=value" to all rows, stronger than what they say themselves. Throws
+   * UserError.
+   */
   void override_rows(Study &study, const std::vector<std::string> &overrides);
 
-  /** The columns of numbers and texts that every study has, in the order of study.csv; entries of scenes come after the group. */
+  /**
+   * The columns of numbers and texts that every study has, in the order of study.csv; entries of
+   * scenes come after the group.
+   */
   const std::vector<std::string> &study_columns();
 } // namespace PeriDeal

@@ -21,13 +21,16 @@ namespace PeriDeal
 
 
   /**
-   * Compute a scene with cracks by many methods on several lattices, as rows of a study, and find for each what it costs and how wrong it is:
-   * `work_precision.csv` and `work_precision.json` in the output directory, beside the files of the study.
+   * Compute a scene with cracks by many methods on several lattices, as rows of a study, and find
+   * for each what it costs and how wrong it is: `work_precision.csv` and `work_precision.json` in
+   * the output directory, beside the files of the study.
    *
-   * The error is that of the nodal values, against `Reference/Solution` or, without one, against finite elements with the crack on cell faces on three
-   * fine lattices, extrapolated. Cost is the number of nonzeros that are applied times the number of applications of the operator.
+   * The error is that of the nodal values, against `Reference/Solution` or, without one, against
+   * finite elements with the crack on cell faces on three fine lattices, extrapolated. Cost is the
+   * number of nonzeros that are applied times the number of applications of the operator.
    *
-   * Throws UserError, among others: no crack, no box, one dimension, no reference to be had. Collective.
+   * Throws UserError, among others: no crack, no box, one dimension, no reference to be had.
+   * Collective.
    */
   void run_work_precision(const WorkPrecisionOptions &options, const MPI_Comm communicator);
 } // namespace PeriDeal
