@@ -104,7 +104,7 @@ namespace PeriDeal
         images.push_back(image);
       }
 
-      /** The sides that meet in a reentrant corner in which the node itself lies, a bit for each. */
+      /** The sides of a reentrant corner in which the node itself lies, a bit for each. */
       unsigned int reentrant_corner(const std::vector<Foot> &feet) const
       {
         const auto at_node  = [&](const Foot &foot) { return foot.distance < 1e-9 * reach; };

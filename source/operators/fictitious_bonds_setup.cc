@@ -94,7 +94,8 @@ namespace PeriDeal
                       [&](const Point<dim> &p) { return center.distance(p) < farthest; }))
         around.emplace_back(xi, g);
     });
-    // In the order of the relative position; images at one place come in the order in which they were found.
+    // In the order of the relative position; images at one place come in the order in which they
+    // were found.
     std::sort(around.begin(), around.end(), [](const auto &a, const auto &b) {
       for (unsigned int d = dim; d-- > 0;)
         if (a.first[d] != b.first[d])
@@ -201,7 +202,7 @@ namespace PeriDeal
                                           const Term        &term,
                                           const Point<dim>  &twice_planes) const
   {
-    // Instead of the cracks mirror the bond, about each set of the planes of symmetry that it passes.
+    // Instead of the cracks mirror the bond, about each set of planes of symmetry that it passes.
     const Nodes<dim> &nodes = families.nodes();
     for (unsigned int image = 0; image < (1u << dim); ++image)
       {
