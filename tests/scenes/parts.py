@@ -305,7 +305,9 @@ def kalthoff_halves():
             angles.append(direction(file["nodes"][:], file["damage"][:].ravel(), (0.05, 0.025), 1))
         broken.append(run.model(PD)["energy balance"]["broken bonds"])
     check(broken[1] > 500, f"bonds break: {broken}")
-    check_close(angles[1], angles[0], absolute=3, what="angle of the crack, half and whole plate")
+    print(f"Kalthoff and Winkler, whole plate and half of it: {angles[0]:.2f} and {angles[1]:.2f} degrees, {broken[0]} and {broken[1]} bonds")
+    # Measured: 47.62 on both lattices; 2617 and 1303 bonds.
+    check_close(angles[1], angles[0], absolute=1, what="angle of the crack, half and whole plate")
 
 
 def kalthoff(quiet):
@@ -322,7 +324,7 @@ def kalthoff(quiet):
         tip = broken[np.argmax(side * broken[:, 1])]
         angles.append(math.degrees(math.atan2(side * tip[1] - 0.025, tip[0] - 0.05)))
     check_close(angles[0], angles[1], absolute=1e-6, what="the cracks are mirrored")
-    check_close(angles[0], 67, absolute=8, what="angle of the cracks")  # measured: 61 here, 68 on the scene's own lattice
+    check_close(angles[0], 67, absolute=8, what="angle of the cracks")  # measured: 61 here, 65 on the scene's own lattice
 
 
 PARTS = {"loads": loads, "whole": whole, "heat": heat, "meshes": meshes, "motion": motion, "holes": holes, "ranks": ranks, "scenes": scenes}
