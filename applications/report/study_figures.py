@@ -150,19 +150,27 @@ def collect(study, wanted):
     for line in lines:
         key = tuple(None if c in idle.get(line.get("model"), ()) else line.get(c) for c in apart)
         x = names.index(str(line[wanted["x"]])) if names else value_of(line, wanted["x"])
-        found.setdefault(line_name(key, apart, study), []).append((x, value_of(line, wanted["y"])))
-    if any(idle.values()):
-        found = {n: only_smallest(points) for n, points in found.items()}
+        settings = settings_of(study, line, idle.get(line.get("model"), ()))
+        found.setdefault(line_name(key, apart, study), []).append((settings, x, value_of(line, wanted["y"])))
+    found = {n: only_smallest(points) for n, points in found.items()}
     measured = wanted["x"] not in study["entries"] + ["x", "time"]
     return {n: points if measured else sorted(points) for n, points in found.items()}, names
 
 
+def settings_of(study, line, idle):
+    """What makes the results of a line where some entries are idle, so that other lines have the same; else None."""
+    if not idle:
+        return None
+    return (line["scene"], line["model"], line.get("time")) + tuple(str(line.get(e)) for e in study["entries"] if e not in idle)
+
+
 def only_smallest(points):
-    """Points of which each x is there once: of what was computed again, the smallest."""
+    """(x, y) of (settings, x, y); of the same that was computed again the smallest: times and memory differ."""
     smallest = {}
-    for x, y in points:
-        smallest[x] = min(y, smallest.get(x, y))
-    return list(smallest.items())
+    for k, (settings, x, y) in enumerate(points):
+        which = (k if settings is None else settings, x)
+        smallest[which] = min(y, smallest.get(which, y))
+    return [(x, y) for (_, x), y in smallest.items()]
 
 
 def slope(points):

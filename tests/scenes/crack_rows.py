@@ -13,6 +13,7 @@ import sys
 import tempfile
 
 from scene_test import Comparison, check, check_close, finish, run_scene
+from scene_texts import PULLED_STRIP
 
 FEM, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 SHIFT = 1e-9
@@ -91,29 +92,11 @@ def heat():
         check(any("8, 9, 8" in note for note in solved[0].summary["notes"]), "a note names the cells of the block")
 
 
-SENT = """
-set Dimension = 2
-set Physics = elasticity
-subsection Domain
-  set Lower corner = 0, -1.5
-  set Upper corner = 1, 1.5
-end
-subsection Material
-  set Young modulus = 1
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Traction = top: 0, 1
-  set Displacement = bottom: 0, 0
-end
-subsection Output
-  set Fields = none
-end
-"""
+HELD = {"Material/Young modulus": "1", "Boundary conditions/Traction": "top: 0, 1", "Boundary conditions/Displacement": "bottom: 0, 0", "Output/Fields": "none"}
 
 
 def edge_crack(cells, end, y=0.0, models=f"{FEM}, {COUPLED}"):
-    return run_scene(SENT, {"Domain/Cells": cells, "Cracks/Segments": f"0,{y!r} ; {end!r},{y!r}", "Models": models})
+    return run_scene(PULLED_STRIP, {**HELD, "Domain/Cells": cells, "Cracks/Segments": f"0,{y!r} ; {end!r},{y!r}", "Models": models})
 
 
 def intensity(run, model):
@@ -235,7 +218,7 @@ def opening_figure(place, along, model, nodes):
     """K_I of an edge crack, of peridynamics how far its mouth opens."""
     y, end = (0.0, 0.5 + place) if along else (place, 0.5)
     rows = 120 if (nodes == "vertices") != along else 121
-    run = run_scene(SENT, {"Domain/Cells": f"40, {rows}", "Domain/Nodes": nodes, "Cracks/Segments": f"0,{y!r} ; {end!r},{y!r}", "Models": model,
+    run = run_scene(PULLED_STRIP, {**HELD, "Domain/Cells": f"40, {rows}", "Domain/Nodes": nodes, "Cracks/Segments": f"0,{y!r} ; {end!r},{y!r}", "Models": model,
                            "Output/Probes": "0,0.1 ; 0,-0.1", "Peridynamics/Surface correction": "auto" if model == PD else "none"})
     if model != PD:
         return intensity(run, model)

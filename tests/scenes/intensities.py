@@ -15,25 +15,13 @@ import h5py
 import numpy as np
 
 from scene_test import Comparison, check_close, finish, run_scene
+from scene_texts import PULLED_STRIP
 
 FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 BC = "Boundary conditions/"
 NU = 0.3
 
-PLATE = """
-set Dimension = 2
-set Physics = elasticity
-subsection Domain
-  set Lower corner = 0, -1.5
-  set Upper corner = 1, 1.5
-end
-subsection Material
-  set Young modulus = 200
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Traction = top: 0, 1 ; bottom: 0, -1
-end
+PLATE = PULLED_STRIP + """
 subsection Peridynamics
   set Horizon ratio = 3
   set Surface correction = auto

@@ -15,6 +15,7 @@ import sys
 import tempfile
 
 from scene_test import check, finish, print_table, run_perideal, run_scene
+from scene_texts import FOUR_CELLS, SQUARE_MESH
 
 SCENE = """
 set Title     = Small plate
@@ -47,32 +48,6 @@ CUT_OFF = {**ELASTIC, "Boundary conditions/Displacement": "bottom: 0, 0", "Bound
            "Cracks/Segments": "-1, 0.52 ; 2, 0.52"}
 MOTION = {**ELASTIC, "Elasticity/Solver": "dynamics"}
 
-QUADS = """$MeshFormat
-2.2 0 8
-$EndMeshFormat
-$Nodes
-9
-1 0 0 0
-2 0.5 0 0
-3 1 0 0
-4 0 0.5 0
-5 0.5 0.5 0
-6 1 0.5 0
-7 0 1 0
-8 0.5 1 0
-9 1 1 0
-$EndNodes
-$Elements
-{n}
-1 1 2 3 3 1 2
-2 1 2 3 3 2 3
-3 1 2 4 4 7 8
-4 1 2 4 4 8 9
-{cells}
-$EndElements
-"""
-CELLS = "5 3 2 7 7 1 2 5 4\n6 3 2 7 7 2 3 6 5\n7 3 2 7 7 4 5 8 7\n8 3 2 7 7 5 6 9 8"
-
 
 def write(folder, name, text):
     path = os.path.join(folder, name)
@@ -100,8 +75,8 @@ def box_faces(low, high):
 
 def scene_mistakes(folder):
     """(name, overrides or text of a scene, words of the message)."""
-    whole = QUADS.format(n=8, cells=CELLS)
-    triangles = QUADS.format(n=5, cells="5 2 2 7 7 1 2 5")
+    whole = SQUARE_MESH.format(names="", n=8, cells=FOUR_CELLS)
+    triangles = SQUARE_MESH.format(names="", n=5, cells="5 2 2 7 7 1 2 5")
     file_of_directory = write(folder, "a_file", "text")
     changed = [
         # names

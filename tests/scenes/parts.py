@@ -11,6 +11,7 @@ import sys
 import tempfile
 
 from scene_test import check, check_close, finish, run_scene
+from scene_texts import FOUR_CELLS, SQUARE_MESH
 
 FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 BC = "Boundary conditions/"
@@ -139,38 +140,12 @@ def heat():
         check_close(run.probe(model, (0.75, 1)), 100, absolute=1e-9, what=f"{model}: the part named first")
 
 
-NAMED = """$MeshFormat
-2.2 0 8
-$EndMeshFormat
-$PhysicalNames
+NAMES = """$PhysicalNames
 3
 1 3 "cold wall"
 1 4 "lid"
 2 7 "body"
 $EndPhysicalNames
-$Nodes
-9
-1 0 0 0
-2 0.5 0 0
-3 1 0 0
-4 0 0.5 0
-5 0.5 0.5 0
-6 1 0.5 0
-7 0 1 0
-8 0.5 1 0
-9 1 1 0
-$EndNodes
-$Elements
-8
-1 1 2 3 3 1 2
-2 1 2 3 3 2 3
-3 1 2 4 4 7 8
-4 1 2 4 4 8 9
-5 3 2 7 7 1 2 5 4
-6 3 2 7 7 2 3 6 5
-7 3 2 7 7 4 5 8 7
-8 3 2 7 7 5 6 9 8
-$EndElements
 """
 
 
@@ -179,7 +154,7 @@ def meshes():
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "named.msh")
         with open(path, "w") as file:
-            file.write(NAMED)
+            file.write(SQUARE_MESH.format(names=NAMES, n=8, cells=FOUR_CELLS))
         mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": path, "Peridynamics/Horizon": "1.1", "Output/Probes": "0.3,0.4"}
         numbers = run_scene(HEAT, {**mesh, BC + "Dirichlet": "3: 0; 4: x"})
         names = run_scene(HEAT, {**mesh, BC + "Dirichlet": "cold wall: 0; lid: x"})

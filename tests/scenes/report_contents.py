@@ -237,6 +237,18 @@ def studies():
     found, _ = study_figures.collect(whole, {"x": "Domain/Cells", "y": "uy at (0.5, 1)", "lines": []})
     check(sorted(found) == [FEM, PD + ", Horizon ratio = 2", PD + ", Horizon ratio = 3"], f"lines: {sorted(found)}")
     check(all(len(points) == 2 for points in found.values()), "a point for each lattice")
+    # One line for each model: all that peridynamics has found, whichever is smaller.
+    found, _ = study_figures.collect(whole, {"x": "Domain/Cells", "y": "uy at (0.5, 1)", "lines": ["model"]})
+    values = {model: sorted(float(line["uy at (0.5, 1)"]) for line in lines if line["model"] == model) for model in (FEM, PD)}
+    check(sorted(y for _, y in found[PD]) == values[PD] and len(found[PD]) == 4, f"points of peridynamics: {found[PD]}")
+    check(sorted(y for _, y in found[FEM]) == sorted(set(values[FEM])) and len(found[FEM]) == 2, f"points of elements: {found[FEM]}")
+    # Of what was computed again the shorter time.
+    found, _ = study_figures.collect(whole, {"x": "Domain/Cells", "y": "wall time", "lines": ["model"]})
+    times = {}
+    for line in lines:
+        if line["model"] == FEM:
+            times.setdefault(line["Domain/Cells"], []).append(float(line["wall time"]))
+    check(sorted(y for _, y in found[FEM]) == sorted(min(t) for t in times.values()) and len(found[PD]) == 4, f"wall times: {found}")
     check(study_figures.label_of(whole, "uy at (0.5, 1)") == "Displacement in y at (0.5, 1) (m)", "the label with its unit")
 
     # Such a column may be asked for.
