@@ -87,12 +87,13 @@ namespace PeriDeal
       const Nodes<dim>                         &nodes = families.nodes();
       std::vector<typename Families<dim>::Bond> bonds;
       unsigned long long                        n_ends = 0;
-      unsigned long long n_sites = nodes.lattice() && families.has_unique_sites() ? 1 : 0;
+      unsigned long long n_sites = nodes.lattice() && families.neighbors().has_unique_sites() ? 1 :
+                                                                                                0;
       for (unsigned int d = 0; d < dim && n_sites > 0; ++d)
         n_sites *= nodes.lattice()->n_sites[d];
       if (nodes.n_global() == n_sites || nodes.is_graded()) // no void
         {
-          for (const FamilyMember<dim> &member : families.lattice_members())
+          for (const FamilyMember<dim> &member : families.weights().members())
             {
               unsigned long long n_pairs = 1;
               for (unsigned int d = 0; d < dim; ++d)

@@ -28,8 +28,8 @@ namespace PeriDeal
                                                 u.local_element(bond.neighbor) :
                                                 outside[bond.neighbor - nodes.n_local()];
             const double         difference = other - u.local_element(i);
-            const Tensor<1, dim> q =
-              bond.weight / nodes.volume(i) * difference * families.bond_vector(i, bond.neighbor);
+            const Tensor<1, dim> q          = bond.weight / nodes.volume(i) * difference *
+                                     families.neighbors().bond_vector(i, bond.neighbor);
             both -= 0.5 * q;
             if (difference > 0.)
               hotter -= q;

@@ -28,14 +28,13 @@ namespace PeriDeal
       const Nodes<dim> &nodes = families.nodes();
       if (bond.intact == 0.)
         return 0.;
-      const Tensor<1, dim> xi     = families.bond_vector(node, bond.neighbor);
-      const unsigned int   real   = bond.neighbor < nodes.n_local() ?
-                                      bond.neighbor :
-                                      families.fictitious()[bond.neighbor - nodes.n_local()].mirror;
+      const Tensor<1, dim> xi     = families.neighbors().bond_vector(node, bond.neighbor);
+      const unsigned int   real   = families.neighbors().real(bond.neighbor);
       const double         volume = std::sqrt(nodes.volume(node) * nodes.volume(real));
       const double         kept   = bond.weight / bond.intact;
-      const double         kappa =
-        interface_conductivity(rule, families.conductivity(node), families.conductivity(real));
+      const double         kappa  = interface_conductivity(rule,
+                                                  families.conductivities().of_node(node),
+                                                  families.conductivities().of_node(real));
       if (nodes.lattice())
         {
           unsigned int n_steps = 0;
@@ -88,7 +87,8 @@ namespace PeriDeal
                       // A fictitious node holds its neighbours as far as it does not follow its
                       // mirror.
                       outside[i] +=
-                        (1. - bonds.fictitious()[bond.neighbor - nodes.n_local()].sign) * c;
+                        (1. - bonds.neighbors().outside()[bond.neighbor - nodes.n_local()].sign) *
+                        c;
                       continue;
                     }
                   entries.emplace_back(bond.neighbor, c);

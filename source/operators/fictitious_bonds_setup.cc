@@ -25,7 +25,7 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes = families.nodes();
     int               reach = 0;
-    for (const FamilyMember<dim> &member : families.lattice_members())
+    for (const FamilyMember<dim> &member : families.weights().members())
       for (unsigned int d = 0; d < dim; ++d)
         reach = std::max(reach, member.offset[d]);
     starts.assign(1, 0);
@@ -51,7 +51,7 @@ namespace PeriDeal
     , cracks(std::move(cracks))
   {
     const Nodes<dim> &nodes = families.nodes();
-    PointBins<dim>    bins(families.reach());
+    PointBins<dim>    bins(families.weights().reach());
     for (unsigned int g = 0; g < beyond.size(); ++g)
       bins.add(beyond[g].place, g);
     std::vector<unsigned int> number_of(beyond.size(), numbers::invalid_unsigned_int);
@@ -84,11 +84,12 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes    = families.nodes();
     const Point<dim> &center   = nodes.position(i);
-    const double      farthest = halo_of_images(families.reach());
+    const double      farthest = halo_of_images(families.weights().reach());
     std::vector<std::pair<Tensor<1, dim>, unsigned int>> around;
     bins.visit_near(center, [&](const unsigned int g) {
       const Tensor<1, dim> xi = beyond[g].place - center;
-      if (xi.norm() > 1e-9 * families.reach() && families.weight_off_lattice(xi.norm()) > 0. &&
+      if (xi.norm() > 1e-9 * families.weights().reach() &&
+          families.weights().of_length(xi.norm()) > 0. &&
           std::all_of(beyond[g].term_places.begin(),
                       beyond[g].term_places.end(),
                       [&](const Point<dim> &p) { return center.distance(p) < farthest; }))
@@ -122,7 +123,7 @@ namespace PeriDeal
             term_starts.push_back(terms.size());
           }
         const double w =
-          cut ? 0. : nodes.volume(i) * image.volume * families.weight_off_lattice(xi.norm());
+          cut ? 0. : nodes.volume(i) * image.volume * families.weights().of_length(xi.norm());
         images.push_back(number_of[g]);
         moments.push_back(w * xi);
         springs.push_back(w * xi.norm_square());
@@ -138,12 +139,12 @@ namespace PeriDeal
     const Index         center     = lattice.index(nodes.position(i));
     const bool          near_crack = families.near_crack(i);
     Site                site;
-    for (const FamilyMember<dim> &member : families.lattice_members())
+    for (const FamilyMember<dim> &member : families.weights().members())
       {
         const Index index = center + member.offset;
         if (extension.is_inside(index) || !extension.find(index, site))
           continue;
-        const unsigned int real   = families.node_at(index);
+        const unsigned int real   = families.neighbors().node_at(index);
         const double       inside = real == numbers::invalid_unsigned_int ? 0. : nodes.volume(real);
         const double       volume = site.volume - inside;
         if (volume <= 1e-9 * site.volume)

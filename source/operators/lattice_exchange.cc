@@ -162,7 +162,7 @@ namespace PeriDeal
   template <int dim>
   void LatticeExchange<dim>::set_form_factors(std::vector<double> factors)
   {
-    bonds.families.set_node_factors(std::move(factors), 1, true);
+    bonds.families.factors().set(std::move(factors), 1, true);
   }
 
   template <int dim>

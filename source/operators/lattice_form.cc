@@ -24,15 +24,15 @@ namespace PeriDeal
     {
       std::vector<std::array<int, 3>> offsets;
       std::vector<double>             weights;
-      const double                    kappa = families.conductivity(0);
-      for (const FamilyMember<dim> &member : families.lattice_members())
+      const double                    kappa = families.conductivities().of_node(0);
+      for (const FamilyMember<dim> &member : families.weights().members())
         {
           std::array<int, 3> offset{{0, 0, 0}};
           std::copy(member.offset.begin(), member.offset.end(), offset.begin());
           if (*std::min_element(offset.begin(), offset.end()) < 0)
             continue;
           double weight = member.weight;
-          for (const FamilyMember<dim> &self : families.self_members())
+          for (const FamilyMember<dim> &self : families.weights().self_members())
             if (self.offset == member.offset)
               weight += self.weight;
           offsets.push_back(offset);
@@ -96,7 +96,7 @@ namespace PeriDeal
         // but a fictitious one has no own.
         std::vector<double> count(n_owned);
         fill_grid_directly(std::vector<double>(n_local, 0.5),
-                           std::vector<double>(families.fictitious().size(), 1.));
+                           std::vector<double>(families.neighbors().outside().size(), 1.));
         convolve(make_kernel(families, true), 0, runs.size(), count.data());
         std::vector<typename Families<dim>::Bond> family;
         for (const std::uint32_t i : corrections.rows) // the plain way
@@ -226,13 +226,13 @@ namespace PeriDeal
       /** Where the fictitious nodes go in the grid, and which of these sites no real node fills. */
       void find_fictitious_slots()
       {
-        for (std::uint32_t f = 0; f < families.fictitious().size(); ++f)
+        for (std::uint32_t f = 0; f < families.neighbors().outside().size(); ++f)
           {
-            const FictitiousNode<dim> &node = families.fictitious()[f];
+            const FictitiousNode<dim> &node = families.neighbors().outside()[f];
             if (!layout.in_grid(node.site))
               continue;
             outside_nodes.push_back({layout.slot(node.site), f, node.volume});
-            if (families.node_at(node.site) == numbers::invalid_unsigned_int)
+            if (families.neighbors().node_at(node.site) == numbers::invalid_unsigned_int)
               emptied_slots.push_back(layout.slot(node.site));
           }
       }
@@ -244,7 +244,7 @@ namespace PeriDeal
         std::vector<double> volumes(n_local), outside, sums(families.nodes().n_owned());
         for (unsigned int i = 0; i < n_local; ++i)
           volumes[i] = families.nodes().volume(i);
-        for (const FictitiousNode<dim> &node : families.fictitious())
+        for (const FictitiousNode<dim> &node : families.neighbors().outside())
           outside.push_back(node.volume);
         fill_grid_directly(volumes, outside);
         convolve(kernel, 0, runs.size(), sums.data());
@@ -260,12 +260,12 @@ namespace PeriDeal
       {
         const Nodes<dim> &nodes = families.nodes();
         const auto        site  = nodes.lattice()->index(nodes.position(i));
-        for (const FamilyMember<dim> &self : families.self_members())
+        for (const FamilyMember<dim> &self : families.weights().self_members())
           {
             auto other = site;
             for (unsigned int d = 0; d < dim; ++d)
               other[d] += self.offset[d];
-            const unsigned int j = families.node_at(other);
+            const unsigned int j = families.neighbors().node_at(other);
             if (j == numbers::invalid_unsigned_int || nodes.volume(j) != nodes.volume(i))
               return false;
           }
@@ -276,18 +276,17 @@ namespace PeriDeal
       /** The template's conductance of a bond. */
       double template_weight(const unsigned int i, const typename Families<dim>::Bond &bond) const
       {
-        if (families.self_members().empty())
+        if (families.weights().self_members().empty())
           return bond.intact;
         const std::uint32_t  j      = bond.neighbor;
-        const double         volume = j < n_local ? families.nodes().volume(j) :
-                                                    families.fictitious()[j - n_local].volume;
-        const Tensor<1, dim> xi     = families.bond_vector(i, j);
+        const double         volume = families.neighbors().volume(j);
+        const Tensor<1, dim> xi     = families.neighbors().bond_vector(i, j);
         double               weight = 0.;
-        for (const auto *list : {&families.lattice_members(), &families.self_members()})
+        for (const auto *list : {&families.weights().members(), &families.weights().self_members()})
           for (const FamilyMember<dim> &member : *list)
-            if (families.is_offset(xi, member))
+            if (families.weights().is_offset(xi, member))
               weight += member.weight;
-        return families.nodes().volume(i) * volume * weight * families.conductivity(i);
+        return families.nodes().volume(i) * volume * weight * families.conductivities().of_node(i);
       }
 
 
@@ -463,9 +462,9 @@ namespace PeriDeal
   template <int dim>
   bool lattice_form_suits(const Families<dim> &families, std::string &reason)
   {
-    if (!families.has_unique_sites())
+    if (!families.neighbors().has_unique_sites())
       reason = "the nodes are not on a lattice with one node per site";
-    else if (!families.uniform_conductivity())
+    else if (!families.conductivities().uniform())
       reason = "the conductivity varies";
     else if (families.corrects_every_bond())
       reason = "the energy correction gives each bond a factor of its own";

@@ -52,7 +52,7 @@ namespace PeriDeal
             [at_end = zone_at_end(zone, scene)](const Point<dim> &p) { return at_end.contains(p); })
     , zone(zone)
   {
-    const CrackHistory<dim> &history = bonds.crack_history();
+    const CrackHistory<dim> &history = bonds.cracks().history();
     const Zone<dim>          at_end  = zone_at_end(zone, scene);
     this->zone.set_cracks(history.pieces(history.representative(0.)));
     const std::vector<bool> hanging   = hanging_nodes(nodes);
@@ -100,7 +100,8 @@ namespace PeriDeal
           0 :
           1,
         nodes.communicator()) > 0;
-    paths = std::make_unique<CellPaths<dim>>(cells, ends, bonds.reach() * (1. + 1e-6), regular);
+    paths =
+      std::make_unique<CellPaths<dim>>(cells, ends, bonds.weights().reach() * (1. + 1e-6), regular);
   }
 
 
@@ -161,7 +162,7 @@ namespace PeriDeal
               }
             if (highest > largest_contrast * lowest)
               continue;
-            zone_bond.intact *= lowest / bonds.bond_conductivity(i, bond.neighbor);
+            zone_bond.intact *= lowest / bonds.conductivities().of_bond(i, bond.neighbor);
             const unsigned int number = zone_bonds.size();
             take(zone_bond.intact, way);
             for (const PathPiece<dim> &piece : way)
@@ -340,13 +341,13 @@ namespace PeriDeal
     if (!zone.follows_cracks())
       return boxes;
     Zone<dim> then = zone;
-    then.set_cracks(bonds.crack_history().pieces(time));
+    then.set_cracks(bonds.cracks().history().pieces(time));
     for (unsigned int i = 0; i < joined.size(); ++i)
       if (may_join[i] && !joined[i] && then.contains(bonds.nodes().position(i)))
         {
           // New bonds may change the scaling of all that pass the cells on their way.
           boxes.push_back({{bonds.nodes().position(i), bonds.nodes().position(i)}});
-          boxes.back().extend(2. * bonds.reach());
+          boxes.back().extend(2. * bonds.weights().reach());
         }
     return boxes;
   }
@@ -356,8 +357,8 @@ namespace PeriDeal
   void MeshExchange<dim>::set_cracks_of(const double time)
   {
     bool any = false;
-    bonds.set_cracks_of(time);
-    zone.set_cracks(bonds.crack_history().pieces(time));
+    bonds.cracks().set_time(time);
+    zone.set_cracks(bonds.cracks().history().pieces(time));
     for (unsigned int i = 0; i < joined.size() && zone.follows_cracks(); ++i)
       if (may_join[i] && !joined[i] && zone.contains(bonds.nodes().position(i)))
         {

@@ -123,7 +123,7 @@ namespace PeriDeal
         n_nodes[k] += share.inside && share.id == dirichlet[k].id ? 1 : 0;
     for (const Prescribed &entry : prescribed_list)
       ++n_held[entry.condition - dirichlet.data()];
-    for (const FictitiousNode<dim> &node : families.fictitious())
+    for (const FictitiousNode<dim> &node : families.neighbors().outside())
       for (const auto &term : node.terms)
         ++n_held[term.condition - dirichlet.data()];
     require_held_parts(conditions, dirichlet, n_nodes, n_held, "Dirichlet", nodes.communicator());
@@ -137,7 +137,7 @@ namespace PeriDeal
     if (treatment == FluxTreatment::natural)
       return;
     AssertThrow(
-      scene.domain.shape == Shape::box && families.has_unique_sites(),
+      scene.domain.shape == Shape::box && families.neighbors().has_unique_sites(),
       UserError(
         "'Flux treatment' in section 'Peridynamics' must be 'natural' unless the body is a box "
         "without doubled nodes."));
@@ -193,8 +193,8 @@ namespace PeriDeal
     double sum = 0.;
     for (const auto &bond : bonds)
       {
-        const double inward =
-          (side % 2 == 0 ? 1. : -1.) * families.bond_vector(slave.node, bond.neighbor)[side / 2];
+        const double inward = (side % 2 == 0 ? 1. : -1.) *
+                              families.neighbors().bond_vector(slave.node, bond.neighbor)[side / 2];
         if (bond.neighbor >= nodes.n_local() || inward <= 1e-9 * nodes.smallest_spacing() ||
             bond.weight == 0.)
           continue;
@@ -239,13 +239,14 @@ namespace PeriDeal
         if (depth >= rows || kinds[i] != free)
           continue;
         site[0]                   = side == 0 ? rows : lattice.n_sites[0] - 1 - rows;
-        const unsigned int master = families.node_at(site);
+        const unsigned int master = families.neighbors().node_at(site);
         Assert(master != numbers::invalid_unsigned_int, ExcInternalError());
         Slave slave;
-        slave.node             = i;
-        slave.masters          = {{master, 1.}};
-        slave.flux_coefficient = (rows - depth) * lattice.spacing[0] / families.conductivity(i);
-        slave.fluxes           = {{flux, slave.flux_coefficient, nodes.position(i)}};
+        slave.node    = i;
+        slave.masters = {{master, 1.}};
+        slave.flux_coefficient =
+          (rows - depth) * lattice.spacing[0] / families.conductivities().of_node(i);
+        slave.fluxes = {{flux, slave.flux_coefficient, nodes.position(i)}};
         slaves.push_back(slave);
       }
     return "";

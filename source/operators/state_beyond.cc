@@ -37,7 +37,7 @@ namespace PeriDeal
         [&](const unsigned int node, const types::boundary_id side, const int step) {
           auto site = lattice.index(nodes.position(node));
           site[side / 2] += side % 2 == 0 ? step : -step;
-          return families.node_at(site);
+          return families.neighbors().node_at(site);
         };
       std::vector<TractionShare<dim>> second;
       std::array<Vector, dim + 1>     carried; // areas and places of the outermost row
@@ -114,7 +114,8 @@ namespace PeriDeal
   {
     const bool cut_at_tips = scene.cracks.cuts_bonds_at_tips(scene.peridynamics.surface_correction);
     const auto cracks      = [&] {
-      return make_crack_geometries(bonds.crack_history().pieces(bonds.cracks_now(), cut_at_tips));
+      return make_crack_geometries(
+        bonds.cracks().history().pieces(bonds.cracks().now(), cut_at_tips));
     };
     if (completes_mesh(scene))
       {
@@ -126,13 +127,14 @@ namespace PeriDeal
                                                  boundary_images(bonds.nodes(),
                                                                  scene.boundary_conditions.symmetry,
                                                                  goes_on,
-                                                                 bonds.reach()),
+                                                                 bonds.weights().reach()),
                                                  cracks());
         beyond->add_weights(weighted);
         return;
       }
     const auto sides = beyond_sides(scene);
-    if (!bonds.has_unique_sites() || std::all_of(sides.begin(), sides.end(), [](const auto side) {
+    if (!bonds.neighbors().has_unique_sites() ||
+        std::all_of(sides.begin(), sides.end(), [](const auto side) {
           return side == BeyondSide::nothing;
         }))
       return;

@@ -47,7 +47,7 @@ namespace PeriDeal
   {
     const OperatorForm wanted = scene.peridynamics.form;
     std::string        reason;
-    if (!bonds.has_unique_sites())
+    if (!bonds.neighbors().has_unique_sites())
       reason = "the nodes are not on a lattice with one node per site";
     else if (full)
       reason = "with 'Kinematics = full' each bond has its own direction";
@@ -73,9 +73,9 @@ namespace PeriDeal
     if (nodes.volume(i) != volume)
       return false;
     const auto site = nodes.lattice()->index(nodes.position(i));
-    for (const FamilyMember<dim> &member : bonds.lattice_members())
+    for (const FamilyMember<dim> &member : bonds.weights().members())
       {
-        const unsigned int j = bonds.node_at(site + member.offset);
+        const unsigned int j = bonds.neighbors().node_at(site + member.offset);
         if (j == numbers::invalid_unsigned_int || nodes.volume(j) != volume)
           return false;
       }
@@ -87,7 +87,7 @@ namespace PeriDeal
   double StateOperator<dim>::complete_weighted() const
   {
     double q = 0.;
-    for (const FamilyMember<dim> &member : bonds.lattice_members())
+    for (const FamilyMember<dim> &member : bonds.weights().members())
       q += bonds.nodes().lattice()->cell_volume() * member.weight * member.r * member.r;
     return q;
   }
@@ -104,7 +104,7 @@ namespace PeriDeal
     if (leave_out)
       {
         on_lattice.assign(nodes.n_owned(), true);
-        for (const FamilyMember<dim> &member : bonds.lattice_members())
+        for (const FamilyMember<dim> &member : bonds.weights().members())
           {
             LatticeBond bond;
             bond.offset = member.offset;
@@ -159,8 +159,8 @@ namespace PeriDeal
         if (bond.cut || bond.intact == 0.)
           continue;
         AssertIndexRange(bond.neighbor, nodes.n_local()); // no fictitious nodes
-        const Tensor<1, dim> xi = bonds.bond_vector(i, bond.neighbor);
-        const double         w  = bond.intact / bonds.bond_conductivity(i, bond.neighbor);
+        const Tensor<1, dim> xi = bonds.neighbors().bond_vector(i, bond.neighbor);
+        const double         w  = bond.intact / bonds.conductivities().of_bond(i, bond.neighbor);
         q += w * xi.norm_square() / nodes.volume(i);
         shape += w * symmetrize(outer_product(xi, xi));
         n_bonds += 0.5; // at each end

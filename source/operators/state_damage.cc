@@ -35,13 +35,13 @@ namespace PeriDeal
     {
       const Tensor<1, dim> &spacing = bonds.nodes().lattice()->spacing;
       double                q       = 0.;
-      for (const FamilyMember<dim> &member : bonds.lattice_members())
+      for (const FamilyMember<dim> &member : bonds.weights().members())
         q += member.weight * member.r * member.r;
       CrossingSums sums;
       for (unsigned int d = 0; d < dim; ++d)
         {
           std::vector<double> shares; // of the layers
-          for (const FamilyMember<dim> &member : bonds.lattice_members())
+          for (const FamilyMember<dim> &member : bonds.weights().members())
             {
               const double share = member.weight * member.r * member.r / q;
               const int    n     = std::max(0, member.offset[d]);
@@ -72,16 +72,16 @@ namespace PeriDeal
       CrossingSums                           sums;
       double                                 q = 0.;
       for (const auto &bond : family)
-        q += bond.intact / bonds.bond_conductivity(node, bond.neighbor) *
-             bonds.bond_vector(node, bond.neighbor).norm_square();
+        q += bond.intact / bonds.conductivities().of_bond(node, bond.neighbor) *
+             bonds.neighbors().bond_vector(node, bond.neighbor).norm_square();
       for (unsigned int d = 0; d < dim; ++d)
         {
           for (std::size_t k = 0; k < family.size(); ++k)
             {
-              const Tensor<1, dim> xi = bonds.bond_vector(node, family[k].neighbor);
+              const Tensor<1, dim> xi = bonds.neighbors().bond_vector(node, family[k].neighbor);
               crossing[k]             = {std::abs(xi[d]),
                                          0.5 * family[k].intact /
-                                           bonds.bond_conductivity(node, family[k].neighbor) *
+                                           bonds.conductivities().of_bond(node, family[k].neighbor) *
                                            xi.norm_square() / q};
             }
           std::sort(crossing.begin(), crossing.end());
@@ -169,7 +169,7 @@ namespace PeriDeal
         {
           // W x e and W x^2; the same digits at both ends of a bond.
           const unsigned int   j     = neighbors[k];
-          const Tensor<1, dim> xi    = bonds.bond_vector(i, j);
+          const Tensor<1, dim> xi    = bonds.neighbors().bond_vector(i, j);
           const double         all   = full ? lengths[k] * xi.norm() : moments[k] * xi;
           const double         limit = all * std::min(critical[i], critical[j]);
           const double         found = extension_moment(u.begin(), i, stored_bond(k));
@@ -255,7 +255,7 @@ namespace PeriDeal
             const double volume = nodes.volume(bond.neighbor);
             if (bond.cut || bond.intact == 0.)
               {
-                bonds.crossed_cracks(i, bond.neighbor, crossed);
+                bonds.cracks().crossed_cracks(i, bond.neighbor, crossed);
                 if (!crossed.empty() || bonds.is_parted(i, bond.neighbor))
                   all += volume;
                 continue;

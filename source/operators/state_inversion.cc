@@ -29,7 +29,7 @@ namespace PeriDeal
         if (springs[k] != 0.)
           largest = std::max(largest,
                              std::abs(deformed_bond(u.begin(), i, neighbors[k]).norm() /
-                                        bonds.bond_vector(i, neighbors[k]).norm() -
+                                        bonds.neighbors().bond_vector(i, neighbors[k]).norm() -
                                       1.));
     u.set_ghost_state(false);
     return Utilities::MPI::max(largest, bonds.nodes().communicator());

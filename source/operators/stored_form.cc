@@ -67,17 +67,19 @@ namespace PeriDeal
     public:
       explicit StoredForm(const Families<dim> &families)
         : families(families)
-        , varying(families.conductivity_depends_on_temperature())
-        , keep_cut(varying || families.crack_history().changes_ever())
+        , varying(families.conductivities().depend_on_temperature())
+        , keep_cut(varying || families.cracks().history().changes_ever())
         , n_values(families.nodes().n_local())
-        , extended(families.fictitious().empty() ? 0 : n_values + families.fictitious().size())
+        , extended(families.neighbors().outside().empty() ?
+                     0 :
+                     n_values + families.neighbors().outside().size())
       {
         const unsigned int n_rows = families.nodes().n_owned();
         row_starts.reserve(n_rows + 1);
         row_starts.push_back(0);
         // On a lattice a little more than enough, in one go: what is not written to takes no
         // memory.
-        reserve(families.lattice_members().size() * n_rows);
+        reserve(families.weights().members().size() * n_rows);
         for (unsigned int i = 0; i < n_rows; ++i)
           {
             families.bonds_of(i, bonds);
@@ -90,7 +92,7 @@ namespace PeriDeal
                   weights.push_back(bond.weight);
                   if (varying)
                     unit_weights.push_back(bond.weight /
-                                           families.bond_conductivity(i, bond.neighbor));
+                                           families.conductivities().of_bond(i, bond.neighbor));
                 }
             row_starts.push_back(columns.size());
           }
@@ -150,7 +152,8 @@ namespace PeriDeal
             for (const auto &bond : bonds)
               {
                 if (varying)
-                  unit_weights[b] = bond.weight / families.bond_conductivity(i, bond.neighbor);
+                  unit_weights[b] =
+                    bond.weight / families.conductivities().of_bond(i, bond.neighbor);
                 weights[b++] = bond.weight;
                 sums[i] += bond.weight;
               }
@@ -164,7 +167,7 @@ namespace PeriDeal
             sums[i] = 0.;
             for (std::size_t b = row_starts[i]; b < row_starts[i + 1]; ++b)
               {
-                weights[b] = unit_weights[b] * families.bond_conductivity(i, columns[b]);
+                weights[b] = unit_weights[b] * families.conductivities().of_bond(i, columns[b]);
                 sums[i] += weights[b];
               }
           }

@@ -17,11 +17,11 @@ namespace PeriDeal
                                           const Zone<dim>  &zone)
     : bonds(nodes, scene, HaloAround::cells)
     , zone(zone)
-    , overlap(scene.coupling.overlap * bonds.horizon())
+    , overlap(scene.coupling.overlap * bonds.weights().horizon())
     , weights_now(nodes, zone, overlap)
     , weights_at_end(weights_now)
   {
-    const CrackHistory<dim> &history = bonds.crack_history();
+    const CrackHistory<dim> &history = bonds.cracks().history();
     Zone<dim>                at_end  = zone;
     at_end.set_cracks(history.pieces(scene.cracks.end_time));
     this->zone.set_cracks(history.pieces(history.representative(0.)));
@@ -68,8 +68,8 @@ namespace PeriDeal
     if (!zone.follows_cracks())
       return boxes;
     Zone<dim> then = zone;
-    then.set_cracks(bonds.crack_history().pieces(time));
-    auto changes = bonds.crack_history().changes(bonds.cracks_now(), time);
+    then.set_cracks(bonds.cracks().history().pieces(time));
+    auto changes = bonds.cracks().history().changes(bonds.cracks().now(), time);
     for (BoundingBox<dim> &box : changes)
       box.extend(zone.width() + overlap + bonds.nodes().smallest_spacing());
     for (unsigned int i = 0; i < bonds.nodes().n_local(); ++i)
@@ -88,8 +88,8 @@ namespace PeriDeal
   template <int dim>
   void WeightedCoupling<dim>::set_cracks_of(const double time)
   {
-    bonds.set_cracks_of(time);
-    zone.set_cracks(bonds.crack_history().pieces(time));
+    bonds.cracks().set_time(time);
+    zone.set_cracks(bonds.cracks().history().pieces(time));
     if (zone.follows_cracks())
       weights_now.set(zone);
   }

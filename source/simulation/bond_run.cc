@@ -186,7 +186,7 @@ namespace PeriDeal
       {
         const Peridynamics      &p = scene.peridynamics;
         std::vector<std::string> list;
-        const double             effective = bonds->families().effective_conductivity();
+        const double             effective = bonds->families().weights().effective_conductivity();
         if (std::abs(effective - 1.) > 5e-3)
           list.push_back(
             "complete families conduct " + to_text(effective) +
@@ -242,9 +242,9 @@ namespace PeriDeal
          std::to_string(p.kernel_exponent)},
       {"volume fraction", fractions[static_cast<int>(p.volume_fraction)]},
       {"calibration",
-       p.calibration == Calibration::analytic ? "analytic" :
-       families.has_complete_families()       ? "discrete" :
-                                                "analytic, because no family is complete"},
+       p.calibration == Calibration::analytic     ? "analytic" :
+       families.weights().has_complete_families() ? "discrete" :
+                                                    "analytic, because no family is complete"},
       {"self term", p.self_term == SelfTerm::none ? "none" : "paper"},
       {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
       {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},

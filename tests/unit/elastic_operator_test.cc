@@ -132,7 +132,7 @@ namespace
     const auto              strain  = symmetrize(g);
     const auto              sigma =
       stress(body.scene.material.moduli(dealii::Point<dim>()), body.scene.elasticity.plane, strain);
-    const double reach = body.states->families().reach();
+    const double reach = body.states->families().weights().reach();
     double       worst = 0., n = 0.;
     for (unsigned int i = 0; i < theta.size(); ++i)
       {

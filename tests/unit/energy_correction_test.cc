@@ -39,9 +39,9 @@ namespace PeriDeal
           for (const auto &bond : bonds)
             for (unsigned int d = 0; d < dim; ++d)
               Z[d] += 0.25 * bond.weight / families.nodes().volume(i) *
-                      std::pow(families.bond_vector(i, bond.neighbor)[d], 2);
+                      std::pow(families.neighbors().bond_vector(i, bond.neighbor)[d], 2);
           for (unsigned int d = 0; d < dim; ++d)
-            g[i][d] = 0.5 * families.conductivity(i) / Z[d];
+            g[i][d] = 0.5 * families.conductivities().of_node(i) / Z[d];
         }
       double largest = 0., effect = 0.;
       for (unsigned int i = 0; i < n; ++i)
@@ -52,7 +52,7 @@ namespace PeriDeal
           for (unsigned int b = 0; b < bonds.size(); ++b)
             {
               const unsigned int   j      = bonds[b].neighbor;
-              const Tensor<1, dim> xi     = families.bond_vector(i, j);
+              const Tensor<1, dim> xi     = families.neighbors().bond_vector(i, j);
               double               factor = 0.;
               for (unsigned int d = 0; d < dim; ++d)
                 {

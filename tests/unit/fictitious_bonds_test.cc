@@ -51,7 +51,7 @@ namespace
     const Vector              u  = body.values(strained<dim>);
     Vector                    y(u);
     op.multiply(y, u);
-    const double   farthest = op.families().reach() + 1e-9, largest = y.linfty_norm();
+    const double   farthest = op.families().weights().reach() + 1e-9, largest = y.linfty_norm();
     const bool     at_centers = body.scene.domain.nodes == NodePlacement::cell_centers;
     const auto     tensors    = op.tensors(u);
     Tensor<1, dim> right; // the force on the right side

@@ -48,7 +48,7 @@ namespace
     EXPECT_LT(unbalanced(body), 1e-13);
     Matrix elements;
     body.elements->assemble_intact(elements, false);
-    const double farthest = body.elements->bonds().families().reach() + 1e-9;
+    const double farthest = body.elements->bonds().families().weights().reach() + 1e-9;
     Vector       x        = body.values(
              [](const dealii::Point<dim> &p) -> dealii::Tensor<1, dim> { return 0.1 * p; }),
            y(x), z(x);

@@ -66,7 +66,7 @@ namespace PeriDeal
     {
       const Coupling<dim>     &coupling = problem.fem->bonds();
       const Families<dim>     &families = coupling.families();
-      const CrackHistory<dim> &history  = families.crack_history();
+      const CrackHistory<dim> &history  = families.cracks().history();
       const bool               at_tips =
         problem.scene.cracks.cuts_bonds_at_tips(problem.scene.peridynamics.surface_correction);
       std::set<std::pair<unsigned int, unsigned int>> known;

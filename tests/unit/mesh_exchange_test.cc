@@ -282,7 +282,7 @@ TEST(MeshExchange, calibrated_over_the_zone)
         continue;
       families.bonds_of(i, bonds);
       for (const auto &bond : bonds)
-        sum += bond.intact * families.bond_vector(i, bond.neighbor).norm_square() /
+        sum += bond.intact * families.neighbors().bond_vector(i, bond.neighbor).norm_square() /
                (4. * nodes.volume(i));
       n += 1.;
     }

@@ -130,7 +130,7 @@ namespace PeriDeal
             families.bonds_of(i, bonds, false);
             for (const auto &bond : bonds)
               {
-                const auto   xi = families.bond_vector(i, bond.neighbor);
+                const auto   xi = families.neighbors().bond_vector(i, bond.neighbor);
                 const double L  = of_right ? -xi[0] : bottom ? xi[1] : -xi[1];
                 if (L < 1e-9)
                   continue;

@@ -289,7 +289,7 @@ namespace PeriDeal
     const double      own    = laws[i].law.extension / weighted.local_element(i);
     for (const LatticeBond &bond : list)
       {
-        const unsigned int j = bonds.node_at(site + bond.offset);
+        const unsigned int j = bonds.neighbors().node_at(site + bond.offset);
         if (j == dealii::numbers::invalid_unsigned_int)
           continue;
         const double w     = volume * nodes.volume(j);
