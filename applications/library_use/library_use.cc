@@ -134,7 +134,7 @@ namespace
     bonds.apply(y, u);
 
     double       worst = 0.;
-    const double reach = bonds.families().weights().reach();
+    const double reach = bonds.diffusion_bonds().weights().reach();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const Point<2> &p = nodes.position(i);
@@ -174,7 +174,7 @@ namespace
                              scene.cracks,
                              scene.peridynamics.nodal_volume);
     PeriDeal::BondOperator<2> bonds(nodes, scene);
-    const auto terms = PeriDeal::lattice_terms<2>(bonds.families().weights().members(),
+    const auto terms = PeriDeal::lattice_terms<2>(bonds.diffusion_bonds().weights().members(),
                                                   nodes.lattice()->spacing,
                                                   conductivity);
     const auto rate  = [&](const unsigned int a, const unsigned int b) {

@@ -111,13 +111,33 @@ namespace PeriDeal
           }
         kept *= fraction;
       }
-    if (voids != nullptr && neighbors.is_real(neighbor) &&
-        voids->leaves_body(neighbors.position(node), neighbors.position(neighbor)))
+    if (leaves_body(node, neighbor))
       {
         cut  = true;
         kept = 0.;
       }
     return kept;
+  }
+
+
+  template <int dim>
+  bool CrackSet<dim>::cuts(const unsigned int node, const unsigned int neighbor) const
+  {
+    bool cut = false;
+    for (const CrackGeometry<dim> &crack : cracks)
+      if (!cut && crack.is_near(neighbors.position(node), neighbors.weights().reach()))
+        test_crossings(node, neighbor, crack, [&](const Point<dim> &, const Point<dim> &) {
+          cut = true;
+        });
+    return cut || leaves_body(node, neighbor);
+  }
+
+
+  template <int dim>
+  bool CrackSet<dim>::leaves_body(const unsigned int node, const unsigned int neighbor) const
+  {
+    return voids != nullptr && neighbors.is_real(neighbor) &&
+           voids->leaves_body(neighbors.position(node), neighbors.position(neighbor));
   }
 
 

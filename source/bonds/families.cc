@@ -71,7 +71,6 @@ namespace PeriDeal
                lattice_spacing(nodes),
                nodes.smallest_spacing())
     , topology(nodes, of_bonds, halo_reach(nodes, scene, of_bonds.reach()), halo)
-    , material(topology, scene.material, scene.initial_and_source.initial_value)
     , crack_set(topology,
                 scene.crack_history(),
                 cuts_at_tips(scene, halo),
@@ -80,8 +79,6 @@ namespace PeriDeal
                     scene.domain.has_voids() ?
                   &scene.domain :
                   nullptr)
-    , node_factors(topology)
-    , corrects_all(scene.peridynamics.surface_correction == SurfaceCorrection::energy)
   {
     const bool unique = topology.has_unique_sites();
     // A symmetry plane of an elastic body holds its nodes, and families end at it.
@@ -153,82 +150,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Families<dim>::add_bond(const unsigned int node,
-                               const unsigned int neighbor,
-                               const double       w,
-                               std::vector<Bond> &bonds) const
+  void Families<dim>::members_of(const unsigned int node, std::vector<Member> &members) const
   {
-    Bond bond;
-    bond.neighbor = neighbor;
-    bond.intact =
-      topology.volume(node) * topology.volume(neighbor) * w * material.of_bond(node, neighbor);
-    bond.weight = bond.intact * kept_fraction(node, neighbor, bond.cut);
-    if (!node_factors.empty())
-      bond.weight *= node_factors.of_bond(node, neighbor);
-    bonds.push_back(bond);
-  }
-
-
-  template <int dim>
-  void Families<dim>::add_self_term(const unsigned int node, std::vector<Bond> &bonds) const
-  {
-    const double volume    = topology.volume(node);
-    unsigned int n_present = 0;
-    // The missing half of a vertex on a side is a node at the same place: one term for both.
-    const auto is_second_half = [&](const Bond &bond) {
-      const unsigned int n_real = topology.nodes().n_local();
-      return !topology.is_real(bond.neighbor) &&
-             topology.node_at(topology.outside()[bond.neighbor - n_real].site) !=
-               numbers::invalid_unsigned_int;
-    };
-    for (const Bond &bond : bonds)
-      for (const FamilyMember<dim> &self : of_bonds.self_members())
-        if (bond.weight > 0. && !is_second_half(bond) &&
-            of_bonds.is_offset(topology.bond_vector(node, bond.neighbor), self))
-          ++n_present;
-    // In a bar the term is the mean over the neighbours that are there (Bobaru 2010, section 3).
-    const double share = dim == 1 && n_present == 1 ? 2. : 1.;
-    for (Bond &bond : bonds)
-      for (const FamilyMember<dim> &self : of_bonds.self_members())
-        if (bond.intact > 0. && !is_second_half(bond) &&
-            of_bonds.is_offset(topology.bond_vector(node, bond.neighbor), self))
-          {
-            const double intact =
-              share * volume * volume * self.weight * material.of_bond(node, bond.neighbor);
-            bond.weight += intact * (bond.weight / bond.intact);
-            bond.intact += intact;
-          }
-  }
-
-
-  template <int dim>
-  void Families<dim>::bonds_of(const unsigned int node,
-                               std::vector<Bond> &bonds,
-                               const bool         with_self_term) const
-  {
-    AssertIndexRange(node, nodes().n_owned());
-    known_bonds_of(node, bonds);
-    if (with_self_term && !symmetric())
-      add_self_term(node, bonds);
-  }
-
-
-  template <int dim>
-  void Families<dim>::known_bonds_of(const unsigned int node, std::vector<Bond> &bonds) const
-  {
-    bonds.clear();
+    members.clear();
     topology.for_each(node, [&](const unsigned int neighbor, const double w) {
-      add_bond(node, neighbor, w, bonds);
-    });
-  }
-
-
-  template <int dim>
-  void Families<dim>::nearest_bonds_of(const unsigned int node, std::vector<Bond> &bonds) const
-  {
-    bonds.clear();
-    topology.for_each_nearest(node, [&](const unsigned int neighbor, const double w) {
-      add_bond(node, neighbor, w, bonds);
+      members.push_back({neighbor,
+                         topology.volume(node) * topology.volume(neighbor) * w,
+                         crack_set.cuts(node, neighbor)});
     });
   }
 
@@ -236,36 +164,14 @@ namespace PeriDeal
   template <int dim>
   bool Families<dim>::is_parted(const unsigned int node, const unsigned int neighbor) const
   {
-    bool cut = false;
-    if (nodes().has_doubled_nodes())
-      kept_fraction(node, neighbor, cut);
-    return cut;
+    return nodes().has_doubled_nodes() && crack_set.cuts(node, neighbor);
   }
 
 
   template <int dim>
   bool Families<dim>::near_crack(const unsigned int node) const
   {
-    // Crack-side scaling changes the bonds of the nodes that have a bond cut: those reach once
-    // farther.
-    return crack_set.is_near(node, (node_factors.empty() ? 1. : 2.) * of_bonds.reach());
-  }
-
-
-  template <int dim>
-  double Families<dim>::kept_fraction(const unsigned int node,
-                                      const unsigned int neighbor,
-                                      bool              &cut) const
-  {
-    return crack_set.kept_fraction(node, neighbor, material, cut);
-  }
-
-
-  template <int dim>
-  std::size_t Families<dim>::memory_consumption() const
-  {
-    return material.memory_consumption() + node_factors.memory_consumption() +
-           topology.memory_consumption();
+    return crack_set.is_near(node, of_bonds.reach());
   }
 
 
@@ -288,18 +194,6 @@ namespace PeriDeal
   }
 
   template <int dim>
-  const BondConductivities<dim> &Families<dim>::conductivities() const
-  {
-    return material;
-  }
-
-  template <int dim>
-  BondConductivities<dim> &Families<dim>::conductivities()
-  {
-    return material;
-  }
-
-  template <int dim>
   const CrackSet<dim> &Families<dim>::cracks() const
   {
     return crack_set;
@@ -312,21 +206,9 @@ namespace PeriDeal
   }
 
   template <int dim>
-  NodeFactors<dim> &Families<dim>::factors()
+  std::size_t Families<dim>::memory_consumption() const
   {
-    return node_factors;
-  }
-
-  template <int dim>
-  bool Families<dim>::corrects_every_bond() const
-  {
-    return corrects_all;
-  }
-
-  template <int dim>
-  bool Families<dim>::symmetric() const
-  {
-    return of_bonds.self_members().empty();
+    return topology.memory_consumption();
   }
 
   template class Families<1>;

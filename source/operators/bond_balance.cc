@@ -37,7 +37,7 @@ namespace PeriDeal
                                                               node.terms.back().condition;
       return given != nullptr ? given->name : scene.boundary_conditions.name_of(node.side);
     };
-    std::vector<typename Families<dim>::Bond> family;
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         if (!reaches_outside(i))
@@ -85,9 +85,9 @@ namespace PeriDeal
     balance.cracks.assign(scene.cracks.cracks.size(), 0.);
     if (!scene.cracks.conduct())
       return;
-    const Nodes<dim>                         &nodes = bonds.nodes();
-    std::vector<typename Families<dim>::Bond> family;
-    std::vector<std::pair<unsigned int, int>> crossed;
+    const Nodes<dim>                               &nodes = bonds.nodes();
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
+    std::vector<std::pair<unsigned int, int>>       crossed;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         if (!bonds.near_crack(i))
@@ -234,7 +234,7 @@ namespace PeriDeal
     outside_sums               = OutsideSums();
     outside_sums.known         = true;
     outside_sums.of_outside.assign(bonds.neighbors().outside().size(), 0.);
-    std::vector<typename Families<dim>::Bond> family;
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
     for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
       if (reaches_outside(i))
         {

@@ -19,7 +19,8 @@ namespace PeriDeal
   template <int dim>
   BondOperator<dim>::BondOperator(Nodes<dim> &nodes, const Scene<dim> &scene)
     : scene(scene)
-    , bonds(nodes.find_parts(scene.boundary_conditions), scene)
+    , families(nodes.find_parts(scene.boundary_conditions), scene)
+    , bonds(families, scene)
     , constraints(std::make_unique<NodeConstraints<dim>>(bonds, scene))
     , cracks_of(bonds.cracks().history().representative(0.))
   {
@@ -429,7 +430,7 @@ namespace PeriDeal
   }
 
   template <int dim>
-  const Families<dim> &BondOperator<dim>::families() const
+  const DiffusionBonds<dim> &BondOperator<dim>::diffusion_bonds() const
   {
     return bonds;
   }
@@ -461,10 +462,10 @@ namespace PeriDeal
     size.unknowns = bonds.nodes().n_global();
     size.bonds    = n_bonds;
     size.nonzeros = n_nonzeros;
-    size.memory   = bonds.memory_consumption() + bonds.nodes().memory_consumption() +
-                  form->memory_consumption() + capacity.memory_consumption() +
-                  bond_diagonal.memory_consumption() + constant_loads.memory_consumption() +
-                  scratch.memory_consumption();
+    size.memory   = families.memory_consumption() + bonds.memory_consumption() +
+                  bonds.nodes().memory_consumption() + form->memory_consumption() +
+                  capacity.memory_consumption() + bond_diagonal.memory_consumption() +
+                  constant_loads.memory_consumption() + scratch.memory_consumption();
     size.form = form->name();
     return size;
   }

@@ -22,9 +22,10 @@ namespace PeriDeal
      * The sum of W xi_a^2 over a family for each direction a, and whether some bond of it is cut.
      */
     template <int dim>
-    std::pair<Tensor<1, dim>, bool> moments(const Families<dim> &families,
-                                            const unsigned int   node,
-                                            const std::vector<typename Families<dim>::Bond> &family)
+    std::pair<Tensor<1, dim>, bool> moments(
+      const DiffusionBonds<dim>                             &families,
+      const unsigned int                                     node,
+      const std::vector<typename DiffusionBonds<dim>::Bond> &family)
     {
       std::pair<Tensor<1, dim>, bool> result;
       result.second = false;
@@ -84,8 +85,8 @@ namespace PeriDeal
           }
       }
     bonds.factors().set({}, 1, true); // what the bonds are without
-    std::vector<typename Families<dim>::Bond> family;
-    std::string                               message;
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
+    std::string                                     message;
     for (const unsigned int i : rows)
       {
         bonds.bonds_of(i, family);

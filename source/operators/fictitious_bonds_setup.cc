@@ -235,7 +235,7 @@ namespace PeriDeal
         if (term.mirrored != 0 || !families.nodes().lattice())
           cut = is_separated(i, term, twice_planes(term)); // beyond the reach, too
         else if (term.node != i)
-          families.kept_fraction(i, term.node, cut);
+          cut = families.cracks().cuts(i, term.node);
         if (cut)
           return true;
       }

@@ -23,10 +23,12 @@ namespace PeriDeal
     , zone(zone)
     , last(scene.cracks.end_time)
   {
-    uniform = !stiffness && families.conductivities().uniform();
+    uniform = !stiffness && scene.material.uniform_conductivity();
     plain   = uniform && scene.domain.shape == Shape::box && !nodes.is_graded();
     if (uniform && nodes.n_local() > 0)
-      uniform_stiffness = families.conductivities().of_node(0);
+      uniform_stiffness = scene.material.conductivity.value(
+        nodes.position(0),
+        scene.initial_and_source.initial_value.value(nodes.position(0)));
     find_offsets();
     find_sites(scene);
     find_cells(scene, stiffness);

@@ -46,10 +46,12 @@ namespace PeriDeal
 
   template <int dim>
   MeshExchange<dim>::MeshExchange(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone)
-    : bonds(nodes,
-            scene,
-            HaloAround::cells,
-            [at_end = zone_at_end(zone, scene)](const Point<dim> &p) { return at_end.contains(p); })
+    : own_families(
+        nodes,
+        scene,
+        HaloAround::cells,
+        [at_end = zone_at_end(zone, scene)](const Point<dim> &p) { return at_end.contains(p); })
+    , bonds(own_families, scene)
     , zone(zone)
   {
     const CrackHistory<dim> &history = bonds.cracks().history();
@@ -149,7 +151,7 @@ namespace PeriDeal
         for (const Bond &bond : family)
           {
             if (!joined[bond.neighbor] || !starts_at(i, bond.neighbor) ||
-                bonds.is_parted(i, bond.neighbor))
+                own_families.is_parted(i, bond.neighbor))
               continue;
             ZoneBond zone_bond{{i, bond.neighbor}, bond.intact};
             if (!follow(zone_bond, way))
@@ -396,18 +398,18 @@ namespace PeriDeal
   template <int dim>
   const Families<dim> &MeshExchange<dim>::families() const
   {
-    return bonds;
+    return own_families;
   }
 
   template <int dim>
   std::size_t MeshExchange<dim>::memory_consumption() const
   {
-    std::size_t memory = bonds.memory_consumption() + paths->memory_consumption() +
-                         cells.capacity() * (sizeof(PathCell<dim>) + sizeof(CellState)) +
-                         zone_bonds.capacity() * sizeof(ZoneBond) +
-                         taken.capacity() * sizeof(taken[0]) +
-                         bonds_of_node.capacity() * sizeof(bonds_of_node[0]) +
-                         cell_of_index.capacity() * sizeof(cell_of_index[0]);
+    std::size_t memory =
+      own_families.memory_consumption() + bonds.memory_consumption() + paths->memory_consumption() +
+      cells.capacity() * (sizeof(PathCell<dim>) + sizeof(CellState)) +
+      zone_bonds.capacity() * sizeof(ZoneBond) + taken.capacity() * sizeof(taken[0]) +
+      bonds_of_node.capacity() * sizeof(bonds_of_node[0]) +
+      cell_of_index.capacity() * sizeof(cell_of_index[0]);
     for (const auto &matrix : taken)
       memory += matrix.capacity() * sizeof(double);
     for (const auto &numbers : bonds_of_node)

@@ -181,18 +181,18 @@ namespace PeriDeal
                                          std::vector<unsigned int> &nodes,
                                          std::vector<BondOfFamily> &list) const
   {
-    const unsigned int                        own        = nodes[0];
-    const double                              own_strain = strain ? strain(own) : 0.;
-    std::vector<typename Families<dim>::Bond> members;
-    bonds.bonds_of(own, members, false);
+    const unsigned int                          own        = nodes[0];
+    const double                                own_strain = strain ? strain(own) : 0.;
+    std::vector<typename Families<dim>::Member> members;
+    bonds.members_of(own, members);
     typename FictitiousExtension<dim>::Site site;
     for (const auto &member : members)
       {
         const unsigned int j = member.neighbor;
-        if (member.intact == 0. || (member.cut && !intact))
+        if (member.weight == 0. || (member.cut && !intact))
           continue;
         const Tensor<1, dim> xi = bonds.neighbors().bond_vector(own, j);
-        double               w  = member.intact / bonds.conductivities().of_bond(own, j);
+        double               w  = member.weight;
         if (extension && !extension->is_inside(site_of(j)) && extension->find(site_of(j), site))
           w *= site.volume / bonds.nodes().volume(j); // with what is missing of a node on a side
         list.push_back({{{0, -w * xi}, {static_cast<unsigned int>(nodes.size()), w * xi}},

@@ -63,26 +63,22 @@ namespace PeriDeal
      * sums than others.
      */
     template <int dim>
-    CrossingSums own_crossing_sums(const Families<dim>                       &bonds,
-                                   const unsigned int                         node,
-                                   std::vector<typename Families<dim>::Bond> &family)
+    CrossingSums own_crossing_sums(const Families<dim>                         &bonds,
+                                   const unsigned int                           node,
+                                   std::vector<typename Families<dim>::Member> &family)
     {
-      bonds.bonds_of(node, family, false);
+      bonds.members_of(node, family);
       std::vector<std::pair<double, double>> crossing(family.size()); // distance, share
       CrossingSums                           sums;
       double                                 q = 0.;
       for (const auto &bond : family)
-        q += bond.intact / bonds.conductivities().of_bond(node, bond.neighbor) *
-             bonds.neighbors().bond_vector(node, bond.neighbor).norm_square();
+        q += bond.weight * bonds.neighbors().bond_vector(node, bond.neighbor).norm_square();
       for (unsigned int d = 0; d < dim; ++d)
         {
           for (std::size_t k = 0; k < family.size(); ++k)
             {
               const Tensor<1, dim> xi = bonds.neighbors().bond_vector(node, family[k].neighbor);
-              crossing[k]             = {std::abs(xi[d]),
-                                         0.5 * family[k].intact /
-                                           bonds.conductivities().of_bond(node, family[k].neighbor) *
-                                           xi.norm_square() / q};
+              crossing[k] = {std::abs(xi[d]), 0.5 * family[k].weight * xi.norm_square() / q};
             }
           std::sort(crossing.begin(), crossing.end());
           // What reaches farther than a plane, as the plane moves away from the node.
@@ -110,9 +106,9 @@ namespace PeriDeal
     const bool         converts   = !material.critical_stretch;
     const CrossingSums of_lattice = converts && nodes.lattice() ? crossing_sums(bonds) :
                                                                   CrossingSums();
-    std::vector<typename Families<dim>::Bond> family;
-    std::string                               message;
-    Vector                                    stretches(nodes.partitioner());
+    std::vector<typename Families<dim>::Member> family;
+    std::string                                 message;
+    Vector                                      stretches(nodes.partitioner());
     breaks = true;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
@@ -240,20 +236,20 @@ namespace PeriDeal
   template <int dim>
   std::vector<double> StateOperator<dim>::damage() const
   {
-    const Nodes<dim>                         &nodes = bonds.nodes();
-    std::vector<typename Families<dim>::Bond> family;
-    std::vector<std::pair<unsigned int, int>> crossed;
-    std::vector<double>                       result(nodes.n_owned());
+    const Nodes<dim>                           &nodes = bonds.nodes();
+    std::vector<typename Families<dim>::Member> family;
+    std::vector<std::pair<unsigned int, int>>   crossed;
+    std::vector<double>                         result(nodes.n_owned());
     for (const unsigned int i : stored_nodes) // others have no bond cut
       {
         // Bonds are stored in the order of the family, those that cracks cut left out.
-        bonds.bonds_of(i, family, false);
+        bonds.members_of(i, family);
         double      all = 0., left = 0.;
         std::size_t k = starts[i];
         for (const auto &bond : family)
           {
             const double volume = nodes.volume(bond.neighbor);
-            if (bond.cut || bond.intact == 0.)
+            if (bond.cut || bond.weight == 0.)
               {
                 bonds.cracks().crossed_cracks(i, bond.neighbor, crossed);
                 if (!crossed.empty() || bonds.is_parted(i, bond.neighbor))

@@ -15,7 +15,8 @@ namespace PeriDeal
   WeightedCoupling<dim>::WeightedCoupling(Nodes<dim>       &nodes,
                                           const Scene<dim> &scene,
                                           const Zone<dim>  &zone)
-    : bonds(nodes, scene, HaloAround::cells)
+    : own_families(nodes, scene, HaloAround::cells)
+    , bonds(own_families, scene)
     , zone(zone)
     , overlap(scene.coupling.overlap * bonds.weights().horizon())
     , weights_now(nodes, zone, overlap)
@@ -110,14 +111,14 @@ namespace PeriDeal
   template <int dim>
   const Families<dim> &WeightedCoupling<dim>::families() const
   {
-    return bonds;
+    return own_families;
   }
 
   template <int dim>
   std::size_t WeightedCoupling<dim>::memory_consumption() const
   {
-    return bonds.memory_consumption() + weights_now.memory_consumption() +
-           weights_at_end.memory_consumption();
+    return own_families.memory_consumption() + bonds.memory_consumption() +
+           weights_now.memory_consumption() + weights_at_end.memory_consumption();
   }
 
 

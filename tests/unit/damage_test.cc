@@ -78,8 +78,8 @@ namespace PeriDeal
       unsigned long long expected = 0;
       for (unsigned int i = 0; i < alone.nodes->n_owned(); ++i)
         {
-          std::vector<typename Families<dim>::Bond> family;
-          alone.states->families().bonds_of(i, family, false);
+          std::vector<typename Families<dim>::Member> family;
+          alone.states->families().members_of(i, family);
           for (const auto &bond : family)
             {
               const Tensor<1, dim> xi  = alone.position(bond.neighbor) - alone.position(i);

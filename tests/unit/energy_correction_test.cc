@@ -28,10 +28,10 @@ namespace PeriDeal
     {
       const Problem<dim> plain(settings, Model::peridynamics, MPI_COMM_SELF),
         corrected(settings + energy, Model::peridynamics, MPI_COMM_SELF);
-      const Families<dim>                      &families = plain.bonds->families();
-      const unsigned int                        n        = families.nodes().n_owned();
-      std::vector<typename Families<dim>::Bond> bonds, found;
-      std::vector<Tensor<1, dim>>               g(n);
+      const DiffusionBonds<dim>                      &families = plain.bonds->diffusion_bonds();
+      const unsigned int                              n        = families.nodes().n_owned();
+      std::vector<typename DiffusionBonds<dim>::Bond> bonds, found;
+      std::vector<Tensor<1, dim>>                     g(n);
       for (unsigned int i = 0; i < n; ++i)
         {
           Tensor<1, dim> Z;
@@ -47,7 +47,7 @@ namespace PeriDeal
       for (unsigned int i = 0; i < n; ++i)
         {
           families.bonds_of(i, bonds);
-          corrected.bonds->families().bonds_of(i, found);
+          corrected.bonds->diffusion_bonds().bonds_of(i, found);
           ASSERT_EQ(bonds.size(), found.size());
           for (unsigned int b = 0; b < bonds.size(); ++b)
             {

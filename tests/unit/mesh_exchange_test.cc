@@ -272,17 +272,17 @@ TEST(MeshExchange, calibrated_over_the_zone)
     on<2>(distorted_mesh<2>(16, 0.1, 1.5), "0.075", "0.1 - max(abs(x - 0.5), abs(y - 0.5))"),
     Model::coupled);
   EXPECT_LT(examine_coupling(*problem.fem, true).linear, 1e-12);
-  const Families<2>                      &families = problem.fem->bonds().families();
-  const Nodes<2>                         &nodes    = families.nodes();
-  std::vector<typename Families<2>::Bond> bonds;
-  double                                  sum = 0., n = 0.;
+  const Families<2>                        &families = problem.fem->bonds().families();
+  const Nodes<2>                           &nodes    = families.nodes();
+  std::vector<typename Families<2>::Member> bonds;
+  double                                    sum = 0., n = 0.;
   for (unsigned int i = 0; i < nodes.n_owned(); ++i)
     {
       if (!problem.fem->bonds().in_zone(i))
         continue;
-      families.bonds_of(i, bonds);
+      families.members_of(i, bonds);
       for (const auto &bond : bonds)
-        sum += bond.intact * families.neighbors().bond_vector(i, bond.neighbor).norm_square() /
+        sum += bond.weight * families.neighbors().bond_vector(i, bond.neighbor).norm_square() /
                (4. * nodes.volume(i));
       n += 1.;
     }

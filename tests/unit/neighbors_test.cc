@@ -3,7 +3,7 @@
 
 // Who is within the reach of whom, against a plain search of all nodes.
 
-#include <perideal/bonds/families.h>
+#include <perideal/bonds/diffusion_bonds.h>
 
 #include <algorithm>
 #include <cmath>
@@ -84,12 +84,12 @@ TEST(Neighbors, are_those_of_a_plain_search)
   for (const auto &[name, settings] : bodies())
     for (const std::string m : {"2", "3", "4.5"})
       {
-        const Problem<2>    problem(settings + Settings{{"Peridynamics/Horizon ratio", m}});
-        const Families<2>  &families  = problem.bonds->families();
-        const Neighbors<2> &neighbors = families.neighbors();
+        const Problem<2>         problem(settings + Settings{{"Peridynamics/Horizon ratio", m}});
+        const DiffusionBonds<2> &families  = problem.bonds->diffusion_bonds();
+        const Neighbors<2>      &neighbors = families.neighbors();
         EXPECT_EQ(neighbors.has_unique_sites(), name != "doubled nodes");
-        const double                   tiny = 1e-9 * problem.nodes->smallest_spacing();
-        std::vector<Families<2>::Bond> bonds;
+        const double                         tiny = 1e-9 * problem.nodes->smallest_spacing();
+        std::vector<DiffusionBonds<2>::Bond> bonds;
         for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)
           {
             const auto   expected = plain_family(neighbors, i);
@@ -125,7 +125,7 @@ TEST(Neighbors, near_boxes_are_those_of_a_plain_search)
   for (const auto &[name, settings] : bodies())
     {
       const Problem<2>    problem(settings);
-      const Neighbors<2> &neighbors = problem.bonds->families().neighbors();
+      const Neighbors<2> &neighbors = problem.bonds->diffusion_bonds().neighbors();
       for (const double distance : {0., 0.05, 0.2})
         {
           std::vector<unsigned int> expected;
@@ -155,9 +155,9 @@ TEST(Neighbors, near_boxes_are_those_of_a_plain_search)
 
 TEST(Neighbors, outside_come_after_the_nodes)
 {
-  const Problem<2> problem(
-    box + Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"}});
-  const Neighbors<2> &neighbors = problem.bonds->families().neighbors();
+  const Problem<2>    problem(box +
+                           Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"}});
+  const Neighbors<2> &neighbors = problem.bonds->diffusion_bonds().neighbors();
   const unsigned int  n_local   = problem.nodes->n_local();
   ASSERT_GT(dealii::Utilities::MPI::sum(neighbors.outside().size(), MPI_COMM_WORLD), 0u);
   for (unsigned int f = 0; f < neighbors.outside().size(); ++f)

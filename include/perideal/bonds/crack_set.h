@@ -34,6 +34,9 @@ namespace PeriDeal
              const double             contact_conductance,
              const Domain<dim>       *voids);
 
+    /** Whether a bond crosses some crack. */
+    bool cuts(const unsigned int node, const unsigned int neighbor) const;
+
     /**
      * What the cracks leave of a bond's conductance, and whether it crosses any.
      * @param conductivities  without effect unless a contact conductance is given
@@ -72,6 +75,7 @@ namespace PeriDeal
                         const unsigned int        neighbor,
                         const CrackGeometry<dim> &crack,
                         const Test               &test) const;
+    bool leaves_body(const unsigned int node, const unsigned int neighbor) const;
     template <typename Test>
     void test_images(const unsigned int         node,
                      const FictitiousNode<dim> &fictitious,

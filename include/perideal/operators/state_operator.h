@@ -177,9 +177,9 @@ namespace PeriDeal
     bool     has_complete_family(const unsigned int i) const; // cut or not
     double   complete_weighted() const;                       // q of one that is not cut
     void     find_bonds();
-    void     store_bonds(const unsigned int                               i,
-                         const std::vector<typename Families<dim>::Bond> &family,
-                         std::string                                     &message);
+    void     store_bonds(const unsigned int                                 i,
+                         const std::vector<typename Families<dim>::Member> &family,
+                         std::string                                       &message);
     void     find_springs();
     void     correct_surface();
     void     make_lattice();
