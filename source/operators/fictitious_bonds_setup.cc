@@ -70,6 +70,11 @@ namespace PeriDeal
   template <int dim>
   void FictitiousBonds<dim>::make_room()
   {
+    if (!parted.empty())
+      state.resize(images.size());
+    for (const std::size_t number : parted)
+      state.mark(number, BondState::parted, 0.);
+    parted = {};
     values.resize(dim * origins.size());
     image_forces.resize(values.size());
     passed.reinit(interleaved(*families.nodes().partitioner(), dim));
@@ -124,6 +129,8 @@ namespace PeriDeal
           }
         const double w =
           cut ? 0. : nodes.volume(i) * image.volume * families.weights().of_length(xi.norm());
+        if (cut)
+          parted.push_back(images.size());
         images.push_back(number_of[g]);
         moments.push_back(w * xi);
         springs.push_back(w * xi.norm_square());
@@ -161,6 +168,8 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           xi[d] = member.offset[d] * lattice.spacing[d];
         const double w = cut ? 0. : nodes.volume(i) * volume * member.weight;
+        if (cut)
+          parted.push_back(images.size());
         images.push_back(image_at(index, site, volume));
         moments.push_back(w * xi);
         springs.push_back(w * xi.norm_square());

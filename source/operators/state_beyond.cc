@@ -213,10 +213,10 @@ namespace PeriDeal
       return;
     beyond->begin_forces();
     beyond->for_each([&](const auto &bond) {
-      const double length = beyond->length(bond);
-      if (length == 0.)
-        return; // broken
-      Tensor<1, dim> force = beyond->change(bond, x.begin());
+      if (!bond.whole)
+        return;
+      const double   length = beyond->length(bond);
+      Tensor<1, dim> force  = beyond->change(bond, x.begin());
       force -= (bond.moment * force) / (length * length) * bond.moment;
       force *= beyond->stiffness_across(bond);
       for (unsigned int d = 0; d < dim; ++d)
@@ -354,7 +354,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned int StateOperator<dim>::break_images()
+  unsigned int StateOperator<dim>::break_images(const double t)
   {
     if (!beyond)
       return 0;
@@ -366,7 +366,7 @@ namespace PeriDeal
       if (next < breaking_images.size() && breaking_images[next].first == bond.number)
         {
           n_ends += beyond->n_ends(bond);
-          beyond->break_bond(bond.number);
+          beyond->break_bond(bond.number, BondState::broken, t);
           touched.insert(bond.node);
           ++next;
         }
@@ -377,9 +377,9 @@ namespace PeriDeal
       {
         std::vector<unsigned int> lost;
         for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          if (springs[k] == 0.)
+          if (!state.is_whole(k))
             lost.push_back(neighbors[k]);
-        beyond->break_dependent(i, lost);
+        beyond->break_dependent(i, lost, t);
       }
     return n_ends;
   }
@@ -397,7 +397,7 @@ namespace PeriDeal
   template void   StateOperator<dim>::add_images_to_diagonal(const std::vector<double> &);         \
   template Vector StateOperator<dim>::rows_of_images(const bool) const;                            \
   template void   StateOperator<dim>::find_overstretched_images(const double *);                   \
-  template unsigned int StateOperator<dim>::break_images();
+  template unsigned int StateOperator<dim>::break_images(const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -110,6 +110,7 @@ namespace PeriDeal
     std::string                                 message;
     Vector                                      stretches(nodes.partitioner());
     breaks = true;
+    state.resize(neighbors.size());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const Point<dim> &p   = nodes.position(i);
@@ -190,7 +191,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned long long StateOperator<dim>::break_bonds(const Vector &u, const double share)
+  unsigned long long StateOperator<dim>::break_bonds(const Vector &u,
+                                                     const double  t,
+                                                     const double  share)
   {
     if (!breaks)
       return 0;
@@ -203,12 +206,13 @@ namespace PeriDeal
     const double before = energy(u);
     for (const auto &[k, ratio] : breaking)
       {
+        state.mark(k, BondState::broken, t);
         springs[k] = 0.;
         moments[k] = Tensor<1, dim>();
         if (full)
           lengths[k] = across[k] = 0.;
       }
-    n_ends = Utilities::MPI::sum(breaking.size() + break_images(), all);
+    n_ends = Utilities::MPI::sum(breaking.size() + break_images(t), all);
     released += before - energy(u);
     n_bonds -= 0.5 * breaking.size();
     n_broken += n_ends / 2;
@@ -257,7 +261,7 @@ namespace PeriDeal
                 continue;
               }
             all += volume;
-            left += springs[k] > 0. ? volume : 0.;
+            left += state.is_whole(k) ? volume : 0.;
             ++k;
           }
         if (beyond)
@@ -265,7 +269,7 @@ namespace PeriDeal
             if (!beyond->may_break(bond))
               return;
             all += beyond->volume(bond.image);
-            left += bond.spring > 0. ? beyond->volume(bond.image) : 0.;
+            left += bond.whole ? beyond->volume(bond.image) : 0.;
           });
         result[i] = all > 0. ? 1. - left / all : 0.;
       }
@@ -278,7 +282,9 @@ namespace PeriDeal
   template void                       StateOperator<dim>::find_critical_stretches();                 \
   template void                StateOperator<dim>::find_overstretched(const Vector &, const double); \
   template bool                StateOperator<dim>::brittle() const;                                  \
-  template unsigned long long  StateOperator<dim>::break_bonds(const Vector &, const double);        \
+  template unsigned long long  StateOperator<dim>::break_bonds(const Vector &,                       \
+                                                              const double,                         \
+                                                              const double);                        \
   template double              StateOperator<dim>::released_energy() const;                          \
   template unsigned long long  StateOperator<dim>::n_broken_bonds() const;                           \
   template std::vector<double> StateOperator<dim>::damage() const;

@@ -141,8 +141,8 @@ namespace PeriDeal
     for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
       for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
         {
-          if (lengths[k] == 0.)
-            continue; // broken
+          if (!state.is_whole(k))
+            continue;
           const double *const   v = u + dim * neighbors[k];
           const Tensor<1, dim> &p = moments[k];
           Tensor<1, dim>        change;

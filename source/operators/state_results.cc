@@ -278,10 +278,10 @@ namespace PeriDeal
             return;
           // As q, that of the body before bonds broke.
           sums.local_element(i) += nodes.volume(bond.neighbor) * xi.norm_square();
-          if (bond.spring == 0.)
-            damaged[i] = true;
-          else
+          if (bond.whole)
             near.push_back(bond.neighbor);
+          else
+            damaged[i] = true;
         };
         if (!on_lattice.empty() && on_lattice[i])
           for_each_lattice_bond(i, close, add_near);
@@ -353,7 +353,7 @@ namespace PeriDeal
         if (beyond)
           beyond->for_each_of(i, [&](const auto &bond) {
             const Tensor<1, dim> xi = beyond->bond_vector(bond);
-            if (bond.spring > 0. && beyond->is_own_image(bond) && is_near(i, xi))
+            if (bond.whole && beyond->is_own_image(bond) && is_near(i, xi))
               own += 4. * nodes.volume(i) * beyond->volume(bond.image) * extension[i] /
                      sums.local_element(i) / xi.norm_square() * outer_product(xi, xi);
           });

@@ -300,7 +300,7 @@ TEST(BoundaryImages, half_a_body_breaks_as_the_whole_one)
         {
           if (broken)
             {
-              const auto n_half = half.op().break_bonds(u), n = whole.op().break_bonds(v);
+              const auto n_half = half.op().break_bonds(u, 0.), n = whole.op().break_bonds(v, 0.);
               EXPECT_GT(n_half, 100u);
               EXPECT_NEAR(static_cast<double>(n_half), 0.5 * n, 7.); // those that the plane halves
             }

@@ -95,16 +95,16 @@ namespace PeriDeal
           const Vector     u      = b->values(pulled<dim>);
           const double     before = op.energy(u);
           EXPECT_TRUE(op.brittle());
-          EXPECT_EQ(op.break_bonds(b->values(squeezed)), 0u);
-          EXPECT_EQ(op.break_bonds(u), expected / 2);
+          EXPECT_EQ(op.break_bonds(b->values(squeezed), 0.), 0u);
+          EXPECT_EQ(op.break_bonds(u, 0.), expected / 2);
           EXPECT_EQ(op.n_broken_bonds(), expected / 2);
           EXPECT_GT(op.released_energy(), 0.1 * before);
           EXPECT_NEAR(op.energy(u) + op.released_energy(), before, 1e-12 * before);
-          EXPECT_EQ(op.break_bonds(u), 0u);
+          EXPECT_EQ(op.break_bonds(u, 0.), 0u);
           Vector zero, y;
           op.initialize_vector(zero);
           op.initialize_vector(y);
-          EXPECT_EQ(op.break_bonds(zero), 0u);
+          EXPECT_EQ(op.break_bonds(zero, 0.), 0u);
           EXPECT_EQ(op.n_broken_bonds(), expected / 2); // they do not heal
           op.multiply(y, u);
           if (full)
@@ -167,7 +167,7 @@ namespace PeriDeal
         op.initialize_vector(u);
         op.initialize_vector(r);
         const double before = op.energy(u);
-        EXPECT_EQ(op.break_bonds(u) > 0, breaks);
+        EXPECT_EQ(op.break_bonds(u, 0.) > 0, breaks);
         op.unbalanced(r, u, 0.);
         // Without bonds there is neither energy nor force left.
         EXPECT_EQ(r.linfty_norm() == 0., breaks);

@@ -224,7 +224,8 @@ TEST(FictitiousBonds, bonds_break_as_in_the_whole_body)
         nodes + Settings{{"Elasticity/Solver", "dynamics"}, {"Material/Critical stretch", "0.03"}});
       const Vector u    = bodies.half.values(Halves<2>::field),
                    v    = bodies.whole.values(Halves<2>::field);
-      const auto n_half = bodies.half.op().break_bonds(u), n = bodies.whole.op().break_bonds(v);
+      const auto n_half = bodies.half.op().break_bonds(u, 0.),
+                 n      = bodies.whole.op().break_bonds(v, 0.);
       EXPECT_GT(n_half, 100u);
       EXPECT_NEAR(static_cast<double>(n_half), 0.5 * n, 7.); // those that the plane halves
       EXPECT_NEAR(2. * bodies.half.op().released_energy() / bodies.whole.op().released_energy(),

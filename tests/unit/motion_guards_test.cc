@@ -121,7 +121,7 @@ namespace PeriDeal
       });
     };
     EXPECT_GT(body.op().inverted(moved(-0.3)).n_nodes, 0u);
-    EXPECT_GT(body.op().break_bonds(moved(10.)), 10u);
+    EXPECT_GT(body.op().break_bonds(moved(10.), 0.), 10u);
     EXPECT_EQ(body.op().inverted(moved(-0.3)).n_nodes, 0u);
   }
 

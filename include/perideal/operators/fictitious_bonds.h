@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/base/types.h>
+#include <perideal/bonds/bond_state.h>
 #include <perideal/bonds/boundary_images.h>
 
 #include <functional>
@@ -39,6 +40,7 @@ namespace PeriDeal
       unsigned int           node, image;
       dealii::Tensor<1, dim> moment; // W xi, of the tangent W x Y/|Y|
       double                 spring;
+      bool                   whole;
     };
 
     /** @param cracks that cut the bonds of the families. Not collective. */
@@ -72,7 +74,7 @@ namespace PeriDeal
     {
       if (!starts.empty())
         for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          visit(Bond{k, i, images[k], moments[k], springs[k]});
+          visit(Bond{k, i, images[k], moments[k], springs[k], state.is_whole(k)});
     }
 
     template <typename Visit>
@@ -158,7 +160,7 @@ namespace PeriDeal
      */
     bool         may_break(const Bond &bond) const;
     unsigned int n_ends(const Bond &bond) const;
-    void         break_bond(const std::size_t number);
+    void         break_bond(const std::size_t number, const BondState::Mark mark, const double t);
 
     /** The node of the body that an image is one of, and its volume. */
     unsigned int origin(const unsigned int image) const;
@@ -168,7 +170,9 @@ namespace PeriDeal
      * Break those bonds of a node that others, broken by now, would have to hold: of its neighbours
      * @p lost in the body. Returns whether there were any.
      */
-    bool break_dependent(const unsigned int node, const std::vector<unsigned int> &lost);
+    bool break_dependent(const unsigned int               node,
+                         const std::vector<unsigned int> &lost,
+                         const double                     t);
 
     std::size_t size() const;
     std::size_t memory_consumption() const;
@@ -202,6 +206,8 @@ namespace PeriDeal
     std::vector<unsigned int>                                list;
     std::vector<std::size_t>                                 starts; // of all owned nodes, or empty
     std::vector<unsigned int>                                images;
+    std::vector<std::size_t>                                 parted; // while bonds are found
+    BondState                                                state;
     std::vector<dealii::Tensor<1, dim>>                      moments;
     std::vector<double>                                      springs, lengths, across, strains;
     std::vector<Index>                                       sites; // of the images, on a lattice
