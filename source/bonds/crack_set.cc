@@ -134,6 +134,22 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool CrackSet<dim>::separate(const Point<dim> &a, const Point<dim> &b) const
+  {
+    return std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
+      return crack.separates(a, b);
+    });
+  }
+
+
+  template <int dim>
+  bool CrackSet<dim>::empty() const
+  {
+    return cracks.empty();
+  }
+
+
+  template <int dim>
   bool CrackSet<dim>::leaves_body(const unsigned int node, const unsigned int neighbor) const
   {
     return voids != nullptr && neighbors.is_real(neighbor) &&

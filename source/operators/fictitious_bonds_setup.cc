@@ -17,11 +17,9 @@ namespace PeriDeal
 
   template <int dim>
   FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
-                                        const std::array<BeyondSide, 2 * dim> &beyond,
-                                        std::vector<CrackGeometry<dim>>        cracks)
+                                        const std::array<BeyondSide, 2 * dim> &beyond)
     : families(families)
     , extension(families, beyond)
-    , cracks(std::move(cracks))
   {
     const Nodes<dim> &nodes = families.nodes();
     int               reach = 0;
@@ -44,11 +42,9 @@ namespace PeriDeal
 
   template <int dim>
   FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
-                                        const std::vector<BoundaryImage<dim>> &beyond,
-                                        std::vector<CrackGeometry<dim>>        cracks)
+                                        const std::vector<BoundaryImage<dim>> &beyond)
     : families(families)
     , extension(families, {})
-    , cracks(std::move(cracks))
   {
     const Nodes<dim> &nodes = families.nodes();
     PointBins<dim>    bins(families.weights().reach());
@@ -112,7 +108,7 @@ namespace PeriDeal
       {
         const BoundaryImage<dim> &image = beyond[g];
         // As on a lattice.
-        const bool cut = !cracks.empty() &&
+        const bool cut = !families.cracks().empty() &&
                          is_cut(i, image.terms, [&](const Term &) { return image.twice_planes; });
         if (cut &&
             !(image.terms.size() == 1 && is_separated(i, image.terms[0], image.twice_planes)))
@@ -224,9 +220,8 @@ namespace PeriDeal
             a[d] = twice_planes[d] - a[d];
           else if ((term.mirrored >> d) & 1)
             b[d] = twice_planes[d] - b[d];
-        for (const CrackGeometry<dim> &crack : cracks)
-          if (crack.separates(a, b))
-            return true;
+        if (families.cracks().separate(a, b))
+          return true;
       }
     return false;
   }
@@ -252,13 +247,11 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                         \
-  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                   \
-                                                 const std::array<BeyondSide, 2 * dim> &, \
-                                                 std::vector<CrackGeometry<dim>>);        \
-  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                   \
-                                                 const std::vector<BoundaryImage<dim>> &, \
-                                                 std::vector<CrackGeometry<dim>>);
+#define PERIDEAL_INSTANTIATE(dim)                                                          \
+  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                    \
+                                                 const std::array<BeyondSide, 2 * dim> &); \
+  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                    \
+                                                 const std::vector<BoundaryImage<dim>> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -112,11 +112,6 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::complete_families()
   {
-    const bool cut_at_tips = scene.cracks.cuts_bonds_at_tips(scene.peridynamics.surface_correction);
-    const auto cracks      = [&] {
-      return make_crack_geometries(
-        bonds.cracks().history().pieces(bonds.cracks().now(), cut_at_tips));
-    };
     if (completes_mesh(scene))
       {
         const auto goes_on = [&](const types::boundary_id side) {
@@ -127,8 +122,7 @@ namespace PeriDeal
                                                  boundary_images(bonds.nodes(),
                                                                  scene.boundary_conditions.symmetry,
                                                                  goes_on,
-                                                                 bonds.weights().reach()),
-                                                 cracks());
+                                                                 bonds.weights().reach()));
         beyond->add_weights(weighted);
         return;
       }
@@ -138,7 +132,7 @@ namespace PeriDeal
           return side == BeyondSide::nothing;
         }))
       return;
-    beyond = std::make_unique<FictitiousBonds<dim>>(bonds, sides, cracks());
+    beyond = std::make_unique<FictitiousBonds<dim>>(bonds, sides);
     if (bonds.nodes().lattice()->at_centers && scene.boundary_conditions.traction_layer <= 0.)
       draw_on_to_side(bonds, scene.boundary_conditions, sides, tractions);
     beyond->add_weights(weighted);

@@ -37,6 +37,12 @@ namespace PeriDeal
     /** Whether a bond crosses some crack. */
     bool cuts(const unsigned int node, const unsigned int neighbor) const;
 
+    /** Whether some crack, wherever it is, lies between two points. */
+    bool separate(const dealii::Point<dim> &a, const dealii::Point<dim> &b) const;
+
+    /** No crack; there may be voids. */
+    bool empty() const;
+
     /**
      * What the cracks leave of a bond's conductance, and whether it crosses any.
      * @param conductivities  without effect unless a contact conductance is given

@@ -43,15 +43,11 @@ namespace PeriDeal
       bool                   whole;
     };
 
-    /** @param cracks that cut the bonds of the families. Not collective. */
-    FictitiousBonds(const Families<dim>                   &families,
-                    const std::array<BeyondSide, 2 * dim> &beyond,
-                    std::vector<CrackGeometry<dim>>        cracks);
+    /** Families have to outlive this object, with the cracks that they have now. Not collective. */
+    FictitiousBonds(const Families<dim> &families, const std::array<BeyondSide, 2 * dim> &beyond);
 
     /** The same of a mesh. Not collective. */
-    FictitiousBonds(const Families<dim>                   &families,
-                    const std::vector<BoundaryImage<dim>> &beyond,
-                    std::vector<CrackGeometry<dim>>        cracks);
+    FictitiousBonds(const Families<dim> &families, const std::vector<BoundaryImage<dim>> &beyond);
 
     /** Add sum W x^2/V_i to q of the owned nodes. */
     void add_weights(Vector &q) const;
@@ -201,7 +197,6 @@ namespace PeriDeal
 
     const Families<dim>                                     &families;
     const FictitiousExtension<dim>                           extension;
-    const std::vector<CrackGeometry<dim>>                    cracks;
     std::unordered_map<std::size_t, unsigned int>            image_of; // while bonds are found
     std::vector<unsigned int>                                list;
     std::vector<std::size_t>                                 starts; // of all owned nodes, or empty
