@@ -26,8 +26,8 @@ namespace PeriDeal
                            const unsigned int first,
                            const bool         one)
     {
-      const Problem<dim> plain(settings, Model::peridynamics, MPI_COMM_SELF),
-        corrected(settings + energy, Model::peridynamics, MPI_COMM_SELF);
+      const Problem<dim> plain(settings, ModelKind::peridynamics, MPI_COMM_SELF),
+        corrected(settings + energy, ModelKind::peridynamics, MPI_COMM_SELF);
       const DiffusionBonds<dim>                      &families = plain.bonds->diffusion_bonds();
       const unsigned int                              n        = families.nodes().n_owned();
       std::vector<typename DiffusionBonds<dim>::Bond> bonds, found;

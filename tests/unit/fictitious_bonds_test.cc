@@ -46,7 +46,7 @@ namespace
   template <int dim>
   void check_uniform_strain(const Settings &more)
   {
-    const Body<dim>           body(completed<dim>() + more, Model::peridynamics);
+    const Body<dim>           body(completed<dim>() + more, ModelKind::peridynamics);
     const StateOperator<dim> &op = *body.states;
     const Vector              u  = body.values(strained<dim>);
     Vector                    y(u);
@@ -112,10 +112,10 @@ namespace
     explicit Halves(const Settings &more)
       : half(sized(zeros[dim], dim == 2 ? "16, 12" : "8, 6, 4") +
                Settings{{"Boundary conditions/Symmetry", "left"}} + half_of(more),
-             Model::peridynamics,
+             ModelKind::peridynamics,
              MPI_COMM_SELF)
       , whole(sized(dim == 2 ? "-1, 0" : "-1, 0, 0", dim == 2 ? "32, 12" : "16, 6, 4") + more,
-              Model::peridynamics,
+              ModelKind::peridynamics,
               MPI_COMM_SELF)
     {}
 
@@ -251,7 +251,7 @@ TEST(FictitiousBonds, diagonal_is_that_of_the_matrix)
       const Body<2>                          body(completed<2>() + nodes +
                            Settings{{"Boundary conditions/Displacement", "left: 0, free"},
                                     {"Boundary conditions/Symmetry", "bottom"}},
-                         Model::peridynamics);
+                         ModelKind::peridynamics);
       dealii::TrilinosWrappers::SparseMatrix matrix;
       body.states->matrix(matrix);
       const Vector &diagonal = body.op().diagonal();
@@ -276,8 +276,8 @@ TEST(FictitiousBonds, same_on_all_processes)
     {
       const Settings settings =
         completed<2>() + nodes + Settings{{"Boundary conditions/Symmetry", "bottom"}};
-      const Body<2> together(settings, Model::peridynamics),
-        alone(settings, Model::peridynamics, MPI_COMM_SELF);
+      const Body<2> together(settings, ModelKind::peridynamics),
+        alone(settings, ModelKind::peridynamics, MPI_COMM_SELF);
       const Vector u = together.values(bumpy_vector<2>), v = alone.values(bumpy_vector<2>);
       Vector       y(u), z(v);
       together.op().multiply(y, u);
@@ -296,7 +296,7 @@ TEST(FictitiousBonds, same_on_all_processes)
 
 TEST(FictitiousBonds, turned_bodies_have_no_forces)
 {
-  const Body<2> body(completed<2>() + full, Model::peridynamics);
+  const Body<2> body(completed<2>() + full, ModelKind::peridynamics);
   const auto    turned = [](const Point<2> &p) {
     const double c = std::cos(1.2), s = std::sin(1.2);
     return Tensor<1, 2>({c * p[0] - s * p[1] - p[0], s * p[0] + c * p[1] - p[1]});

@@ -41,7 +41,7 @@ namespace PeriDeal
                       const Settings    &base,
                       const Settings    &changing,
                       const Settings    &final,
-                      const Model        model = Model::peridynamics)
+                      const ModelKind    model = ModelKind::peridynamics)
     {
       const Problem<dim> grown(base + changing, model), built(base + final, model);
       Vector             before = image(grown);

@@ -26,7 +26,7 @@ namespace PeriDeal
 
   TEST(NodeConstraints, the_side_named_first_holds_at_corners)
   {
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       {
         const Settings   plate{{"Domain/Cells", "6, 6"}};
         const Problem<2> first(

@@ -48,7 +48,7 @@ namespace
                                     {"Peridynamics/Kernel", lattice.kernel},
                                     {"Peridynamics/Kernel exponent", lattice.exponent}} +
                            more,
-                         Model::peridynamics);
+                         ModelKind::peridynamics);
     const Moduli    moduli = body.scene.material.moduli(dealii::Point<dim>());
     const double    reach  = body.states->families().weights().reach();
     double          n = 0., worst = 0.;
@@ -104,7 +104,7 @@ namespace
     const Body<2>     body(box<2>() + Settings{{"Domain/Upper corner", size + ", " + size},
                                            {"Domain/Cells", size + ", " + size},
                                            {"Material/Poisson ratio", nu}},
-                       Model::peridynamics);
+                       ModelKind::peridynamics);
     return body.op().energy(
       body.values([&](const dealii::Point<2> &p) { return dealii::Tensor<1, 2>(strain * p); }));
   }
@@ -173,7 +173,7 @@ namespace
                                   {"Material/Poisson ratio", "0.25"},
                                   {"Elasticity/Model", "bond-based"},
                                   {"Elasticity/Micromodulus", constant ? "constant" : "family"}},
-                       Model::peridynamics);
+                       ModelKind::peridynamics);
     // Of Young modulus 3; lambda is equal to the shear modulus.
     const double lambda = 1.2, volume = n * n * n;
     const double classical = volume * (0.5 * lambda * trace(strain) * trace(strain) +
@@ -251,7 +251,7 @@ TEST(StateOperator, dilatation_on_rectangular_cells)
       const Body<2>       body(box<2>() + Settings{{"Domain/Upper corner", "1, 1"},
                                              {"Domain/Cells", cells},
                                              {"Peridynamics/Horizon ratio", "6"}},
-                         Model::peridynamics);
+                         ModelKind::peridynamics);
       std::vector<double> theta;
       body.states->dilatations(body.values([&](const dealii::Point<2> &p) { return g * p; }),
                                theta);
