@@ -134,7 +134,7 @@ namespace
     bonds.apply(y, u);
 
     double       worst = 0.;
-    const double reach = bonds.families().reach();
+    const double reach = bonds.diffusion_bonds().weights().reach();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const Point<2> &p = nodes.position(i);
@@ -174,10 +174,10 @@ namespace
                              scene.cracks,
                              scene.peridynamics.nodal_volume);
     PeriDeal::BondOperator<2> bonds(nodes, scene);
-    const auto                terms = PeriDeal::lattice_terms<2>(bonds.families().lattice_members(),
+    const auto terms = PeriDeal::lattice_terms<2>(bonds.diffusion_bonds().weights().members(),
                                                   nodes.lattice()->spacing,
                                                   conductivity);
-    const auto                rate  = [&](const unsigned int a, const unsigned int b) {
+    const auto rate  = [&](const unsigned int a, const unsigned int b) {
       return PeriDeal::lattice_decay_rate(terms, {{a * numbers::PI, b * numbers::PI, 0.}}, storage);
     };
 

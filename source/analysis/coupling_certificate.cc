@@ -84,15 +84,16 @@ namespace PeriDeal
     template <int dim>
     std::pair<unsigned long long, unsigned long long> count_all_bonds(const Families<dim> &families)
     {
-      const Nodes<dim>                         &nodes = families.nodes();
-      std::vector<typename Families<dim>::Bond> bonds;
-      unsigned long long                        n_ends = 0;
-      unsigned long long n_sites = nodes.lattice() && families.has_unique_sites() ? 1 : 0;
+      const Nodes<dim>                           &nodes = families.nodes();
+      std::vector<typename Families<dim>::Member> members;
+      unsigned long long                          n_ends = 0;
+      unsigned long long n_sites = nodes.lattice() && families.neighbors().has_unique_sites() ? 1 :
+                                                                                                0;
       for (unsigned int d = 0; d < dim && n_sites > 0; ++d)
         n_sites *= nodes.lattice()->n_sites[d];
       if (nodes.n_global() == n_sites || nodes.is_graded()) // no void
         {
-          for (const FamilyMember<dim> &member : families.lattice_members())
+          for (const FamilyMember<dim> &member : families.weights().members())
             {
               unsigned long long n_pairs = 1;
               for (unsigned int d = 0; d < dim; ++d)
@@ -103,8 +104,8 @@ namespace PeriDeal
         }
       for (unsigned int i = 0; i < nodes.n_owned(); ++i)
         {
-          families.bonds_of(i, bonds);
-          n_ends += bonds.size();
+          families.members_of(i, members);
+          n_ends += members.size();
         }
       return {nodes.n_global(), Utilities::MPI::sum(n_ends, nodes.communicator()) / 2};
     }

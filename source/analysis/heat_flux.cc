@@ -10,26 +10,26 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  void bond_heat_flux(const Families<dim>       &families,
+  void bond_heat_flux(const DiffusionBonds<dim> &bonds,
                       const Vector              &u,
                       const std::vector<double> &outside,
                       VectorField<dim>          &two_sided,
                       VectorField<dim>          &one_sided)
   {
-    const Nodes<dim>                         &nodes = families.nodes();
-    std::vector<typename Families<dim>::Bond> bonds;
+    const Nodes<dim>                               &nodes = bonds.nodes();
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        families.bonds_of(i, bonds);
+        bonds.bonds_of(i, family);
         Tensor<1, dim> both, hotter;
-        for (const auto &bond : bonds)
+        for (const auto &bond : family)
           {
             const double         other      = bond.neighbor < nodes.n_local() ?
                                                 u.local_element(bond.neighbor) :
                                                 outside[bond.neighbor - nodes.n_local()];
             const double         difference = other - u.local_element(i);
-            const Tensor<1, dim> q =
-              bond.weight / nodes.volume(i) * difference * families.bond_vector(i, bond.neighbor);
+            const Tensor<1, dim> q          = bond.weight / nodes.volume(i) * difference *
+                                     bonds.neighbors().bond_vector(i, bond.neighbor);
             both -= 0.5 * q;
             if (difference > 0.)
               hotter -= q;
@@ -109,18 +109,18 @@ namespace PeriDeal
 
 
   template <int dim>
-  void cut_fraction(const Families<dim> &families, Vector &fraction)
+  void cut_fraction(const DiffusionBonds<dim> &bonds, Vector &fraction)
   {
-    const Nodes<dim>                         &nodes = families.nodes();
-    std::vector<typename Families<dim>::Bond> bonds;
+    const Nodes<dim>                               &nodes = bonds.nodes();
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         fraction.local_element(i) = 0.;
-        if (!families.near_crack(i))
+        if (!bonds.near_crack(i))
           continue;
-        families.bonds_of(i, bonds);
+        bonds.bonds_of(i, family);
         double all = 0., cut = 0.;
-        for (const auto &bond : bonds)
+        for (const auto &bond : family)
           if (bond.neighbor < nodes.n_local())
             {
               all += nodes.volume(bond.neighbor);
@@ -176,21 +176,21 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                 \
-  template void bond_heat_flux<dim>(const Families<dim> &,        \
-                                    const Vector &,               \
-                                    const std::vector<double> &,  \
-                                    VectorField<dim> &,           \
-                                    VectorField<dim> &);          \
-  template void coupled_heat_flux<dim>(const FEMOperator<dim> &,  \
-                                       const Vector &,            \
-                                       VectorField<dim> &,        \
-                                       VectorField<dim> &);       \
-  template void cut_fraction(const Families<dim> &, Vector &);    \
-  template void element_heat_flux<dim>(const DoFHandler<dim> &,   \
-                                       const Material &,          \
-                                       const std::vector<bool> &, \
-                                       const Vector &,            \
+#define PERIDEAL_INSTANTIATE(dim)                                    \
+  template void bond_heat_flux<dim>(const DiffusionBonds<dim> &,     \
+                                    const Vector &,                  \
+                                    const std::vector<double> &,     \
+                                    VectorField<dim> &,              \
+                                    VectorField<dim> &);             \
+  template void coupled_heat_flux<dim>(const FEMOperator<dim> &,     \
+                                       const Vector &,               \
+                                       VectorField<dim> &,           \
+                                       VectorField<dim> &);          \
+  template void cut_fraction(const DiffusionBonds<dim> &, Vector &); \
+  template void element_heat_flux<dim>(const DoFHandler<dim> &,      \
+                                       const Material &,             \
+                                       const std::vector<bool> &,    \
+                                       const Vector &,               \
                                        VectorField<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -111,11 +111,11 @@ namespace PeriDeal
       }
     for (std::size_t k = 0; k < places.size(); ++k)
       {
-        site.terms[k].node = families.node_at(places[k]);
+        site.terms[k].node = families.neighbors().node_at(places[k]);
         if (site.terms[k].node == numbers::invalid_unsigned_int)
           return false;
       }
-    site.origin = families.node_at(image);
+    site.origin = families.neighbors().node_at(image);
     if (site.origin == numbers::invalid_unsigned_int)
       return false;
     site.volume = parts * families.nodes().volume(site.origin);
@@ -154,7 +154,7 @@ namespace PeriDeal
   void throw_if_narrow(const Families<dim> &families)
   {
     const Lattice<dim> &lattice = *families.nodes().lattice();
-    for (const FamilyMember<dim> &member : families.lattice_members())
+    for (const FamilyMember<dim> &member : families.weights().members())
       for (unsigned int d = 0; d < dim; ++d)
         AssertThrow(
           member.offset[d] < lattice.n_sites[d],

@@ -77,7 +77,7 @@ namespace PeriDeal
       {
         named = Zone<dim>(scene.domain.fine);
         named.stay_in({{scene.domain.lower, scene.domain.upper}});
-        by_zone = std::find(models.begin(), models.end(), Model::coupled) != models.end();
+        by_zone = std::find(models.begin(), models.end(), ModelKind::coupled) != models.end();
       }
     set_time(0.);
   }
@@ -227,7 +227,7 @@ namespace PeriDeal
   CellWork<dim> work_of_cells(const Scene<dim> &scene)
   {
     const auto &models = scene.general.models;
-    if (std::find(models.begin(), models.end(), Model::coupled) == models.end() ||
+    if (std::find(models.begin(), models.end(), ModelKind::coupled) == models.end() ||
         scene.coupling.zone == ZoneKind::everywhere)
       return {};
     auto zone = std::make_shared<Zone<dim>>(scene.coupling, scene.horizon());

@@ -24,7 +24,7 @@ namespace PeriDeal
       condition_of.local_element(entry.node) =
         1. + static_cast<double>(entry.condition - dirichlet.data());
     condition_of.update_ghost_values();
-    if (bonds.fictitious().empty()) // of this process
+    if (bonds.neighbors().outside().empty()) // of this process
       return;
     const auto condition = [&](const unsigned int node) -> const SideCondition * {
       const auto number = static_cast<std::size_t>(condition_of.local_element(node));
@@ -37,7 +37,7 @@ namespace PeriDeal
                                                               node.terms.back().condition;
       return given != nullptr ? given->name : scene.boundary_conditions.name_of(node.side);
     };
-    std::vector<typename Families<dim>::Bond> family;
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         if (!reaches_outside(i))
@@ -50,7 +50,8 @@ namespace PeriDeal
               const double       heat = bond.weight * (outside_values[f] - u.local_element(i));
               // In a prescribed node's own sum already, with the other sign.
               const SideCondition *const own = condition(i);
-              balance.sides[own != nullptr ? own->name : side_of(bonds.fictitious()[f])] += heat;
+              balance.sides[own != nullptr ? own->name : side_of(bonds.neighbors().outside()[f])] +=
+                heat;
             }
       }
   }
@@ -84,9 +85,9 @@ namespace PeriDeal
     balance.cracks.assign(scene.cracks.cracks.size(), 0.);
     if (!scene.cracks.conduct())
       return;
-    const Nodes<dim>                         &nodes = bonds.nodes();
-    std::vector<typename Families<dim>::Bond> family;
-    std::vector<std::pair<unsigned int, int>> crossed;
+    const Nodes<dim>                               &nodes = bonds.nodes();
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
+    std::vector<std::pair<unsigned int, int>>       crossed;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         if (!bonds.near_crack(i))
@@ -101,7 +102,7 @@ namespace PeriDeal
               const double other = real ? u.local_element(bond.neighbor) :
                                           outside_values[bond.neighbor - nodes.n_local()];
               const double heat  = (real ? 0.5 : 1.) * bond.weight * (other - u.local_element(i));
-              bonds.crossed_cracks(i, bond.neighbor, crossed);
+              bonds.cracks().crossed_cracks(i, bond.neighbor, crossed);
               for (const auto &[crack, side] : crossed)
                 balance.cracks[crack] += side * heat;
             }
@@ -182,7 +183,7 @@ namespace PeriDeal
     double sum = 0.;
     for (const auto &[node, h] : convection_diagonal)
       sum -= h * x.local_element(node);
-    if (bonds.fictitious().empty())
+    if (bonds.neighbors().outside().empty())
       return sum;
     if (!outside_sums.known)
       find_outside_sums();
@@ -217,7 +218,8 @@ namespace PeriDeal
     const auto        site  = nodes.lattice()->index(nodes.position(node));
     for (unsigned int d = 0; d < dim; ++d)
       {
-        const int reach = static_cast<int>(bonds.reach() / nodes.lattice()->spacing[d]) + 1;
+        const int reach =
+          static_cast<int>(bonds.weights().reach() / nodes.lattice()->spacing[d]) + 1;
         if (site[d] < reach || site[d] >= nodes.lattice()->n_sites[d] - reach)
           return true;
       }
@@ -231,8 +233,8 @@ namespace PeriDeal
     const unsigned int n_local = bonds.nodes().n_local();
     outside_sums               = OutsideSums();
     outside_sums.known         = true;
-    outside_sums.of_outside.assign(bonds.fictitious().size(), 0.);
-    std::vector<typename Families<dim>::Bond> family;
+    outside_sums.of_outside.assign(bonds.neighbors().outside().size(), 0.);
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
     for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
       if (reaches_outside(i))
         {

@@ -19,9 +19,10 @@ namespace PeriDeal
   template <int dim>
   BondOperator<dim>::BondOperator(Nodes<dim> &nodes, const Scene<dim> &scene)
     : scene(scene)
-    , bonds(nodes.find_parts(scene.boundary_conditions), scene)
+    , families(nodes.find_parts(scene.boundary_conditions), scene)
+    , bonds(families, scene)
     , constraints(std::make_unique<NodeConstraints<dim>>(bonds, scene))
-    , cracks_of(bonds.crack_history().representative(0.))
+    , cracks_of(bonds.cracks().history().representative(0.))
   {
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       if (constraints->kind(i) != NodeConstraints<dim>::free)
@@ -35,8 +36,8 @@ namespace PeriDeal
       correct_surface(rows_to_correct());
     choose_form(scene.peridynamics.form);
     find_diagonal();
-    outside_values.resize(bonds.fictitious().size());
-    outside_signs_only.resize(bonds.fictitious().size());
+    outside_values.resize(bonds.neighbors().outside().size());
+    outside_signs_only.resize(bonds.neighbors().outside().size());
     loads_vary = scene.initial_and_source.source.depends_on_time() ||
                  scene.boundary_conditions.depends_on_time();
     if (!loads_vary)
@@ -193,7 +194,7 @@ namespace PeriDeal
                                             const double         t,
                                             std::vector<double> &values) const
   {
-    const auto &fictitious = bonds.fictitious();
+    const auto &fictitious = bonds.neighbors().outside();
     values.resize(fictitious.size());
     for (std::size_t f = 0; f < fictitious.size(); ++f)
       values[f] =
@@ -249,7 +250,7 @@ namespace PeriDeal
         input = &scratch;
       }
     input->update_ghost_values();
-    const auto &fictitious = bonds.fictitious();
+    const auto &fictitious = bonds.neighbors().outside();
     for (std::size_t f = 0; f < fictitious.size(); ++f)
       outside_signs_only[f] = fictitious[f].sign * input->local_element(fictitious[f].mirror);
     entering_now = through_sides(*input, outside_signs_only.data());
@@ -429,7 +430,7 @@ namespace PeriDeal
   }
 
   template <int dim>
-  const Families<dim> &BondOperator<dim>::families() const
+  const DiffusionBonds<dim> &BondOperator<dim>::diffusion_bonds() const
   {
     return bonds;
   }
@@ -461,10 +462,10 @@ namespace PeriDeal
     size.unknowns = bonds.nodes().n_global();
     size.bonds    = n_bonds;
     size.nonzeros = n_nonzeros;
-    size.memory   = bonds.memory_consumption() + bonds.nodes().memory_consumption() +
-                  form->memory_consumption() + capacity.memory_consumption() +
-                  bond_diagonal.memory_consumption() + constant_loads.memory_consumption() +
-                  scratch.memory_consumption();
+    size.memory   = families.memory_consumption() + bonds.memory_consumption() +
+                  bonds.nodes().memory_consumption() + form->memory_consumption() +
+                  capacity.memory_consumption() + bond_diagonal.memory_consumption() +
+                  constant_loads.memory_consumption() + scratch.memory_consumption();
     size.form = form->name();
     return size;
   }

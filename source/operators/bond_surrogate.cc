@@ -20,22 +20,21 @@ namespace PeriDeal
      * longer bonds and cut ones. The same from both ends, so that the matrix is symmetric.
      */
     template <int dim>
-    double neighbor_conductance(const Families<dim>                &families,
-                                const InterfaceRule                 rule,
-                                const unsigned int                  node,
-                                const typename Families<dim>::Bond &bond)
+    double neighbor_conductance(const DiffusionBonds<dim>                &bonds,
+                                const InterfaceRule                       rule,
+                                const unsigned int                        node,
+                                const typename DiffusionBonds<dim>::Bond &bond)
     {
-      const Nodes<dim> &nodes = families.nodes();
+      const Nodes<dim> &nodes = bonds.nodes();
       if (bond.intact == 0.)
         return 0.;
-      const Tensor<1, dim> xi     = families.bond_vector(node, bond.neighbor);
-      const unsigned int   real   = bond.neighbor < nodes.n_local() ?
-                                      bond.neighbor :
-                                      families.fictitious()[bond.neighbor - nodes.n_local()].mirror;
+      const Tensor<1, dim> xi     = bonds.neighbors().bond_vector(node, bond.neighbor);
+      const unsigned int   real   = bonds.neighbors().real(bond.neighbor);
       const double         volume = std::sqrt(nodes.volume(node) * nodes.volume(real));
       const double         kept   = bond.weight / bond.intact;
-      const double         kappa =
-        interface_conductivity(rule, families.conductivity(node), families.conductivity(real));
+      const double         kappa  = interface_conductivity(rule,
+                                                  bonds.conductivities().of_node(node),
+                                                  bonds.conductivities().of_node(real));
       if (nodes.lattice())
         {
           unsigned int n_steps = 0;
@@ -63,13 +62,13 @@ namespace PeriDeal
       free_nodes.local_element(i) = constraints->kind(i) == NodeConstraints<dim>::free ? 1. : 0.;
     free_nodes.update_ghost_values();
 
-    std::vector<typename Families<dim>::Bond>    family;
-    std::vector<unsigned int>                    starts{0};
-    std::vector<double>                          outside(nodes.n_owned(), 0.);
-    std::vector<std::pair<unsigned int, double>> entries;
-    std::vector<types::global_dof_index>         columns;
-    std::vector<double>                          values;
-    TrilinosWrappers::SparsityPattern            pattern(owned,
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
+    std::vector<unsigned int>                       starts{0};
+    std::vector<double>                             outside(nodes.n_owned(), 0.);
+    std::vector<std::pair<unsigned int, double>>    entries;
+    std::vector<types::global_dof_index>            columns;
+    std::vector<double>                             values;
+    TrilinosWrappers::SparsityPattern               pattern(owned,
                                               nodes.communicator(),
                                               nodes.lattice() ? 2 * dim + 1 : 12);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
@@ -88,7 +87,8 @@ namespace PeriDeal
                       // A fictitious node holds its neighbours as far as it does not follow its
                       // mirror.
                       outside[i] +=
-                        (1. - bonds.fictitious()[bond.neighbor - nodes.n_local()].sign) * c;
+                        (1. - bonds.neighbors().outside()[bond.neighbor - nodes.n_local()].sign) *
+                        c;
                       continue;
                     }
                   entries.emplace_back(bond.neighbor, c);

@@ -22,15 +22,16 @@ namespace PeriDeal
      * The sum of W xi_a^2 over a family for each direction a, and whether some bond of it is cut.
      */
     template <int dim>
-    std::pair<Tensor<1, dim>, bool> moments(const Families<dim> &families,
-                                            const unsigned int   node,
-                                            const std::vector<typename Families<dim>::Bond> &family)
+    std::pair<Tensor<1, dim>, bool> moments(
+      const DiffusionBonds<dim>                             &families,
+      const unsigned int                                     node,
+      const std::vector<typename DiffusionBonds<dim>::Bond> &family)
     {
       std::pair<Tensor<1, dim>, bool> result;
       result.second = false;
       for (const auto &bond : family)
         {
-          const Tensor<1, dim> xi = families.bond_vector(node, bond.neighbor);
+          const Tensor<1, dim> xi = families.neighbors().bond_vector(node, bond.neighbor);
           for (unsigned int d = 0; d < dim; ++d)
             result.first[d] += bond.weight * xi[d] * xi[d];
           result.second = result.second || bond.cut;
@@ -83,14 +84,14 @@ namespace PeriDeal
             factors = 1.;
           }
       }
-    bonds.set_node_factors({}, 1, true); // what the bonds are without
-    std::vector<typename Families<dim>::Bond> family;
-    std::string                               message;
+    bonds.factors().set({}, 1, true); // what the bonds are without
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
+    std::string                                     message;
     for (const unsigned int i : rows)
       {
         bonds.bonds_of(i, family);
         const auto [sums, cut]    = moments(bonds, i, family);
-        const double kappa_volume = bonds.conductivity(i) * nodes.volume(i);
+        const double kappa_volume = bonds.conductivities().of_node(i) * nodes.volume(i);
         if (!energy)
           node_factors[0].local_element(i) = crack_scaling(sums, cut, kappa_volume);
         for (unsigned int d = 0; d < n_directions && energy; ++d)
@@ -119,38 +120,38 @@ namespace PeriDeal
           all[i * n_directions + d] = node_factors[d].local_element(i);
         node_factors[d].set_ghost_state(false);
       }
-    bonds.set_node_factors(std::move(all), n_directions, !energy);
+    bonds.factors().set(std::move(all), n_directions, !energy);
   }
 
 
   template <int dim>
   double BondOperator<dim>::next_event(const double t) const
   {
-    return bonds.crack_history().next_event(t);
+    return bonds.cracks().history().next_event(t);
   }
 
 
   template <int dim>
   bool BondOperator<dim>::update(const double t)
   {
-    const double time = bonds.crack_history().representative(t);
-    if (time == cracks_of || !bonds.crack_history().changes_ever())
+    const double time = bonds.cracks().history().representative(t);
+    if (time == cracks_of || !bonds.cracks().history().changes_ever())
       return false;
     cracks_of        = time;
-    const auto boxes = bonds.set_cracks_of(time);
+    const auto boxes = bonds.cracks().set_time(time);
     if (boxes.empty())
       return false;
     const bool                corrected = !node_factors.empty();
-    std::vector<unsigned int> rows      = bonds.nodes_near(boxes, bonds.reach());
+    std::vector<unsigned int> rows = bonds.neighbors().nodes_near(boxes, bonds.weights().reach());
     if (corrected)
       {
         correct_surface(rows);
-        rows = bonds.nodes_near(boxes, 2. * bonds.reach());
+        rows = bonds.neighbors().nodes_near(boxes, 2. * bonds.weights().reach());
       }
     if (constraints->any_slave())
       constraints = std::make_unique<NodeConstraints<dim>>(bonds, scene);
     form->update_rows(rows, bond_diagonal.begin());
-    if (!bonds.fictitious().empty() &&
+    if (!bonds.neighbors().outside().empty() &&
         std::any_of(rows.begin(), rows.end(), [&](const unsigned int i) {
           return reaches_outside(i);
         }))
@@ -162,7 +163,7 @@ namespace PeriDeal
     for (const auto &[node, h] : convection_diagonal)
       if (std::binary_search(rows.begin(), rows.end(), node))
         bond_diagonal.local_element(node) += h;
-    if (corrected || bonds.crack_history().may_close() || !symmetric())
+    if (corrected || bonds.cracks().history().may_close() || !symmetric())
       {
         // Rates can have grown. Where bonds are only cut, the old bounds still hold.
         double bound = 0.;
@@ -196,13 +197,12 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes = bonds.nodes();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      y.local_element(i) =
-        capacity_depends_on_solution() ?
-          nodes.volume(i) * heat_between_temperatures(scene.material,
-                                                      nodes.position(i),
-                                                      u.local_element(i),
-                                                      v.local_element(i)) :
-          capacity.local_element(i) * (v.local_element(i) - u.local_element(i));
+      y.local_element(i) = capacity_depends_on_solution() ?
+                             nodes.volume(i) * heat_between_temperatures(scene.material,
+                                                                         nodes.position(i),
+                                                                         u.local_element(i),
+                                                                         v.local_element(i)) :
+                             capacity.local_element(i) * (v.local_element(i) - u.local_element(i));
   }
 
 
@@ -234,7 +234,7 @@ namespace PeriDeal
     if (scene.material.conductivity.depends_on_temperature())
       {
         u.update_ghost_values();
-        bonds.take_conductivities_at(u);
+        bonds.conductivities().take_at(u);
         u.set_ghost_state(false);
         form->update_conductivities(bond_diagonal.begin());
         outside_sums.known = false;
@@ -252,17 +252,15 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                        \
-  template std::vector<unsigned int> BondOperator<dim>::rows_to_correct() const;         \
-  template void   BondOperator<dim>::correct_surface(const std::vector<unsigned int> &); \
-  template bool   BondOperator<dim>::depends_on_solution() const;                        \
-  template bool   BondOperator<dim>::capacity_depends_on_solution() const;               \
-  template void   BondOperator<dim>::heat_between(Vector &,                              \
-                                                const Vector &,                        \
-                                                const Vector &) const;                 \
-  template void   BondOperator<dim>::update_crack_sides();                               \
-  template void   BondOperator<dim>::take_material_at(const Vector &);                   \
-  template double BondOperator<dim>::next_event(const double) const;                     \
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template std::vector<unsigned int> BondOperator<dim>::rows_to_correct() const;                   \
+  template void   BondOperator<dim>::correct_surface(const std::vector<unsigned int> &);           \
+  template bool   BondOperator<dim>::depends_on_solution() const;                                  \
+  template bool   BondOperator<dim>::capacity_depends_on_solution() const;                         \
+  template void   BondOperator<dim>::heat_between(Vector &, const Vector &, const Vector &) const; \
+  template void   BondOperator<dim>::update_crack_sides();                                         \
+  template void   BondOperator<dim>::take_material_at(const Vector &);                             \
+  template double BondOperator<dim>::next_event(const double) const;                               \
   template bool   BondOperator<dim>::update(const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -250,7 +250,7 @@ namespace PeriDeal
         Bond                 bond;
         bond.neighbor = neighbor;
         bond.block    = strength * outer_product(xi, xi);
-        bonds.families.kept_fraction(node, neighbor, bond.cut);
+        bond.cut      = bonds.families.cracks().cuts(node, neighbor);
         list.push_back(bond);
       });
   }

@@ -153,7 +153,8 @@ namespace PeriDeal
           coupling->bonds_of(i, bonds);
           for (const auto &bond : bonds)
             trace.local_element(i) +=
-              0.5 * bond.weight * coupling->families().bond_vector(i, bond.neighbor).norm_square();
+              0.5 * bond.weight *
+              coupling->families().neighbors().bond_vector(i, bond.neighbor).norm_square();
         }
   }
 
@@ -176,7 +177,7 @@ namespace PeriDeal
                                         1. :
                                         0.5 * (crack_factors.local_element(i) +
                                                crack_factors.local_element(bond.neighbor));
-                families.crossed_cracks(i, bond.neighbor, crossed);
+                families.cracks().crossed_cracks(i, bond.neighbor, crossed);
                 for (const auto &[crack, side] : crossed) // each bond is seen from both of its ends
                   balance.cracks[crack] += 0.5 * side * factor * bond.weight *
                                            (u.local_element(bond.neighbor) - u.local_element(i));

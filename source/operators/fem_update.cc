@@ -105,7 +105,7 @@ namespace PeriDeal
     cracks_of           = time;
     CellData    &data   = *cell_data;
     const bool   scaled = crack_factors.size() > 0;
-    const double reach  = coupling ? coupling->families().reach() : 0.;
+    const double reach  = coupling ? coupling->families().weights().reach() : 0.;
     // The factors of crack-side scaling change at the vertices of the cells whose own matrix does,
     // and of all cells around these.
     const double                    wide = scaled ? search->largest_diameter() : 0.;
@@ -125,7 +125,7 @@ namespace PeriDeal
         const double beyond = scaled ? reach + wide : 0.; // bonds have the factors of both ends
         auto         boxes  = cuts;
         boxes.insert(boxes.end(), joins.begin(), joins.end());
-        nodes = coupling->families().nodes_near(boxes, reach + beyond);
+        nodes = coupling->families().neighbors().nodes_near(boxes, reach + beyond);
         if (!bonds_apart)
           old_rows = bond_rows(nodes);
         coupling->set_cracks_of(time);
@@ -246,7 +246,7 @@ namespace PeriDeal
     const double                         wide) const
   {
     // Bonds change the cells that they pass.
-    const double      reach = coupling ? coupling->families().reach() : 0.;
+    const double      reach = coupling ? coupling->families().weights().reach() : 0.;
     std::vector<Cell> near;
     search->find(cuts, wide + (crack_factors.size() > 0 ? reach : 0.), near);
     search->find(joins, wide + reach, near);

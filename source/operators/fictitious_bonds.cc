@@ -27,7 +27,7 @@ namespace PeriDeal
   {
     for (const unsigned int i : list)
       for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-        springs[k] = springs[k] > 0. ? stiffness(i) / springs[k] : 0.;
+        springs[k] = state.is_whole(k) ? stiffness(i) / springs[k] : 0.;
     if (!full)
       return;
     across.resize(springs.size(), 0.);
@@ -272,8 +272,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FictitiousBonds<dim>::break_bond(const std::size_t number)
+  void FictitiousBonds<dim>::break_bond(const std::size_t     number,
+                                        const BondState::Mark mark,
+                                        const double          t)
   {
+    if (state.size() == 0)
+      state.resize(images.size());
+    state.mark(number, mark, t);
     springs[number] = 0.;
     moments[number] = Tensor<1, dim>();
     if (!lengths.empty())
@@ -283,19 +288,20 @@ namespace PeriDeal
 
   template <int dim>
   bool FictitiousBonds<dim>::break_dependent(const unsigned int               node,
-                                             const std::vector<unsigned int> &lost)
+                                             const std::vector<unsigned int> &lost,
+                                             const double                     t)
   {
     if (starts.empty() || starts[node] == starts[node + 1])
       return false;
     // Images of other nodes that are gone: what is continued from them is, too.
     std::vector<unsigned int> lost_images;
     for_each_of(node, [&](const Bond &bond) {
-      if (may_break(bond) && bond.spring == 0.)
+      if (may_break(bond) && !bond.whole)
         lost_images.push_back(bond.image);
     });
     bool any = false;
     for_each_of(node, [&](const Bond &bond) {
-      if (bond.spring == 0.)
+      if (!bond.whole)
         return;
       for (std::size_t k = term_starts[bond.image]; k < term_starts[bond.image + 1]; ++k)
         {
@@ -308,7 +314,7 @@ namespace PeriDeal
               });
           if (gone)
             {
-              break_bond(bond.number);
+              break_bond(bond.number, BondState::dependent, t);
               any = true;
               return;
             }

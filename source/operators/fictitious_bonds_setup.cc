@@ -17,15 +17,13 @@ namespace PeriDeal
 
   template <int dim>
   FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
-                                        const std::array<BeyondSide, 2 * dim> &beyond,
-                                        std::vector<CrackGeometry<dim>>        cracks)
+                                        const std::array<BeyondSide, 2 * dim> &beyond)
     : families(families)
     , extension(families, beyond)
-    , cracks(std::move(cracks))
   {
     const Nodes<dim> &nodes = families.nodes();
     int               reach = 0;
-    for (const FamilyMember<dim> &member : families.lattice_members())
+    for (const FamilyMember<dim> &member : families.weights().members())
       for (unsigned int d = 0; d < dim; ++d)
         reach = std::max(reach, member.offset[d]);
     starts.assign(1, 0);
@@ -44,14 +42,12 @@ namespace PeriDeal
 
   template <int dim>
   FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
-                                        const std::vector<BoundaryImage<dim>> &beyond,
-                                        std::vector<CrackGeometry<dim>>        cracks)
+                                        const std::vector<BoundaryImage<dim>> &beyond)
     : families(families)
     , extension(families, {})
-    , cracks(std::move(cracks))
   {
     const Nodes<dim> &nodes = families.nodes();
-    PointBins<dim>    bins(families.reach());
+    PointBins<dim>    bins(families.weights().reach());
     for (unsigned int g = 0; g < beyond.size(); ++g)
       bins.add(beyond[g].place, g);
     std::vector<unsigned int> number_of(beyond.size(), numbers::invalid_unsigned_int);
@@ -70,6 +66,11 @@ namespace PeriDeal
   template <int dim>
   void FictitiousBonds<dim>::make_room()
   {
+    if (!parted.empty())
+      state.resize(images.size());
+    for (const std::size_t number : parted)
+      state.mark(number, BondState::parted, 0.);
+    parted = {};
     values.resize(dim * origins.size());
     image_forces.resize(values.size());
     passed.reinit(interleaved(*families.nodes().partitioner(), dim));
@@ -84,11 +85,12 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes    = families.nodes();
     const Point<dim> &center   = nodes.position(i);
-    const double      farthest = halo_of_images(families.reach());
+    const double      farthest = halo_of_images(families.weights().reach());
     std::vector<std::pair<Tensor<1, dim>, unsigned int>> around;
     bins.visit_near(center, [&](const unsigned int g) {
       const Tensor<1, dim> xi = beyond[g].place - center;
-      if (xi.norm() > 1e-9 * families.reach() && families.weight_off_lattice(xi.norm()) > 0. &&
+      if (xi.norm() > 1e-9 * families.weights().reach() &&
+          families.weights().of_length(xi.norm()) > 0. &&
           std::all_of(beyond[g].term_places.begin(),
                       beyond[g].term_places.end(),
                       [&](const Point<dim> &p) { return center.distance(p) < farthest; }))
@@ -106,7 +108,7 @@ namespace PeriDeal
       {
         const BoundaryImage<dim> &image = beyond[g];
         // As on a lattice.
-        const bool cut = !cracks.empty() &&
+        const bool cut = !families.cracks().empty() &&
                          is_cut(i, image.terms, [&](const Term &) { return image.twice_planes; });
         if (cut &&
             !(image.terms.size() == 1 && is_separated(i, image.terms[0], image.twice_planes)))
@@ -122,7 +124,9 @@ namespace PeriDeal
             term_starts.push_back(terms.size());
           }
         const double w =
-          cut ? 0. : nodes.volume(i) * image.volume * families.weight_off_lattice(xi.norm());
+          cut ? 0. : nodes.volume(i) * image.volume * families.weights().of_length(xi.norm());
+        if (cut)
+          parted.push_back(images.size());
         images.push_back(number_of[g]);
         moments.push_back(w * xi);
         springs.push_back(w * xi.norm_square());
@@ -138,12 +142,12 @@ namespace PeriDeal
     const Index         center     = lattice.index(nodes.position(i));
     const bool          near_crack = families.near_crack(i);
     Site                site;
-    for (const FamilyMember<dim> &member : families.lattice_members())
+    for (const FamilyMember<dim> &member : families.weights().members())
       {
         const Index index = center + member.offset;
         if (extension.is_inside(index) || !extension.find(index, site))
           continue;
-        const unsigned int real   = families.node_at(index);
+        const unsigned int real   = families.neighbors().node_at(index);
         const double       inside = real == numbers::invalid_unsigned_int ? 0. : nodes.volume(real);
         const double       volume = site.volume - inside;
         if (volume <= 1e-9 * site.volume)
@@ -160,6 +164,8 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           xi[d] = member.offset[d] * lattice.spacing[d];
         const double w = cut ? 0. : nodes.volume(i) * volume * member.weight;
+        if (cut)
+          parted.push_back(images.size());
         images.push_back(image_at(index, site, volume));
         moments.push_back(w * xi);
         springs.push_back(w * xi.norm_square());
@@ -214,9 +220,8 @@ namespace PeriDeal
             a[d] = twice_planes[d] - a[d];
           else if ((term.mirrored >> d) & 1)
             b[d] = twice_planes[d] - b[d];
-        for (const CrackGeometry<dim> &crack : cracks)
-          if (crack.separates(a, b))
-            return true;
+        if (families.cracks().separate(a, b))
+          return true;
       }
     return false;
   }
@@ -234,7 +239,7 @@ namespace PeriDeal
         if (term.mirrored != 0 || !families.nodes().lattice())
           cut = is_separated(i, term, twice_planes(term)); // beyond the reach, too
         else if (term.node != i)
-          families.kept_fraction(i, term.node, cut);
+          cut = families.cracks().cuts(i, term.node);
         if (cut)
           return true;
       }
@@ -242,13 +247,11 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                         \
-  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                   \
-                                                 const std::array<BeyondSide, 2 * dim> &, \
-                                                 std::vector<CrackGeometry<dim>>);        \
-  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                   \
-                                                 const std::vector<BoundaryImage<dim>> &, \
-                                                 std::vector<CrackGeometry<dim>>);
+#define PERIDEAL_INSTANTIATE(dim)                                                          \
+  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                    \
+                                                 const std::array<BeyondSide, 2 * dim> &); \
+  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                    \
+                                                 const std::vector<BoundaryImage<dim>> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -23,10 +23,12 @@ namespace PeriDeal
     , zone(zone)
     , last(scene.cracks.end_time)
   {
-    uniform = !stiffness && families.uniform_conductivity();
+    uniform = !stiffness && scene.material.uniform_conductivity();
     plain   = uniform && scene.domain.shape == Shape::box && !nodes.is_graded();
     if (uniform && nodes.n_local() > 0)
-      uniform_stiffness = families.conductivity(0);
+      uniform_stiffness = scene.material.conductivity.value(
+        nodes.position(0),
+        scene.initial_and_source.initial_value.value(nodes.position(0)));
     find_offsets();
     find_sites(scene);
     find_cells(scene, stiffness);
@@ -36,7 +38,7 @@ namespace PeriDeal
   template <int dim>
   void LatticeBonds<dim>::find_offsets()
   {
-    for (const FamilyMember<dim> &member : families.lattice_members())
+    for (const FamilyMember<dim> &member : families.weights().members())
       {
         for (unsigned int d = 0; d < dim; ++d)
           reach[d] = std::max(reach[d], member.offset[d]);
@@ -99,7 +101,7 @@ namespace PeriDeal
   {
     const Nodes<dim>        &nodes   = families.nodes();
     const Lattice<dim>      &lattice = *nodes.lattice();
-    const CrackHistory<dim> &history = families.crack_history();
+    const CrackHistory<dim> &history = families.cracks().history();
     Zone<dim>                at_end  = zone;
     at_end.set_cracks(history.pieces(last));
     zone.set_cracks(history.pieces(history.representative(0.)));
@@ -195,7 +197,7 @@ namespace PeriDeal
     const SiteData *own  = at(site);
     if (own == nullptr || !own->may_join)
       return;
-    for (const FamilyMember<dim> &member : families.lattice_members())
+    for (const FamilyMember<dim> &member : families.weights().members())
       if (const SiteData *other = at(site + member.offset); other != nullptr && other->may_join)
         neighbors.push_back(other->node);
   }
@@ -209,8 +211,8 @@ namespace PeriDeal
       return boxes;
     const Lattice<dim> &lattice = *families.nodes().lattice();
     Zone<dim>           then    = zone;
-    then.set_cracks(families.crack_history().pieces(time));
-    for (BoundingBox<dim> wide : families.crack_history().changes(families.cracks_now(), time))
+    then.set_cracks(families.cracks().history().pieces(time));
+    for (BoundingBox<dim> wide : families.cracks().history().changes(families.cracks().now(), time))
       {
         wide.extend(zone.width() + lattice.spacing.norm());
         Site first = lattice.index(wide.get_boundary_points().first),
@@ -235,8 +237,8 @@ namespace PeriDeal
   {
     for (const BoundingBox<dim> &box : joining_by(time))
       own(families.nodes().lattice()->index(box.get_boundary_points().first)).in_zone = true;
-    families.set_cracks_of(time);
-    zone.set_cracks(families.crack_history().pieces(time));
+    families.cracks().set_time(time);
+    zone.set_cracks(families.cracks().history().pieces(time));
   }
 
 

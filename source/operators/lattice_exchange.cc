@@ -44,6 +44,7 @@ namespace PeriDeal
                                         const Scene<dim> &scene,
                                         const Zone<dim>  &zone)
     : bonds(nodes, scene, zone)
+    , of_families(bonds.families, scene)
     , form(scene.peridynamics.form)
   {
     AssertThrow(
@@ -87,7 +88,7 @@ namespace PeriDeal
                           bond.neighbor = neighbor;
                           bond.intact   = strength;
                           bond.weight =
-                            strength * bonds.families.kept_fraction(node, neighbor, bond.cut);
+                            strength * of_families.kept_fraction(node, neighbor, bond.cut);
                           list.push_back(bond);
                         });
   }
@@ -155,14 +156,14 @@ namespace PeriDeal
   template <int dim>
   std::unique_ptr<BondForm> LatticeExchange<dim>::make_form()
   {
-    return form == OperatorForm::stored ? make_stored_form(bonds.families) :
-                                          make_lattice_form(bonds.families);
+    return form == OperatorForm::stored ? make_stored_form(of_families) :
+                                          make_lattice_form(of_families);
   }
 
   template <int dim>
   void LatticeExchange<dim>::set_form_factors(std::vector<double> factors)
   {
-    bonds.families.set_node_factors(std::move(factors), 1, true);
+    of_families.factors().set(std::move(factors), 1, true);
   }
 
   template <int dim>
@@ -198,7 +199,7 @@ namespace PeriDeal
   template <int dim>
   std::size_t LatticeExchange<dim>::memory_consumption() const
   {
-    return bonds.memory_consumption();
+    return bonds.memory_consumption() + of_families.memory_consumption();
   }
 
 

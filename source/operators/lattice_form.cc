@@ -20,19 +20,19 @@ namespace PeriDeal
      * or ones, which count bonds.
      */
     template <int dim>
-    StencilKernel make_kernel(const Families<dim> &families, const bool ones)
+    StencilKernel make_kernel(const DiffusionBonds<dim> &bonds, const bool ones)
     {
       std::vector<std::array<int, 3>> offsets;
       std::vector<double>             weights;
-      const double                    kappa = families.conductivity(0);
-      for (const FamilyMember<dim> &member : families.lattice_members())
+      const double                    kappa = bonds.conductivities().of_node(0);
+      for (const FamilyMember<dim> &member : bonds.weights().members())
         {
           std::array<int, 3> offset{{0, 0, 0}};
           std::copy(member.offset.begin(), member.offset.end(), offset.begin());
           if (*std::min_element(offset.begin(), offset.end()) < 0)
             continue;
           double weight = member.weight;
-          for (const FamilyMember<dim> &self : families.self_members())
+          for (const FamilyMember<dim> &self : bonds.weights().self_members())
             if (self.offset == member.offset)
               weight += self.weight;
           offsets.push_back(offset);
@@ -46,11 +46,11 @@ namespace PeriDeal
     class LatticeForm : public BondForm
     {
     public:
-      explicit LatticeForm(const Families<dim> &families)
-        : families(families)
-        , kernel(make_kernel(families, false))
-        , layout(families, kernel.halo())
-        , n_local(families.nodes().n_local())
+      explicit LatticeForm(const DiffusionBonds<dim> &bonds)
+        : bonds(bonds)
+        , kernel(make_kernel(bonds, false))
+        , layout(bonds.families(), kernel.halo())
+        , n_local(bonds.nodes().n_local())
         , grid(layout.n_slots(), 0.)
         , runs(layout.runs)
       {
@@ -88,7 +88,7 @@ namespace PeriDeal
 
       double row_sums(double *sums) const override
       {
-        const unsigned int n_owned = families.nodes().n_owned();
+        const unsigned int n_owned = bonds.nodes().n_owned();
         for (const LatticePiece &piece : layout.pieces)
           for (std::uint32_t k = 0; k < piece.n; ++k)
             sums[piece.node + k] = layout.volume(piece, k) * layout.family_sum(piece, k);
@@ -96,12 +96,12 @@ namespace PeriDeal
         // but a fictitious one has no own.
         std::vector<double> count(n_owned);
         fill_grid_directly(std::vector<double>(n_local, 0.5),
-                           std::vector<double>(families.fictitious().size(), 1.));
-        convolve(make_kernel(families, true), 0, runs.size(), count.data());
-        std::vector<typename Families<dim>::Bond> family;
+                           std::vector<double>(bonds.neighbors().outside().size(), 1.));
+        convolve(make_kernel(bonds, true), 0, runs.size(), count.data());
+        std::vector<typename DiffusionBonds<dim>::Bond> family;
         for (const std::uint32_t i : corrections.rows) // the plain way
           {
-            families.bonds_of(i, family);
+            bonds.bonds_of(i, family);
             sums[i] = count[i] = 0.;
             for (const auto &bond : family)
               {
@@ -226,13 +226,13 @@ namespace PeriDeal
       /** Where the fictitious nodes go in the grid, and which of these sites no real node fills. */
       void find_fictitious_slots()
       {
-        for (std::uint32_t f = 0; f < families.fictitious().size(); ++f)
+        for (std::uint32_t f = 0; f < bonds.neighbors().outside().size(); ++f)
           {
-            const FictitiousNode<dim> &node = families.fictitious()[f];
+            const FictitiousNode<dim> &node = bonds.neighbors().outside()[f];
             if (!layout.in_grid(node.site))
               continue;
             outside_nodes.push_back({layout.slot(node.site), f, node.volume});
-            if (families.node_at(node.site) == numbers::invalid_unsigned_int)
+            if (bonds.neighbors().node_at(node.site) == numbers::invalid_unsigned_int)
               emptied_slots.push_back(layout.slot(node.site));
           }
       }
@@ -241,10 +241,10 @@ namespace PeriDeal
       /** The template's sum of coefficients at each node: its convolution of the volumes. */
       void find_family_sums()
       {
-        std::vector<double> volumes(n_local), outside, sums(families.nodes().n_owned());
+        std::vector<double> volumes(n_local), outside, sums(bonds.nodes().n_owned());
         for (unsigned int i = 0; i < n_local; ++i)
-          volumes[i] = families.nodes().volume(i);
-        for (const FictitiousNode<dim> &node : families.fictitious())
+          volumes[i] = bonds.nodes().volume(i);
+        for (const FictitiousNode<dim> &node : bonds.neighbors().outside())
           outside.push_back(node.volume);
         fill_grid_directly(volumes, outside);
         convolve(kernel, 0, runs.size(), sums.data());
@@ -258,14 +258,14 @@ namespace PeriDeal
        */
       bool self_term_is_regular(const std::uint32_t i) const
       {
-        const Nodes<dim> &nodes = families.nodes();
+        const Nodes<dim> &nodes = bonds.nodes();
         const auto        site  = nodes.lattice()->index(nodes.position(i));
-        for (const FamilyMember<dim> &self : families.self_members())
+        for (const FamilyMember<dim> &self : bonds.weights().self_members())
           {
             auto other = site;
             for (unsigned int d = 0; d < dim; ++d)
               other[d] += self.offset[d];
-            const unsigned int j = families.node_at(other);
+            const unsigned int j = bonds.neighbors().node_at(other);
             if (j == numbers::invalid_unsigned_int || nodes.volume(j) != nodes.volume(i))
               return false;
           }
@@ -274,20 +274,20 @@ namespace PeriDeal
 
 
       /** The template's conductance of a bond. */
-      double template_weight(const unsigned int i, const typename Families<dim>::Bond &bond) const
+      double template_weight(const unsigned int                        i,
+                             const typename DiffusionBonds<dim>::Bond &bond) const
       {
-        if (families.self_members().empty())
+        if (bonds.weights().self_members().empty())
           return bond.intact;
         const std::uint32_t  j      = bond.neighbor;
-        const double         volume = j < n_local ? families.nodes().volume(j) :
-                                                    families.fictitious()[j - n_local].volume;
-        const Tensor<1, dim> xi     = families.bond_vector(i, j);
+        const double         volume = bonds.neighbors().volume(j);
+        const Tensor<1, dim> xi     = bonds.neighbors().bond_vector(i, j);
         double               weight = 0.;
-        for (const auto *list : {&families.lattice_members(), &families.self_members()})
+        for (const auto *list : {&bonds.weights().members(), &bonds.weights().self_members()})
           for (const FamilyMember<dim> &member : *list)
-            if (families.is_offset(xi, member))
+            if (bonds.weights().is_offset(xi, member))
               weight += member.weight;
-        return families.nodes().volume(i) * volume * weight * families.conductivity(i);
+        return bonds.nodes().volume(i) * volume * weight * bonds.conductivities().of_node(i);
       }
 
 
@@ -301,7 +301,7 @@ namespace PeriDeal
               for (std::uint32_t k = 0; k < layout.pieces[p].n; ++k)
                 {
                   const std::uint32_t i = layout.pieces[p].node + k;
-                  if (families.near_crack(i) || !self_term_is_regular(i))
+                  if (bonds.near_crack(i) || !self_term_is_regular(i))
                     correct(i, corrections);
                 }
             corrections.ends.push_back(corrections.rows.size());
@@ -314,8 +314,8 @@ namespace PeriDeal
       double correct(const std::uint32_t i, Corrections &to)
       {
         double sum = 0.;
-        families.bonds_of(i, bonds);
-        for (const auto &bond : bonds)
+        bonds.bonds_of(i, family);
+        for (const auto &bond : family)
           {
             const double expected   = template_weight(i, bond);
             const double difference = bond.weight - expected;
@@ -335,7 +335,7 @@ namespace PeriDeal
       /** Where each node comes in the order of the layout. */
       void rank_nodes()
       {
-        ranks.resize(families.nodes().n_owned());
+        ranks.resize(bonds.nodes().n_owned());
         std::uint32_t rank = 0;
         for (const LatticePiece &piece : layout.pieces)
           for (std::uint32_t k = 0; k < piece.n; ++k)
@@ -437,7 +437,7 @@ namespace PeriDeal
         stencil.apply(layout.grid(grid.data()), runs.data() + begin, end - begin);
       }
 
-      const Families<dim>                    &families;
+      const DiffusionBonds<dim>              &bonds;
       const StencilKernel                     kernel;
       LatticeLayout<dim>                      layout;
       const unsigned int                      n_local;
@@ -448,26 +448,26 @@ namespace PeriDeal
       Corrections                             corrections, spare;
       std::vector<std::uint32_t> ranks; // of nodes in the order of the layout; once rows change
 
-      std::vector<typename Families<dim>::Bond> bonds; // of the row at work
+      std::vector<typename DiffusionBonds<dim>::Bond> family; // of the row at work
     };
   } // namespace
 
 
   template <int dim>
-  std::unique_ptr<BondForm> make_lattice_form(const Families<dim> &families)
+  std::unique_ptr<BondForm> make_lattice_form(const DiffusionBonds<dim> &bonds)
   {
-    return std::make_unique<LatticeForm<dim>>(families);
+    return std::make_unique<LatticeForm<dim>>(bonds);
   }
 
 
   template <int dim>
-  bool lattice_form_suits(const Families<dim> &families, std::string &reason)
+  bool lattice_form_suits(const DiffusionBonds<dim> &bonds, std::string &reason)
   {
-    if (!families.has_unique_sites())
+    if (!bonds.neighbors().has_unique_sites())
       reason = "the nodes are not on a lattice with one node per site";
-    else if (!families.uniform_conductivity())
+    else if (!bonds.conductivities().uniform())
       reason = "the conductivity varies";
-    else if (families.corrects_every_bond())
+    else if (bonds.corrects_every_bond())
       reason = "the energy correction gives each bond a factor of its own";
     else
       return true;
@@ -475,9 +475,9 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                              \
-  template std::unique_ptr<BondForm> make_lattice_form(const Families<dim> &); \
-  template bool                      lattice_form_suits(const Families<dim> &, std::string &);
+#define PERIDEAL_INSTANTIATE(dim)                                                    \
+  template std::unique_ptr<BondForm> make_lattice_form(const DiffusionBonds<dim> &); \
+  template bool                      lattice_form_suits(const DiffusionBonds<dim> &, std::string &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -163,7 +163,7 @@ namespace PeriDeal
           site[d] = corner[d] + static_cast<int>(p[d]);
         LatticePiece piece;
         piece.slot = slot(site);
-        piece.node = families.node_at(site);
+        piece.node = families.neighbors().node_at(site);
         piece.n    = static_cast<std::uint32_t>(run.n);
         pieces.push_back(piece);
         first_nodes.push_back(piece.node);

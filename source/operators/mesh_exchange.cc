@@ -46,13 +46,15 @@ namespace PeriDeal
 
   template <int dim>
   MeshExchange<dim>::MeshExchange(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone)
-    : bonds(nodes,
-            scene,
-            HaloAround::cells,
-            [at_end = zone_at_end(zone, scene)](const Point<dim> &p) { return at_end.contains(p); })
+    : own_families(
+        nodes,
+        scene,
+        HaloAround::cells,
+        [at_end = zone_at_end(zone, scene)](const Point<dim> &p) { return at_end.contains(p); })
+    , bonds(own_families, scene)
     , zone(zone)
   {
-    const CrackHistory<dim> &history = bonds.crack_history();
+    const CrackHistory<dim> &history = bonds.cracks().history();
     const Zone<dim>          at_end  = zone_at_end(zone, scene);
     this->zone.set_cracks(history.pieces(history.representative(0.)));
     const std::vector<bool> hanging   = hanging_nodes(nodes);
@@ -100,7 +102,8 @@ namespace PeriDeal
           0 :
           1,
         nodes.communicator()) > 0;
-    paths = std::make_unique<CellPaths<dim>>(cells, ends, bonds.reach() * (1. + 1e-6), regular);
+    paths =
+      std::make_unique<CellPaths<dim>>(cells, ends, bonds.weights().reach() * (1. + 1e-6), regular);
   }
 
 
@@ -148,7 +151,7 @@ namespace PeriDeal
         for (const Bond &bond : family)
           {
             if (!joined[bond.neighbor] || !starts_at(i, bond.neighbor) ||
-                bonds.is_parted(i, bond.neighbor))
+                own_families.is_parted(i, bond.neighbor))
               continue;
             ZoneBond zone_bond{{i, bond.neighbor}, bond.intact};
             if (!follow(zone_bond, way))
@@ -161,7 +164,7 @@ namespace PeriDeal
               }
             if (highest > largest_contrast * lowest)
               continue;
-            zone_bond.intact *= lowest / bonds.bond_conductivity(i, bond.neighbor);
+            zone_bond.intact *= lowest / bonds.conductivities().of_bond(i, bond.neighbor);
             const unsigned int number = zone_bonds.size();
             take(zone_bond.intact, way);
             for (const PathPiece<dim> &piece : way)
@@ -340,13 +343,13 @@ namespace PeriDeal
     if (!zone.follows_cracks())
       return boxes;
     Zone<dim> then = zone;
-    then.set_cracks(bonds.crack_history().pieces(time));
+    then.set_cracks(bonds.cracks().history().pieces(time));
     for (unsigned int i = 0; i < joined.size(); ++i)
       if (may_join[i] && !joined[i] && then.contains(bonds.nodes().position(i)))
         {
           // New bonds may change the scaling of all that pass the cells on their way.
           boxes.push_back({{bonds.nodes().position(i), bonds.nodes().position(i)}});
-          boxes.back().extend(2. * bonds.reach());
+          boxes.back().extend(2. * bonds.weights().reach());
         }
     return boxes;
   }
@@ -356,8 +359,8 @@ namespace PeriDeal
   void MeshExchange<dim>::set_cracks_of(const double time)
   {
     bool any = false;
-    bonds.set_cracks_of(time);
-    zone.set_cracks(bonds.crack_history().pieces(time));
+    bonds.cracks().set_time(time);
+    zone.set_cracks(bonds.cracks().history().pieces(time));
     for (unsigned int i = 0; i < joined.size() && zone.follows_cracks(); ++i)
       if (may_join[i] && !joined[i] && zone.contains(bonds.nodes().position(i)))
         {
@@ -395,18 +398,18 @@ namespace PeriDeal
   template <int dim>
   const Families<dim> &MeshExchange<dim>::families() const
   {
-    return bonds;
+    return own_families;
   }
 
   template <int dim>
   std::size_t MeshExchange<dim>::memory_consumption() const
   {
-    std::size_t memory = bonds.memory_consumption() + paths->memory_consumption() +
-                         cells.capacity() * (sizeof(PathCell<dim>) + sizeof(CellState)) +
-                         zone_bonds.capacity() * sizeof(ZoneBond) +
-                         taken.capacity() * sizeof(taken[0]) +
-                         bonds_of_node.capacity() * sizeof(bonds_of_node[0]) +
-                         cell_of_index.capacity() * sizeof(cell_of_index[0]);
+    std::size_t memory =
+      own_families.memory_consumption() + bonds.memory_consumption() + paths->memory_consumption() +
+      cells.capacity() * (sizeof(PathCell<dim>) + sizeof(CellState)) +
+      zone_bonds.capacity() * sizeof(ZoneBond) + taken.capacity() * sizeof(taken[0]) +
+      bonds_of_node.capacity() * sizeof(bonds_of_node[0]) +
+      cell_of_index.capacity() * sizeof(cell_of_index[0]);
     for (const auto &matrix : taken)
       memory += matrix.capacity() * sizeof(double);
     for (const auto &numbers : bonds_of_node)

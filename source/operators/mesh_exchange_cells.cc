@@ -75,7 +75,7 @@ namespace PeriDeal
           size = std::max(size, cell.corners[v].distance(cell.corners[0]));
       }
     const ProcessBoxes<dim> boxes(own_corners, communicator);
-    const double            distance = bonds.reach() + Utilities::MPI::max(size, communicator);
+    const double distance = bonds.weights().reach() + Utilities::MPI::max(size, communicator);
     std::map<unsigned int, std::vector<double>> to_send;
     for (unsigned int rank = 0; rank < boxes.n_processes(); ++rank)
       for (unsigned int c = 0; c < cells.size() && rank != me; ++c)

@@ -19,13 +19,13 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  NodeConstraints<dim>::NodeConstraints(const Families<dim> &families, const Scene<dim> &scene)
-    : nodes(families.nodes())
+  NodeConstraints<dim>::NodeConstraints(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene)
+    : nodes(bonds.nodes())
     , kinds(nodes.n_local(), free)
   {
     find_prescribed(scene);
-    check_parts(families, scene);
-    find_slaves(families, scene);
+    check_parts(bonds, scene);
+    find_slaves(bonds, scene);
     prescribed_exist = Utilities::MPI::max(prescribed_list.empty() ? 0 : 1, nodes.communicator()) >
                        0;
     slaves_exist = Utilities::MPI::max(slaves.empty() ? 0 : 1, nodes.communicator()) > 0;
@@ -112,8 +112,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  void NodeConstraints<dim>::check_parts(const Families<dim> &families,
-                                         const Scene<dim>    &scene) const
+  void NodeConstraints<dim>::check_parts(const DiffusionBonds<dim> &bonds,
+                                         const Scene<dim>          &scene) const
   {
     const BoundaryConditions<dim>  &conditions = scene.boundary_conditions;
     const auto                     &dirichlet  = conditions.dirichlet;
@@ -123,7 +123,7 @@ namespace PeriDeal
         n_nodes[k] += share.inside && share.id == dirichlet[k].id ? 1 : 0;
     for (const Prescribed &entry : prescribed_list)
       ++n_held[entry.condition - dirichlet.data()];
-    for (const FictitiousNode<dim> &node : families.fictitious())
+    for (const FictitiousNode<dim> &node : bonds.neighbors().outside())
       for (const auto &term : node.terms)
         ++n_held[term.condition - dirichlet.data()];
     require_held_parts(conditions, dirichlet, n_nodes, n_held, "Dirichlet", nodes.communicator());
@@ -131,20 +131,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  void NodeConstraints<dim>::find_slaves(const Families<dim> &families, const Scene<dim> &scene)
+  void NodeConstraints<dim>::find_slaves(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene)
   {
     const FluxTreatment treatment = scene.peridynamics.flux_treatment;
     if (treatment == FluxTreatment::natural)
       return;
     AssertThrow(
-      scene.domain.shape == Shape::box && families.has_unique_sites(),
+      scene.domain.shape == Shape::box && bonds.neighbors().has_unique_sites(),
       UserError(
         "'Flux treatment' in section 'Peridynamics' must be 'natural' unless the body is a box "
         "without doubled nodes."));
     std::string message;
     if (treatment == FluxTreatment::layer_extrapolation)
       for (const SideCondition &condition : scene.boundary_conditions.flux)
-        message = extrapolate_layer(families, condition.id, scene);
+        message = extrapolate_layer(bonds, condition.id, scene);
     else
       for (const auto &[node, condition] : first_sides(nodes, scene.boundary_conditions.flux, true))
         if (kinds[node] == free)
@@ -152,7 +152,7 @@ namespace PeriDeal
             const unsigned int side = scene.boundary_conditions.side_of(condition->id);
             Slave              slave;
             slave.node              = node;
-            const std::string fault = extrapolate(families, side, condition->name, slave);
+            const std::string fault = extrapolate(bonds, side, condition->name, slave);
             message                 = message.empty() ? fault : message;
             add_fluxes(scene.boundary_conditions, side, slave);
             slaves.push_back(slave);
@@ -183,18 +183,18 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::string NodeConstraints<dim>::extrapolate(const Families<dim> &families,
-                                                const unsigned int   side,
-                                                const std::string   &name,
-                                                Slave               &slave) const
+  std::string NodeConstraints<dim>::extrapolate(const DiffusionBonds<dim> &bonds,
+                                                const unsigned int         side,
+                                                const std::string         &name,
+                                                Slave                     &slave) const
   {
-    std::vector<typename Families<dim>::Bond> bonds;
-    families.bonds_of(slave.node, bonds, false);
+    std::vector<typename DiffusionBonds<dim>::Bond> family;
+    bonds.bonds_of(slave.node, family, false);
     double sum = 0.;
-    for (const auto &bond : bonds)
+    for (const auto &bond : family)
       {
-        const double inward =
-          (side % 2 == 0 ? 1. : -1.) * families.bond_vector(slave.node, bond.neighbor)[side / 2];
+        const double inward = (side % 2 == 0 ? 1. : -1.) *
+                              bonds.neighbors().bond_vector(slave.node, bond.neighbor)[side / 2];
         if (bond.neighbor >= nodes.n_local() || inward <= 1e-9 * nodes.smallest_spacing() ||
             bond.weight == 0.)
           continue;
@@ -221,9 +221,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::string NodeConstraints<dim>::extrapolate_layer(const Families<dim> &families,
-                                                      const unsigned int   side,
-                                                      const Scene<dim>    &scene)
+  std::string NodeConstraints<dim>::extrapolate_layer(const DiffusionBonds<dim> &bonds,
+                                                      const unsigned int         side,
+                                                      const Scene<dim>          &scene)
   {
     const Lattice<dim>  &lattice = *nodes.lattice();
     const int            rows = static_cast<int>(std::lround(scene.horizon() / lattice.spacing[0]));
@@ -239,13 +239,14 @@ namespace PeriDeal
         if (depth >= rows || kinds[i] != free)
           continue;
         site[0]                   = side == 0 ? rows : lattice.n_sites[0] - 1 - rows;
-        const unsigned int master = families.node_at(site);
+        const unsigned int master = bonds.neighbors().node_at(site);
         Assert(master != numbers::invalid_unsigned_int, ExcInternalError());
         Slave slave;
-        slave.node             = i;
-        slave.masters          = {{master, 1.}};
-        slave.flux_coefficient = (rows - depth) * lattice.spacing[0] / families.conductivity(i);
-        slave.fluxes           = {{flux, slave.flux_coefficient, nodes.position(i)}};
+        slave.node    = i;
+        slave.masters = {{master, 1.}};
+        slave.flux_coefficient =
+          (rows - depth) * lattice.spacing[0] / bonds.conductivities().of_node(i);
+        slave.fluxes = {{flux, slave.flux_coefficient, nodes.position(i)}};
         slaves.push_back(slave);
       }
     return "";

@@ -37,7 +37,7 @@ namespace PeriDeal
         [&](const unsigned int node, const types::boundary_id side, const int step) {
           auto site = lattice.index(nodes.position(node));
           site[side / 2] += side % 2 == 0 ? step : -step;
-          return families.node_at(site);
+          return families.neighbors().node_at(site);
         };
       std::vector<TractionShare<dim>> second;
       std::array<Vector, dim + 1>     carried; // areas and places of the outermost row
@@ -112,10 +112,6 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::complete_families()
   {
-    const bool cut_at_tips = scene.cracks.cuts_bonds_at_tips(scene.peridynamics.surface_correction);
-    const auto cracks      = [&] {
-      return make_crack_geometries(bonds.crack_history().pieces(bonds.cracks_now(), cut_at_tips));
-    };
     if (completes_mesh(scene))
       {
         const auto goes_on = [&](const types::boundary_id side) {
@@ -126,17 +122,17 @@ namespace PeriDeal
                                                  boundary_images(bonds.nodes(),
                                                                  scene.boundary_conditions.symmetry,
                                                                  goes_on,
-                                                                 bonds.reach()),
-                                                 cracks());
+                                                                 bonds.weights().reach()));
         beyond->add_weights(weighted);
         return;
       }
     const auto sides = beyond_sides(scene);
-    if (!bonds.has_unique_sites() || std::all_of(sides.begin(), sides.end(), [](const auto side) {
+    if (!bonds.neighbors().has_unique_sites() ||
+        std::all_of(sides.begin(), sides.end(), [](const auto side) {
           return side == BeyondSide::nothing;
         }))
       return;
-    beyond = std::make_unique<FictitiousBonds<dim>>(bonds, sides, cracks());
+    beyond = std::make_unique<FictitiousBonds<dim>>(bonds, sides);
     if (bonds.nodes().lattice()->at_centers && scene.boundary_conditions.traction_layer <= 0.)
       draw_on_to_side(bonds, scene.boundary_conditions, sides, tractions);
     beyond->add_weights(weighted);
@@ -211,10 +207,10 @@ namespace PeriDeal
       return;
     beyond->begin_forces();
     beyond->for_each([&](const auto &bond) {
-      const double length = beyond->length(bond);
-      if (length == 0.)
-        return; // broken
-      Tensor<1, dim> force = beyond->change(bond, x.begin());
+      if (!bond.whole)
+        return;
+      const double   length = beyond->length(bond);
+      Tensor<1, dim> force  = beyond->change(bond, x.begin());
       force -= (bond.moment * force) / (length * length) * bond.moment;
       force *= beyond->stiffness_across(bond);
       for (unsigned int d = 0; d < dim; ++d)
@@ -352,7 +348,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned int StateOperator<dim>::break_images()
+  unsigned int StateOperator<dim>::break_images(const double t)
   {
     if (!beyond)
       return 0;
@@ -364,7 +360,7 @@ namespace PeriDeal
       if (next < breaking_images.size() && breaking_images[next].first == bond.number)
         {
           n_ends += beyond->n_ends(bond);
-          beyond->break_bond(bond.number);
+          beyond->break_bond(bond.number, BondState::broken, t);
           touched.insert(bond.node);
           ++next;
         }
@@ -375,9 +371,9 @@ namespace PeriDeal
       {
         std::vector<unsigned int> lost;
         for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          if (springs[k] == 0.)
+          if (!state.is_whole(k))
             lost.push_back(neighbors[k]);
-        beyond->break_dependent(i, lost);
+        beyond->break_dependent(i, lost, t);
       }
     return n_ends;
   }
@@ -395,7 +391,7 @@ namespace PeriDeal
   template void   StateOperator<dim>::add_images_to_diagonal(const std::vector<double> &);         \
   template Vector StateOperator<dim>::rows_of_images(const bool) const;                            \
   template void   StateOperator<dim>::find_overstretched_images(const double *);                   \
-  template unsigned int StateOperator<dim>::break_images();
+  template unsigned int StateOperator<dim>::break_images(const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -47,7 +47,7 @@ namespace PeriDeal
   {
     const OperatorForm wanted = scene.peridynamics.form;
     std::string        reason;
-    if (!bonds.has_unique_sites())
+    if (!bonds.neighbors().has_unique_sites())
       reason = "the nodes are not on a lattice with one node per site";
     else if (full)
       reason = "with 'Kinematics = full' each bond has its own direction";
@@ -73,9 +73,9 @@ namespace PeriDeal
     if (nodes.volume(i) != volume)
       return false;
     const auto site = nodes.lattice()->index(nodes.position(i));
-    for (const FamilyMember<dim> &member : bonds.lattice_members())
+    for (const FamilyMember<dim> &member : bonds.weights().members())
       {
-        const unsigned int j = bonds.node_at(site + member.offset);
+        const unsigned int j = bonds.neighbors().node_at(site + member.offset);
         if (j == numbers::invalid_unsigned_int || nodes.volume(j) != volume)
           return false;
       }
@@ -87,7 +87,7 @@ namespace PeriDeal
   double StateOperator<dim>::complete_weighted() const
   {
     double q = 0.;
-    for (const FamilyMember<dim> &member : bonds.lattice_members())
+    for (const FamilyMember<dim> &member : bonds.weights().members())
       q += bonds.nodes().lattice()->cell_volume() * member.weight * member.r * member.r;
     return q;
   }
@@ -96,15 +96,15 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::find_bonds()
   {
-    const Nodes<dim>                         &nodes     = bonds.nodes();
-    const bool                                leave_out = may_leave_out_bonds();
-    const double                              q         = leave_out ? complete_weighted() : 0.;
-    std::vector<typename Families<dim>::Bond> family;
-    std::string                               message;
+    const Nodes<dim>                           &nodes     = bonds.nodes();
+    const bool                                  leave_out = may_leave_out_bonds();
+    const double                                q         = leave_out ? complete_weighted() : 0.;
+    std::vector<typename Families<dim>::Member> family;
+    std::string                                 message;
     if (leave_out)
       {
         on_lattice.assign(nodes.n_owned(), true);
-        for (const FamilyMember<dim> &member : bonds.lattice_members())
+        for (const FamilyMember<dim> &member : bonds.weights().members())
           {
             LatticeBond bond;
             bond.offset = member.offset;
@@ -121,10 +121,10 @@ namespace PeriDeal
           n_bonds += 0.5 * static_cast<double>(lattice_bonds.size()); // at each end
         else
           {
-            bonds.bonds_of(i, family, false);
+            bonds.members_of(i, family);
             if (leave_out)
               on_lattice[i] = std::none_of(family.begin(), family.end(), [](const auto &bond) {
-                return bond.cut || bond.intact == 0.;
+                return bond.cut || bond.weight == 0.;
               });
             store_bonds(i, family, message);
           }
@@ -146,9 +146,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateOperator<dim>::store_bonds(const unsigned int                               i,
-                                       const std::vector<typename Families<dim>::Bond> &family,
-                                       std::string                                     &message)
+  void StateOperator<dim>::store_bonds(const unsigned int                                 i,
+                                       const std::vector<typename Families<dim>::Member> &family,
+                                       std::string                                       &message)
   {
     const Nodes<dim>       &nodes  = bonds.nodes();
     const bool              stored = on_lattice.empty() || !on_lattice[i];
@@ -156,11 +156,11 @@ namespace PeriDeal
     double                  q = 0.;
     for (const auto &bond : family)
       {
-        if (bond.cut || bond.intact == 0.)
+        if (bond.cut || bond.weight == 0.)
           continue;
         AssertIndexRange(bond.neighbor, nodes.n_local()); // no fictitious nodes
-        const Tensor<1, dim> xi = bonds.bond_vector(i, bond.neighbor);
-        const double         w  = bond.intact / bonds.bond_conductivity(i, bond.neighbor);
+        const Tensor<1, dim> xi = bonds.neighbors().bond_vector(i, bond.neighbor);
+        const double         w  = bond.weight;
         q += w * xi.norm_square() / nodes.volume(i);
         shape += w * symmetrize(outer_product(xi, xi));
         n_bonds += 0.5; // at each end

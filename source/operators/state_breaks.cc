@@ -31,9 +31,9 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::find_what_is_beside_loads()
   {
-    const Nodes<dim>                         &nodes = bonds.nodes();
-    const auto                               &list  = scene.boundary_conditions.traction;
-    std::vector<typename Families<dim>::Bond> family;
+    const Nodes<dim>                           &nodes = bonds.nodes();
+    const auto                                 &list  = scene.boundary_conditions.traction;
+    std::vector<typename Families<dim>::Member> family;
     loaded_side.assign(nodes.n_local(), no_side);
     for (unsigned int number = 0; number < list.size(); ++number)
       {
@@ -43,7 +43,7 @@ namespace PeriDeal
         for (const TractionShare<dim> &share : tractions)
           if (share.side == list[number].id && share.area != 0.)
             {
-              bonds.bonds_of(share.node, family, false);
+              bonds.members_of(share.node, family);
               beside.local_element(share.node) += 1.;
               for (const auto &bond : family)
                 beside.local_element(bond.neighbor) += 1.;

@@ -16,9 +16,9 @@ namespace PeriDeal
                                     const Scene<dim> &scene,
                                     const Zone<dim>  &given_zone)
     : bonds(nodes, scene, HaloAround::cells)
-    , node_weights(nodes, given_zone, scene.coupling.overlap * bonds.horizon())
+    , node_weights(nodes, given_zone, scene.coupling.overlap * bonds.weights().horizon())
   {
-    const CrackHistory<dim> &history = bonds.crack_history();
+    const CrackHistory<dim> &history = bonds.cracks().history();
     Zone<dim>                zone    = given_zone;
     zone.set_cracks(history.pieces(history.representative(0.)));
     node_weights.set(zone);
@@ -49,12 +49,12 @@ namespace PeriDeal
           if (i < nodes.n_owned())
             acts[i] = true;
           const auto center = site_of(i);
-          for (const FamilyMember<dim> &member : bonds.lattice_members())
+          for (const FamilyMember<dim> &member : bonds.weights().members())
             {
               auto site = center;
               for (unsigned int d = 0; d < dim; ++d)
                 site[d] += member.offset[d];
-              if (const unsigned int j = bonds.node_at(site); j < nodes.n_owned())
+              if (const unsigned int j = bonds.neighbors().node_at(site); j < nodes.n_owned())
                 acts[j] = true;
             }
         }
@@ -181,18 +181,18 @@ namespace PeriDeal
                                          std::vector<unsigned int> &nodes,
                                          std::vector<BondOfFamily> &list) const
   {
-    const unsigned int                        own        = nodes[0];
-    const double                              own_strain = strain ? strain(own) : 0.;
-    std::vector<typename Families<dim>::Bond> members;
-    bonds.bonds_of(own, members, false);
+    const unsigned int                          own        = nodes[0];
+    const double                                own_strain = strain ? strain(own) : 0.;
+    std::vector<typename Families<dim>::Member> members;
+    bonds.members_of(own, members);
     typename FictitiousExtension<dim>::Site site;
     for (const auto &member : members)
       {
         const unsigned int j = member.neighbor;
-        if (member.intact == 0. || (member.cut && !intact))
+        if (member.weight == 0. || (member.cut && !intact))
           continue;
-        const Tensor<1, dim> xi = bonds.bond_vector(own, j);
-        double               w  = member.intact / bonds.bond_conductivity(own, j);
+        const Tensor<1, dim> xi = bonds.neighbors().bond_vector(own, j);
+        double               w  = member.weight;
         if (extension && !extension->is_inside(site_of(j)) && extension->find(site_of(j), site))
           w *= site.volume / bonds.nodes().volume(j); // with what is missing of a node on a side
         list.push_back({{{0, -w * xi}, {static_cast<unsigned int>(nodes.size()), w * xi}},
@@ -216,7 +216,7 @@ namespace PeriDeal
     const auto                              center     = site_of(own);
     const Lattice<dim>                     &lattice    = *bonds.nodes().lattice();
     typename FictitiousExtension<dim>::Site site;
-    for (const FamilyMember<dim> &member : bonds.lattice_members())
+    for (const FamilyMember<dim> &member : bonds.weights().members())
       {
         auto index   = center;
         bool outside = false;

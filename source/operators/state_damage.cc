@@ -35,13 +35,13 @@ namespace PeriDeal
     {
       const Tensor<1, dim> &spacing = bonds.nodes().lattice()->spacing;
       double                q       = 0.;
-      for (const FamilyMember<dim> &member : bonds.lattice_members())
+      for (const FamilyMember<dim> &member : bonds.weights().members())
         q += member.weight * member.r * member.r;
       CrossingSums sums;
       for (unsigned int d = 0; d < dim; ++d)
         {
           std::vector<double> shares; // of the layers
-          for (const FamilyMember<dim> &member : bonds.lattice_members())
+          for (const FamilyMember<dim> &member : bonds.weights().members())
             {
               const double share = member.weight * member.r * member.r / q;
               const int    n     = std::max(0, member.offset[d]);
@@ -63,26 +63,22 @@ namespace PeriDeal
      * sums than others.
      */
     template <int dim>
-    CrossingSums own_crossing_sums(const Families<dim>                       &bonds,
-                                   const unsigned int                         node,
-                                   std::vector<typename Families<dim>::Bond> &family)
+    CrossingSums own_crossing_sums(const Families<dim>                         &bonds,
+                                   const unsigned int                           node,
+                                   std::vector<typename Families<dim>::Member> &family)
     {
-      bonds.bonds_of(node, family, false);
+      bonds.members_of(node, family);
       std::vector<std::pair<double, double>> crossing(family.size()); // distance, share
       CrossingSums                           sums;
       double                                 q = 0.;
       for (const auto &bond : family)
-        q += bond.intact / bonds.bond_conductivity(node, bond.neighbor) *
-             bonds.bond_vector(node, bond.neighbor).norm_square();
+        q += bond.weight * bonds.neighbors().bond_vector(node, bond.neighbor).norm_square();
       for (unsigned int d = 0; d < dim; ++d)
         {
           for (std::size_t k = 0; k < family.size(); ++k)
             {
-              const Tensor<1, dim> xi = bonds.bond_vector(node, family[k].neighbor);
-              crossing[k]             = {std::abs(xi[d]),
-                                         0.5 * family[k].intact /
-                                           bonds.bond_conductivity(node, family[k].neighbor) *
-                                           xi.norm_square() / q};
+              const Tensor<1, dim> xi = bonds.neighbors().bond_vector(node, family[k].neighbor);
+              crossing[k] = {std::abs(xi[d]), 0.5 * family[k].weight * xi.norm_square() / q};
             }
           std::sort(crossing.begin(), crossing.end());
           // What reaches farther than a plane, as the plane moves away from the node.
@@ -110,10 +106,11 @@ namespace PeriDeal
     const bool         converts   = !material.critical_stretch;
     const CrossingSums of_lattice = converts && nodes.lattice() ? crossing_sums(bonds) :
                                                                   CrossingSums();
-    std::vector<typename Families<dim>::Bond> family;
-    std::string                               message;
-    Vector                                    stretches(nodes.partitioner());
+    std::vector<typename Families<dim>::Member> family;
+    std::string                                 message;
+    Vector                                      stretches(nodes.partitioner());
     breaks = true;
+    state.resize(neighbors.size());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const Point<dim> &p   = nodes.position(i);
@@ -169,7 +166,7 @@ namespace PeriDeal
         {
           // W x e and W x^2; the same digits at both ends of a bond.
           const unsigned int   j     = neighbors[k];
-          const Tensor<1, dim> xi    = bonds.bond_vector(i, j);
+          const Tensor<1, dim> xi    = bonds.neighbors().bond_vector(i, j);
           const double         all   = full ? lengths[k] * xi.norm() : moments[k] * xi;
           const double         limit = all * std::min(critical[i], critical[j]);
           const double         found = extension_moment(u.begin(), i, stored_bond(k));
@@ -194,7 +191,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned long long StateOperator<dim>::break_bonds(const Vector &u, const double share)
+  unsigned long long StateOperator<dim>::break_bonds(const Vector &u,
+                                                     const double  t,
+                                                     const double  share)
   {
     if (!breaks)
       return 0;
@@ -207,12 +206,13 @@ namespace PeriDeal
     const double before = energy(u);
     for (const auto &[k, ratio] : breaking)
       {
+        state.mark(k, BondState::broken, t);
         springs[k] = 0.;
         moments[k] = Tensor<1, dim>();
         if (full)
           lengths[k] = across[k] = 0.;
       }
-    n_ends = Utilities::MPI::sum(breaking.size() + break_images(), all);
+    n_ends = Utilities::MPI::sum(breaking.size() + break_images(t), all);
     released += before - energy(u);
     n_bonds -= 0.5 * breaking.size();
     n_broken += n_ends / 2;
@@ -240,28 +240,28 @@ namespace PeriDeal
   template <int dim>
   std::vector<double> StateOperator<dim>::damage() const
   {
-    const Nodes<dim>                         &nodes = bonds.nodes();
-    std::vector<typename Families<dim>::Bond> family;
-    std::vector<std::pair<unsigned int, int>> crossed;
-    std::vector<double>                       result(nodes.n_owned());
+    const Nodes<dim>                           &nodes = bonds.nodes();
+    std::vector<typename Families<dim>::Member> family;
+    std::vector<std::pair<unsigned int, int>>   crossed;
+    std::vector<double>                         result(nodes.n_owned());
     for (const unsigned int i : stored_nodes) // others have no bond cut
       {
         // Bonds are stored in the order of the family, those that cracks cut left out.
-        bonds.bonds_of(i, family, false);
+        bonds.members_of(i, family);
         double      all = 0., left = 0.;
         std::size_t k = starts[i];
         for (const auto &bond : family)
           {
             const double volume = nodes.volume(bond.neighbor);
-            if (bond.cut || bond.intact == 0.)
+            if (bond.cut || bond.weight == 0.)
               {
-                bonds.crossed_cracks(i, bond.neighbor, crossed);
+                bonds.cracks().crossed_cracks(i, bond.neighbor, crossed);
                 if (!crossed.empty() || bonds.is_parted(i, bond.neighbor))
                   all += volume;
                 continue;
               }
             all += volume;
-            left += springs[k] > 0. ? volume : 0.;
+            left += state.is_whole(k) ? volume : 0.;
             ++k;
           }
         if (beyond)
@@ -269,7 +269,7 @@ namespace PeriDeal
             if (!beyond->may_break(bond))
               return;
             all += beyond->volume(bond.image);
-            left += bond.spring > 0. ? beyond->volume(bond.image) : 0.;
+            left += bond.whole ? beyond->volume(bond.image) : 0.;
           });
         result[i] = all > 0. ? 1. - left / all : 0.;
       }
@@ -282,7 +282,9 @@ namespace PeriDeal
   template void                       StateOperator<dim>::find_critical_stretches();                 \
   template void                StateOperator<dim>::find_overstretched(const Vector &, const double); \
   template bool                StateOperator<dim>::brittle() const;                                  \
-  template unsigned long long  StateOperator<dim>::break_bonds(const Vector &, const double);        \
+  template unsigned long long  StateOperator<dim>::break_bonds(const Vector &,                       \
+                                                              const double,                         \
+                                                              const double);                        \
   template double              StateOperator<dim>::released_energy() const;                          \
   template unsigned long long  StateOperator<dim>::n_broken_bonds() const;                           \
   template std::vector<double> StateOperator<dim>::damage() const;

@@ -26,10 +26,10 @@ namespace PeriDeal
     u.update_ghost_values();
     for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
       for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-        if (springs[k] != 0.)
+        if (state.is_whole(k))
           largest = std::max(largest,
                              std::abs(deformed_bond(u.begin(), i, neighbors[k]).norm() /
-                                        bonds.bond_vector(i, neighbors[k]).norm() -
+                                        bonds.neighbors().bond_vector(i, neighbors[k]).norm() -
                                       1.));
     u.set_ghost_state(false);
     return Utilities::MPI::max(largest, bonds.nodes().communicator());
@@ -45,7 +45,7 @@ namespace PeriDeal
     unsigned int n_found = 0;
     for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
       {
-        if (springs[k] == 0.)
+        if (!state.is_whole(k))
           return false;
         if (std::find(corner.others.begin(), corner.others.end(), neighbors[k]) !=
             corner.others.end())

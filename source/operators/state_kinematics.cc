@@ -23,7 +23,7 @@ namespace PeriDeal
                                                    const unsigned int i,
                                                    const unsigned int j) const
   {
-    Tensor<1, dim> bond = bonds.bond_vector(i, j);
+    Tensor<1, dim> bond = bonds.neighbors().bond_vector(i, j);
     for (unsigned int d = 0; d < dim; ++d)
       bond[d] += u[dim * j + d] - u[dim * i + d];
     return bond;
@@ -36,7 +36,7 @@ namespace PeriDeal
                                                        const Bond        &bond) const
   {
     const unsigned int   j       = bond.neighbor;
-    const Tensor<1, dim> xi      = bonds.bond_vector(i, j);
+    const Tensor<1, dim> xi      = bonds.neighbors().bond_vector(i, j);
     const double         thermal = 0.5 * (laws[i].thermal + laws[j].thermal);
     Tensor<1, dim>       eta;
     for (unsigned int d = 0; d < dim; ++d)
@@ -141,8 +141,8 @@ namespace PeriDeal
     for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
       for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
         {
-          if (lengths[k] == 0.)
-            continue; // broken
+          if (!state.is_whole(k))
+            continue;
           const double *const   v = u + dim * neighbors[k];
           const Tensor<1, dim> &p = moments[k];
           Tensor<1, dim>        change;

@@ -28,7 +28,7 @@ namespace PeriDeal
     std::array<int, 3> reach_of(const Families<dim> &families)
     {
       std::array<int, 3> reach = no_offset();
-      for (const FamilyMember<dim> &member : families.lattice_members())
+      for (const FamilyMember<dim> &member : families.weights().members())
         for (unsigned int d = 0; d < dim; ++d)
           reach[d] = std::max(reach[d], member.offset[d]);
       return reach;
@@ -80,7 +80,7 @@ namespace PeriDeal
     std::vector<Tensor<1, dim>>     vectors{Tensor<1, dim>()};
     std::vector<double>             weights{0.};
     std::fill(center, center + dim, 0.);
-    for (const FamilyMember<dim> &member : families.lattice_members())
+    for (const FamilyMember<dim> &member : families.weights().members())
       {
         const Tensor<1, dim> xi = bond_of(member, lattice);
         for (unsigned int d = 0; d < dim; ++d)
@@ -127,9 +127,9 @@ namespace PeriDeal
     edge.excess     = excess[i];
     edge.dilatation = coefficients.dilatations.empty() ? 0. : coefficients.dilatations[i];
     edge.block.fill(0.);
-    for (const FamilyMember<dim> &member : families.lattice_members())
+    for (const FamilyMember<dim> &member : families.weights().members())
       {
-        const unsigned int j = families.node_at(site + member.offset);
+        const unsigned int j = families.neighbors().node_at(site + member.offset);
         if (j == numbers::invalid_unsigned_int)
           continue;
         const Tensor<1, dim> xi     = bond_of(member, *nodes.lattice());
@@ -165,8 +165,8 @@ namespace PeriDeal
         bool       regular = like_most(i) && (coefficients.dilatations.empty() ||
                                         coefficients.dilatations[i] == dilatation);
         const auto site    = nodes.lattice()->index(nodes.position(i));
-        for (const FamilyMember<dim> &member : families.lattice_members())
-          regular = regular && like_most(families.node_at(site + member.offset));
+        for (const FamilyMember<dim> &member : families.weights().members())
+          regular = regular && like_most(families.neighbors().node_at(site + member.offset));
         if (regular)
           continue;
         edge_of[i] = static_cast<std::uint32_t>(edges.size());

@@ -332,7 +332,7 @@ namespace PeriDeal
     size.nonzeros =
       std::llround(Utilities::MPI::sum(static_cast<double>(neighbors.size()) * (dim + 1.), all));
     size.memory =
-      bonds.memory_consumption() +
+      bonds.memory_consumption() + state.memory_consumption() +
       neighbors.size() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
       laws.size() * sizeof(NodeLaw) + starts.size() * sizeof(std::size_t) +
       stored_nodes.size() * sizeof(unsigned int) + (lattice ? lattice->memory_consumption() : 0) +

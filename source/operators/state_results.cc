@@ -181,7 +181,7 @@ namespace PeriDeal
         Tensor<2, dim> gradient, shape, stress;
         for_each_bond(i, [&](const Bond &bond) {
           const unsigned int   j  = bond.neighbor;
-          const Tensor<1, dim> xi = bonds.bond_vector(i, j);
+          const Tensor<1, dim> xi = bonds.neighbors().bond_vector(i, j);
           Tensor<1, dim>       eta;
           for (unsigned int d = 0; d < dim; ++d)
             eta[d] = u.begin()[dim * j + d] - u.begin()[dim * i + d];
@@ -273,15 +273,15 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const auto add_near = [&](const Bond &bond) {
-          const Tensor<1, dim> xi = bonds.bond_vector(i, bond.neighbor);
+          const Tensor<1, dim> xi = bonds.neighbors().bond_vector(i, bond.neighbor);
           if (!is_near(i, xi) && !is_near(bond.neighbor, xi))
             return;
           // As q, that of the body before bonds broke.
           sums.local_element(i) += nodes.volume(bond.neighbor) * xi.norm_square();
-          if (bond.spring == 0.)
-            damaged[i] = true;
-          else
+          if (bond.whole)
             near.push_back(bond.neighbor);
+          else
+            damaged[i] = true;
         };
         if (!on_lattice.empty() && on_lattice[i])
           for_each_lattice_bond(i, close, add_near);
@@ -340,7 +340,7 @@ namespace PeriDeal
         for (std::size_t n = first[i]; n < first[i + 1]; ++n)
           {
             const unsigned int   j  = near[n];
-            const Tensor<1, dim> xi = bonds.bond_vector(i, j);
+            const Tensor<1, dim> xi = bonds.neighbors().bond_vector(i, j);
             const double         spring =
               nodes.volume(i) * nodes.volume(j) *
               (extension[i] / sums.local_element(i) + extension[j] / sums.local_element(j)) /
@@ -353,7 +353,7 @@ namespace PeriDeal
         if (beyond)
           beyond->for_each_of(i, [&](const auto &bond) {
             const Tensor<1, dim> xi = beyond->bond_vector(bond);
-            if (bond.spring > 0. && beyond->is_own_image(bond) && is_near(i, xi))
+            if (bond.whole && beyond->is_own_image(bond) && is_near(i, xi))
               own += 4. * nodes.volume(i) * beyond->volume(bond.image) * extension[i] /
                      sums.local_element(i) / xi.norm_square() * outer_product(xi, xi);
           });

@@ -65,32 +65,33 @@ namespace PeriDeal
     class StoredForm : public BondForm
     {
     public:
-      explicit StoredForm(const Families<dim> &families)
-        : families(families)
-        , varying(families.conductivity_depends_on_temperature())
-        , keep_cut(varying || families.crack_history().changes_ever())
-        , n_values(families.nodes().n_local())
-        , extended(families.fictitious().empty() ? 0 : n_values + families.fictitious().size())
+      explicit StoredForm(const DiffusionBonds<dim> &bonds)
+        : bonds(bonds)
+        , varying(bonds.conductivities().depend_on_temperature())
+        , keep_cut(varying || bonds.cracks().history().changes_ever())
+        , n_values(bonds.nodes().n_local())
+        , extended(
+            bonds.neighbors().outside().empty() ? 0 : n_values + bonds.neighbors().outside().size())
       {
-        const unsigned int n_rows = families.nodes().n_owned();
+        const unsigned int n_rows = bonds.nodes().n_owned();
         row_starts.reserve(n_rows + 1);
         row_starts.push_back(0);
         // On a lattice a little more than enough, in one go: what is not written to takes no
         // memory.
-        reserve(families.lattice_members().size() * n_rows);
+        reserve(bonds.weights().members().size() * n_rows);
         for (unsigned int i = 0; i < n_rows; ++i)
           {
-            families.bonds_of(i, bonds);
-            if (i == n_rows / 2 && columns.capacity() < bonds.size() * n_rows)
-              reserve(columns.size() + (bonds.size() + 1) * (n_rows - i));
-            for (const auto &bond : bonds)
+            bonds.bonds_of(i, family);
+            if (i == n_rows / 2 && columns.capacity() < family.size() * n_rows)
+              reserve(columns.size() + (family.size() + 1) * (n_rows - i));
+            for (const auto &bond : family)
               if (keep_cut || bond.weight != 0.)
                 {
                   columns.push_back(bond.neighbor);
                   weights.push_back(bond.weight);
                   if (varying)
                     unit_weights.push_back(bond.weight /
-                                           families.bond_conductivity(i, bond.neighbor));
+                                           bonds.conductivities().of_bond(i, bond.neighbor));
                 }
             row_starts.push_back(columns.size());
           }
@@ -143,14 +144,14 @@ namespace PeriDeal
       {
         for (const unsigned int i : rows)
           {
-            families.bonds_of(i, bonds);
-            AssertDimension(bonds.size(), row_starts[i + 1] - row_starts[i]);
+            bonds.bonds_of(i, family);
+            AssertDimension(family.size(), row_starts[i + 1] - row_starts[i]);
             sums[i]       = 0.;
             std::size_t b = row_starts[i];
-            for (const auto &bond : bonds)
+            for (const auto &bond : family)
               {
                 if (varying)
-                  unit_weights[b] = bond.weight / families.bond_conductivity(i, bond.neighbor);
+                  unit_weights[b] = bond.weight / bonds.conductivities().of_bond(i, bond.neighbor);
                 weights[b++] = bond.weight;
                 sums[i] += bond.weight;
               }
@@ -164,7 +165,7 @@ namespace PeriDeal
             sums[i] = 0.;
             for (std::size_t b = row_starts[i]; b < row_starts[i + 1]; ++b)
               {
-                weights[b] = unit_weights[b] * families.bond_conductivity(i, columns[b]);
+                weights[b] = unit_weights[b] * bonds.conductivities().of_bond(i, columns[b]);
                 sums[i] += weights[b];
               }
           }
@@ -197,27 +198,27 @@ namespace PeriDeal
         prefer_large_pages(weights.data(), weights.capacity() * sizeof(double));
       }
 
-      const Families<dim> &families;
-      const bool           varying;      // conductivities change with the temperature
-      const bool           keep_cut;     // with weight 0, since rows will be found anew
-      std::vector<double>  unit_weights; // weights over the bonds' conductivities, if they do
-      std::vector<typename Families<dim>::Bond> bonds;
-      std::size_t                               n_values;
-      mutable std::vector<double>               extended;
-      std::vector<std::size_t>                  row_starts;
-      std::vector<std::uint32_t>                columns;
-      std::vector<double>                       weights;
+      const DiffusionBonds<dim> &bonds;
+      const bool                 varying;      // conductivities change with the temperature
+      const bool                 keep_cut;     // with weight 0, since rows will be found anew
+      std::vector<double>        unit_weights; // weights over the bonds' conductivities, if they do
+      std::vector<typename DiffusionBonds<dim>::Bond> family;
+      std::size_t                                     n_values;
+      mutable std::vector<double>                     extended;
+      std::vector<std::size_t>                        row_starts;
+      std::vector<std::uint32_t>                      columns;
+      std::vector<double>                             weights;
     };
   } // namespace
 
 
   template <int dim>
-  std::unique_ptr<BondForm> make_stored_form(const Families<dim> &families)
+  std::unique_ptr<BondForm> make_stored_form(const DiffusionBonds<dim> &bonds)
   {
-    return std::make_unique<StoredForm<dim>>(families);
+    return std::make_unique<StoredForm<dim>>(bonds);
   }
 
-  template std::unique_ptr<BondForm> make_stored_form(const Families<1> &);
-  template std::unique_ptr<BondForm> make_stored_form(const Families<2> &);
-  template std::unique_ptr<BondForm> make_stored_form(const Families<3> &);
+  template std::unique_ptr<BondForm> make_stored_form(const DiffusionBonds<1> &);
+  template std::unique_ptr<BondForm> make_stored_form(const DiffusionBonds<2> &);
+  template std::unique_ptr<BondForm> make_stored_form(const DiffusionBonds<3> &);
 } // namespace PeriDeal

@@ -38,7 +38,7 @@ namespace PeriDeal
     void for_each_member(const Families<dim> &bonds, const Visit &visit)
     {
       const Lattice<dim> &lattice = *bonds.nodes().lattice();
-      for (const FamilyMember<dim> &member : bonds.lattice_members())
+      for (const FamilyMember<dim> &member : bonds.weights().members())
         {
           Tensor<1, dim> xi;
           for (unsigned int d = 0; d < dim; ++d)
@@ -78,7 +78,7 @@ namespace PeriDeal
                                  parameters.volume_fraction,
                                  center,
                                  edges,
-                                 bonds.horizon());
+                                 bonds.weights().horizon());
     }
 
 
@@ -94,12 +94,14 @@ namespace PeriDeal
         {
           double sum = nodes.volume(i);
           for (std::size_t k = stored.starts[i]; k < stored.starts[i + 1]; ++k)
-            sum += fraction_of(bonds, parameters, bonds.bond_vector(i, stored.neighbors[k])) *
+            sum += fraction_of(bonds,
+                               parameters,
+                               bonds.neighbors().bond_vector(i, stored.neighbors[k])) *
                    nodes.volume(stored.neighbors[k]);
           volumes.local_element(i) = sum;
         }
       volumes.update_ghost_values();
-      double complete = ball_volume(dim, bonds.horizon());
+      double complete = ball_volume(dim, bonds.weights().horizon());
       if (nodes.lattice())
         {
           complete = nodes.lattice()->cell_volume();
@@ -138,7 +140,7 @@ namespace PeriDeal
           StretchSums<dim> own;
           for (std::size_t k = stored.starts[i]; k < stored.starts[i + 1]; ++k)
             {
-              const Tensor<1, dim> xi = bonds.bond_vector(i, stored.neighbors[k]);
+              const Tensor<1, dim> xi = bonds.neighbors().bond_vector(i, stored.neighbors[k]);
               own.add(xi, stored.weights[k] / (xi.norm_square() * nodes.volume(i)));
             }
           const Tensor<1, dim> a = axis_factors(complete.dilatation, own.dilatation),
@@ -160,7 +162,7 @@ namespace PeriDeal
         for (std::size_t k = stored.starts[i]; k < stored.starts[i + 1]; ++k)
           {
             const unsigned int   j  = stored.neighbors[k];
-            const Tensor<1, dim> xi = bonds.bond_vector(i, j);
+            const Tensor<1, dim> xi = bonds.neighbors().bond_vector(i, j);
             result.dilatation[k]    = ellipsoid_factor(read(i, 0), read(j, 0), xi);
             result.extension[k]     = ellipsoid_factor(read(i, dim), read(j, dim), xi);
           }
@@ -241,7 +243,7 @@ namespace PeriDeal
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
           for (std::size_t k = stored.starts[i]; k < stored.starts[i + 1]; ++k)
             {
-              const Tensor<1, dim> xi = bonds.bond_vector(i, stored.neighbors[k]);
+              const Tensor<1, dim> xi = bonds.neighbors().bond_vector(i, stored.neighbors[k]);
               if (nodes.lattice())
                 {
                   std::array<int, dim> offset;

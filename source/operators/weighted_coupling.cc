@@ -15,13 +15,14 @@ namespace PeriDeal
   WeightedCoupling<dim>::WeightedCoupling(Nodes<dim>       &nodes,
                                           const Scene<dim> &scene,
                                           const Zone<dim>  &zone)
-    : bonds(nodes, scene, HaloAround::cells)
+    : own_families(nodes, scene, HaloAround::cells)
+    , bonds(own_families, scene)
     , zone(zone)
-    , overlap(scene.coupling.overlap * bonds.horizon())
+    , overlap(scene.coupling.overlap * bonds.weights().horizon())
     , weights_now(nodes, zone, overlap)
     , weights_at_end(weights_now)
   {
-    const CrackHistory<dim> &history = bonds.crack_history();
+    const CrackHistory<dim> &history = bonds.cracks().history();
     Zone<dim>                at_end  = zone;
     at_end.set_cracks(history.pieces(scene.cracks.end_time));
     this->zone.set_cracks(history.pieces(history.representative(0.)));
@@ -68,8 +69,8 @@ namespace PeriDeal
     if (!zone.follows_cracks())
       return boxes;
     Zone<dim> then = zone;
-    then.set_cracks(bonds.crack_history().pieces(time));
-    auto changes = bonds.crack_history().changes(bonds.cracks_now(), time);
+    then.set_cracks(bonds.cracks().history().pieces(time));
+    auto changes = bonds.cracks().history().changes(bonds.cracks().now(), time);
     for (BoundingBox<dim> &box : changes)
       box.extend(zone.width() + overlap + bonds.nodes().smallest_spacing());
     for (unsigned int i = 0; i < bonds.nodes().n_local(); ++i)
@@ -88,8 +89,8 @@ namespace PeriDeal
   template <int dim>
   void WeightedCoupling<dim>::set_cracks_of(const double time)
   {
-    bonds.set_cracks_of(time);
-    zone.set_cracks(bonds.crack_history().pieces(time));
+    bonds.cracks().set_time(time);
+    zone.set_cracks(bonds.cracks().history().pieces(time));
     if (zone.follows_cracks())
       weights_now.set(zone);
   }
@@ -110,14 +111,14 @@ namespace PeriDeal
   template <int dim>
   const Families<dim> &WeightedCoupling<dim>::families() const
   {
-    return bonds;
+    return own_families;
   }
 
   template <int dim>
   std::size_t WeightedCoupling<dim>::memory_consumption() const
   {
-    return bonds.memory_consumption() + weights_now.memory_consumption() +
-           weights_at_end.memory_consumption();
+    return own_families.memory_consumption() + bonds.memory_consumption() +
+           weights_now.memory_consumption() + weights_at_end.memory_consumption();
   }
 
 

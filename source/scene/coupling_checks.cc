@@ -65,7 +65,7 @@ namespace PeriDeal
                                  BoundaryTreatment::exchange :
                                  BoundaryTreatment::none;
     else if (peridynamics.treatment == BoundaryTreatment::exchange && !list.empty() &&
-             runs(*this, Model::peridynamics))
+             runs(*this, ModelKind::peridynamics))
       entry_error(list.front().where,
                   list.front().reason + ", for 'Boundary treatment = exchange'." + own_treatments);
   }
@@ -77,7 +77,7 @@ namespace PeriDeal
     const std::string entry = coupling.where("Zone");
     if (coupling.zone != ZoneKind::adaptive)
       return;
-    if (!runs(*this, Model::coupled))
+    if (!runs(*this, ModelKind::coupled))
       entry_error(entry,
                   "is 'adaptive', but 'Models' has no 'coupled', which the mesh would follow.");
     if (domain.coarsening == 0)
@@ -101,7 +101,7 @@ namespace PeriDeal
   void Scene<dim>::check_coupling() const
   {
     check_adaptive_zone();
-    if (!runs(*this, Model::coupled))
+    if (!runs(*this, ModelKind::coupled))
       return;
     const auto list = obstacles_to_bonds_on_elements(*this);
     if (!list.empty())
@@ -140,12 +140,12 @@ namespace PeriDeal
       return;
     const std::string entry = domain.where("Coarsening"),
                       found = "found " + std::to_string(domain.coarsening) + ", but ";
-    if (runs(*this, Model::peridynamics))
+    if (runs(*this, ModelKind::peridynamics))
       entry_error(
         entry,
         found +
           "'Models' has peridynamics, whose bonds need fine cells everywhere. Use 'coupled', or 0 here.");
-    if (runs(*this, Model::coupled) && coupling.scheme != CouplingScheme::exchange)
+    if (runs(*this, ModelKind::coupled) && coupling.scheme != CouplingScheme::exchange)
       entry_error(
         entry,
         found +

@@ -191,8 +191,9 @@ namespace PeriDeal
     const auto pieces =
       make_crack_geometries(cracks.pieces(cracks.tips.empty() ? 0. : time.end_time));
     // In the middle of a body a crack lies on a row of vertices or of centres, for any cells.
-    const bool at_centers = domain.nodes == NodePlacement::cell_centers &&
-                            (runs(*this, Model::peridynamics) || runs(*this, Model::coupled));
+    const bool at_centers =
+      domain.nodes == NodePlacement::cell_centers &&
+      (runs(*this, ModelKind::peridynamics) || runs(*this, ModelKind::coupled));
     const CrackGeometry<dim> *const piece =
       first_along_row(pieces, domain, domain.cells, at_centers, on_row);
     if (piece == nullptr)

@@ -45,11 +45,11 @@ namespace PeriDeal
             entry_error(pd.where("Surface correction"), "'fictitious nodes' " + what + remedy);
         };
       const std::string other = " Use another correction, or ";
-      const bool        alone = runs(scene, Model::peridynamics);
-      refuse(!alone && !runs(scene, Model::coupled),
+      const bool        alone = runs(scene, ModelKind::peridynamics);
+      refuse(!alone && !runs(scene, ModelKind::coupled),
              "has no effect without 'Models = peridynamics' or 'coupled'.",
              " Use 'none'.");
-      refuse(runs(scene, Model::coupled) && scene.coupling.scheme == CouplingScheme::exchange,
+      refuse(runs(scene, ModelKind::coupled) && scene.coupling.scheme == CouplingScheme::exchange,
              "is not for 'Scheme = exchange', whose bonds need no correction.",
              " Use 'none', or 'splice' or 'blending'.");
       refuse(
@@ -70,7 +70,7 @@ namespace PeriDeal
              other + "'linear'.");
       const auto &symmetry = scene.boundary_conditions.symmetry;
       refuse(
-        !symmetry.empty() && runs(scene, Model::coupled) &&
+        !symmetry.empty() && runs(scene, ModelKind::coupled) &&
           scene.coupling.scheme == CouplingScheme::splice,
         "and 'Scheme = splice' do not go with 'Symmetry' in section 'Boundary conditions': nothing would tell its lost forces from those of the other half.",
         " Hold the side by 'Displacement', or use 'blending'.");
@@ -128,11 +128,11 @@ namespace PeriDeal
              no_effect,
              "use 'natural'.");
       refuse(pd.surface_correction == SurfaceCorrection::crack_scaling &&
-               !runs(scene, Model::coupled),
+               !runs(scene, ModelKind::coupled),
              "Surface correction",
              "'crack scaling' without 'Models = coupled' " + no_effect,
              "use 'none', 'volume', 'energy' or 'moments'.");
-      refuse(pd.corrects_elastic_bonds() && !runs(scene, Model::peridynamics),
+      refuse(pd.corrects_elastic_bonds() && !runs(scene, ModelKind::peridynamics),
              "Surface correction",
              "without 'Models = peridynamics' " + no_effect,
              "use 'none'.");
@@ -156,7 +156,7 @@ namespace PeriDeal
       if (pd.form != OperatorForm::lattice)
         return;
       const std::string not_lattice = "'lattice' is not defined", use = "use 'auto'.";
-      refuse(!runs(scene, Model::peridynamics),
+      refuse(!runs(scene, ModelKind::peridynamics),
              "Operator form",
              not_lattice + " without 'Models = peridynamics'",
              use);
@@ -193,7 +193,7 @@ namespace PeriDeal
     template <int dim>
     void check_coupling_of_elasticity(const Scene<dim> &scene)
     {
-      if (!runs(scene, Model::coupled))
+      if (!runs(scene, ModelKind::coupled))
         return;
       if (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty())
         entry_error(
@@ -305,7 +305,7 @@ namespace PeriDeal
       if (conditions.traction_layer <= 0.)
         return;
       const std::string where = conditions.where("Traction layer");
-      if (!runs(scene, Model::peridynamics))
+      if (!runs(scene, ModelKind::peridynamics))
         entry_error(where,
                     "has no effect without 'Models = peridynamics': finite elements have "
                     "tractions on their faces. Leave it empty.");
@@ -389,11 +389,11 @@ namespace PeriDeal
         return;
       const std::string where =
         material.where(material.fracture_energy ? "Fracture energy" : "Critical stretch");
-      if (runs(scene, Model::coupled))
+      if (runs(scene, ModelKind::coupled))
         entry_error(
           where,
           "is not for 'Models = coupled', whose bonds do not break; use 'peridynamics', or leave the entry out.");
-      if (!runs(scene, Model::peridynamics))
+      if (!runs(scene, ModelKind::peridynamics))
         entry_error(
           where,
           "has no effect: finite elements do not break. Add 'peridynamics' to 'Models', or leave the entry out.");
@@ -411,7 +411,7 @@ namespace PeriDeal
           entry_error(scene.elasticity.where("Micromodulus"), "'constant' " + what);
       };
       refuse(
-        !runs(scene, Model::peridynamics),
+        !runs(scene, ModelKind::peridynamics),
         "is for peridynamics in the whole body: add 'peridynamics' to 'Models', or leave the entry out.");
       refuse(
         scene.domain.shape == Shape::mesh_file,

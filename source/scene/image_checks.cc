@@ -58,7 +58,7 @@ namespace PeriDeal
     std::vector<Offset> connections(const Scene<2> &scene)
     {
       std::vector<Offset> list{{{1, 0}}, {{0, 1}}};
-      if (runs(scene, Model::finite_elements) || runs(scene, Model::coupled) ||
+      if (runs(scene, ModelKind::finite_elements) || runs(scene, ModelKind::coupled) ||
           scene.peridynamics.treatment == BoundaryTreatment::exchange ||
           scene.peridynamics.across_voids == BondsAcrossVoids::cut)
         return list;
@@ -150,8 +150,8 @@ namespace PeriDeal
         if (!is_elastic(scene))
           return any_value(part);
         const bool centers = scene.domain.nodes == NodePlacement::cell_centers;
-        const bool pd      = runs(scene, Model::peridynamics),
-                   others  = !pd || runs(scene, Model::finite_elements);
+        const bool pd      = runs(scene, ModelKind::peridynamics),
+                   others  = !pd || runs(scene, ModelKind::finite_elements);
         return ((!others && centers) || is_held(part, false)) &&
                (!(pd && centers) || is_held(part, true));
       }
@@ -363,7 +363,7 @@ namespace PeriDeal
     void note_thin_voids(Scene<2> &scene)
     {
       const PhaseMap &map = *scene.domain.image;
-      if (!runs(scene, Model::peridynamics) || !map.has_voids() ||
+      if (!runs(scene, ModelKind::peridynamics) || !map.has_voids() ||
           scene.peridynamics.treatment == BoundaryTreatment::exchange ||
           scene.peridynamics.across_voids == BondsAcrossVoids::cut)
         return;

@@ -13,11 +13,11 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  std::string to_string(const Model model)
+  std::string to_string(const ModelKind model)
   {
-    return model == Model::finite_elements ? "finite elements" :
-           model == Model::peridynamics    ? "peridynamics" :
-                                             "coupled";
+    return model == ModelKind::finite_elements ? "finite elements" :
+           model == ModelKind::peridynamics    ? "peridynamics" :
+                                                 "coupled";
   }
 
 
@@ -65,7 +65,7 @@ namespace PeriDeal
     physics = choice<Physics>("Physics");
     models.clear();
     for (const unsigned int index : choice_indices("Models"))
-      models.push_back(static_cast<Model>(index));
+      models.push_back(static_cast<ModelKind>(index));
   }
 
 
@@ -156,7 +156,7 @@ namespace PeriDeal
     {
       const BoundaryConditions<dim> &bc        = scene.boundary_conditions;
       const FluxTreatment            treatment = scene.peridynamics.flux_treatment;
-      if (runs(scene, Model::peridynamics) && treatment != FluxTreatment::natural)
+      if (runs(scene, ModelKind::peridynamics) && treatment != FluxTreatment::natural)
         {
           for (const SideCondition &condition : bc.flux)
             if (const Part *const part = bc.part(condition.id);
@@ -179,7 +179,7 @@ namespace PeriDeal
       if (scene.general.physics != Physics::elasticity && !bc.symmetry.empty() &&
           scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty() &&
           scene.domain.nodes == NodePlacement::vertices &&
-          (runs(scene, Model::peridynamics) || runs(scene, Model::coupled)))
+          (runs(scene, ModelKind::peridynamics) || runs(scene, ModelKind::coupled)))
         entry_error(
           bc.where("Symmetry"),
           "is not for cracks with 'Mesh = faces' in section 'Cracks', where two nodes are at one place. Use 'Mesh = pairs', or leave the entry out: a side that is named nowhere "
@@ -401,7 +401,7 @@ namespace PeriDeal
           domain.notes.push_back(note);
         cracks.check_tips_inside(domain.lower, domain.upper, cracks.end_time);
       }
-    if (runs(*this, Model::finite_elements) && finite_elements.degree > 1 &&
+    if (runs(*this, ModelKind::finite_elements) && finite_elements.degree > 1 &&
         !cracks.cracks.empty() && cracks.mesh == CrackMesh::pairs)
       entry_error(finite_elements.where("Degree"),
                   "found " + std::to_string(finite_elements.degree) +
@@ -409,7 +409,7 @@ namespace PeriDeal
     resolve_boundary_treatment();
     check_coupling();
     check_coarsening();
-    if (runs(*this, Model::peridynamics) || runs(*this, Model::coupled))
+    if (runs(*this, ModelKind::peridynamics) || runs(*this, ModelKind::coupled))
       {
         check_shape_for_peridynamics(*this);
         check_horizon(*this);

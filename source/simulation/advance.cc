@@ -201,7 +201,7 @@ namespace PeriDeal
       return false;
     grading->set_time(t);
     const auto    guide = std::find_if(models.begin(), models.end(), [](const auto &model) {
-      return model->name() == to_string(Model::coupled);
+      return model->name() == to_string(ModelKind::coupled);
     });
     const Vector &u     = (*guide)->solution;
     u.update_ghost_values();

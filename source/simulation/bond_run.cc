@@ -74,7 +74,7 @@ namespace PeriDeal
 
       std::string name() const override
       {
-        return to_string(Model::peridynamics);
+        return to_string(ModelKind::peridynamics);
       }
 
       const DoFHandler<dim> &dofs() const override
@@ -121,7 +121,7 @@ namespace PeriDeal
             bonds->initialize_vector(one_sided[d]);
           }
         bonds->fictitious_values(u, t, outside);
-        bond_heat_flux<dim>(bonds->families(), u, outside, two_sided, one_sided);
+        bond_heat_flux<dim>(bonds->diffusion_bonds(), u, outside, two_sided, one_sided);
         if (volume.size() == 0)
           {
             bonds->initialize_vector(volume);
@@ -131,7 +131,7 @@ namespace PeriDeal
         if (cut.size() == 0)
           {
             bonds->initialize_vector(cut);
-            cut_fraction(bonds->families(), cut);
+            cut_fraction(bonds->diffusion_bonds(), cut);
           }
         std::array<Vector, 1>    volumes{volume}, cuts{cut};
         std::vector<OutputField> fields;
@@ -175,7 +175,7 @@ namespace PeriDeal
 
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
-        auto list = bond_settings(scene, bonds->families());
+        auto list = bond_settings(scene, bonds->diffusion_bonds().families());
         if (!scene.material.uniform_conductivity())
           list.emplace_back("interface rule", name_of(scene.material.interface_rule));
         list.emplace_back("operator form", bonds->form_note());
@@ -186,7 +186,7 @@ namespace PeriDeal
       {
         const Peridynamics      &p = scene.peridynamics;
         std::vector<std::string> list;
-        const double             effective = bonds->families().effective_conductivity();
+        const double effective = bonds->diffusion_bonds().weights().effective_conductivity();
         if (std::abs(effective - 1.) > 5e-3)
           list.push_back(
             "complete families conduct " + to_text(effective) +
@@ -242,9 +242,9 @@ namespace PeriDeal
          std::to_string(p.kernel_exponent)},
       {"volume fraction", fractions[static_cast<int>(p.volume_fraction)]},
       {"calibration",
-       p.calibration == Calibration::analytic ? "analytic" :
-       families.has_complete_families()       ? "discrete" :
-                                                "analytic, because no family is complete"},
+       p.calibration == Calibration::analytic     ? "analytic" :
+       families.weights().has_complete_families() ? "discrete" :
+                                                    "analytic, because no family is complete"},
       {"self term", p.self_term == SelfTerm::none ? "none" : "paper"},
       {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
       {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},

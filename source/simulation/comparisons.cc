@@ -35,8 +35,8 @@ namespace PeriDeal
   {
     const ModelRun<dim> *fem = nullptr, *pd = nullptr;
     for (const auto &model : models)
-      if (model->name() != to_string(Model::coupled))
-        (model->name() == to_string(Model::finite_elements) ? fem : pd) = model.get();
+      if (model->name() != to_string(ModelKind::coupled))
+        (model->name() == to_string(ModelKind::finite_elements) ? fem : pd) = model.get();
       else
         compare_with_others(t, *model);
     if (fem == nullptr || pd == nullptr)

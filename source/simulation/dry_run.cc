@@ -74,8 +74,9 @@ namespace PeriDeal
     for (const OutputField &field : models[number]->derived_fields(u, 0.))
       n += field.components.size();
     u.set_ghost_state(false);
-    return n +
-           (models[number]->name() == to_string(Model::peridynamics) && models.size() > 1 ? 1 : 0);
+    return n + (models[number]->name() == to_string(ModelKind::peridynamics) && models.size() > 1 ?
+                  1 :
+                  0);
   }
 
 

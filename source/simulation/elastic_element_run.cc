@@ -29,7 +29,7 @@ namespace PeriDeal
        * @param model finite elements, coupled, or peridynamics with fictitious nodes, which has
        *              elements for what is beside bonds: loads, masses, stresses
        */
-      ElementRun(const Model model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
+      ElementRun(const ModelKind model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
         : scene(scene)
         , model(model)
         , handler(mesh)
@@ -37,25 +37,25 @@ namespace PeriDeal
         {
           Timings::Scope scope(this->timings, "unknowns");
           handler.distribute_dofs(FE_Q<dim>(degree()));
-          if (model != Model::finite_elements)
+          if (model != ModelKind::finite_elements)
             number_along_lattice(handler, scene.domain);
         }
         {
           Timings::Scope                        scope(this->timings, "operator");
           std::unique_ptr<ElasticCoupling<dim>> coupling;
-          if (model != Model::finite_elements)
+          if (model != ModelKind::finite_elements)
             {
               node_set = std::make_unique<Nodes<dim>>(handler,
                                                       scene.domain,
                                                       scene.cracks,
                                                       NodalVolume::partial);
-              coupling = model == Model::coupled ? make_elastic_coupling(*node_set, scene) :
-                                                   make_families_everywhere(*node_set, scene);
+              coupling = model == ModelKind::coupled ? make_elastic_coupling(*node_set, scene) :
+                                                       make_families_everywhere(*node_set, scene);
             }
           elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
         }
         // Its fields would have to be mirrored, too.
-        if (model == Model::coupled && scene.coupling.certificate &&
+        if (model == ModelKind::coupled && scene.coupling.certificate &&
             elements->bonds().mirrors().empty())
           examine();
       }
@@ -227,16 +227,16 @@ namespace PeriDeal
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
         std::vector<std::pair<std::string, std::string>> list;
-        if (model != Model::peridynamics)
+        if (model != ModelKind::peridynamics)
           list.emplace_back("elements", "Q" + std::to_string(degree()));
-        if (model == Model::coupled)
+        if (model == ModelKind::coupled)
           {
             list.emplace_back("coupling", scene.coupling.scheme_text());
             list.emplace_back("zone", scene.coupling.zone_text());
             list.emplace_back("share of the body in the zone",
                               to_text(100. * elements->bonds().zone_share()) + " %");
           }
-        if (model != Model::finite_elements)
+        if (model != ModelKind::finite_elements)
           for (auto setting : bond_settings(scene, elements->bonds().families()))
             {
               // Bonds of the zone are not continued beyond sides by themselves.
@@ -281,7 +281,7 @@ namespace PeriDeal
 
       unsigned int degree() const
       {
-        return model == Model::finite_elements ? scene.finite_elements.degree : 1;
+        return model == ModelKind::finite_elements ? scene.finite_elements.degree : 1;
       }
 
       /**
@@ -381,7 +381,7 @@ namespace PeriDeal
       }
 
       const Scene<dim>                     &scene;
-      const Model                           model;
+      const ModelKind                       model;
       DoFHandler<dim>                       handler;
       std::unique_ptr<Nodes<dim>>           node_set; // of the coupled model
       std::unique_ptr<ElasticElements<dim>> elements;
@@ -391,7 +391,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Model               model,
+  std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const ModelKind           model,
                                                             const Triangulation<dim> &mesh,
                                                             const Scene<dim>         &scene)
   {
@@ -399,7 +399,7 @@ namespace PeriDeal
   }
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                \
-  template std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Model,                \
+  template std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const ModelKind,            \
                                                                      const Triangulation<dim> &, \
                                                                      const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)

@@ -97,7 +97,7 @@ namespace PeriDeal
                   std::vector<double>                 &rows);
 
   template <int dim>
-  std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const Model                       model,
+  std::unique_ptr<ElasticRun<dim>> make_elastic_element_run(const ModelKind                   model,
                                                             const dealii::Triangulation<dim> &mesh,
                                                             const Scene<dim> &scene);
 

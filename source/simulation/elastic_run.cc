@@ -46,12 +46,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model               model,
+  std::unique_ptr<ElasticRun<dim>> make_elastic_run(const ModelKind           model,
                                                     const Triangulation<dim> &mesh,
                                                     const Scene<dim>         &scene)
   {
     // With fictitious nodes peridynamics is the coupled model without elements.
-    return model == Model::peridynamics && !scene.peridynamics.completes_families() ?
+    return model == ModelKind::peridynamics && !scene.peridynamics.completes_families() ?
              make_state_run(mesh, scene) :
              make_elastic_element_run(model, mesh, scene);
   }
@@ -59,7 +59,7 @@ namespace PeriDeal
 
 #define PERIDEAL_INSTANTIATE(dim)                                                        \
   template std::vector<std::string>         elastic_columns(const Scene<dim> &);         \
-  template std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model,                \
+  template std::unique_ptr<ElasticRun<dim>> make_elastic_run(const ModelKind,            \
                                                              const Triangulation<dim> &, \
                                                              const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)

@@ -62,7 +62,7 @@ namespace PeriDeal
       const auto &models = scene.general.models;
       require(
         scene.elasticity.kinematics == Kinematics::linear ||
-          std::find(models.begin(), models.end(), Model::finite_elements) == models.end(),
+          std::find(models.begin(), models.end(), ModelKind::finite_elements) == models.end(),
         "'Kinematics' in section 'Elasticity': 'full' is for 'Models = peridynamics' alone; finite elements have small displacements. "
         "Leave them out, or use 'linear'.");
       require(scene.cracks.tips.empty(),
@@ -82,7 +82,7 @@ namespace PeriDeal
     {
       const auto &models = scene.general.models;
       if (dim == 1 || scene.elasticity.model != ElasticModel::bond_based ||
-          std::find(models.begin(), models.end(), Model::peridynamics) == models.end())
+          std::find(models.begin(), models.end(), ModelKind::peridynamics) == models.end())
         return;
       const double own    = bond_based_poisson(dim, scene.elasticity.plane);
       double       lowest = 1., highest = -1.;
@@ -125,7 +125,7 @@ namespace PeriDeal
     check_points_of_parts(scene, *mesh, record->notes);
     note_own_poisson_ratio(scene, *mesh, record->notes);
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
-    for (const Model kind : scene.general.models)
+    for (const ModelKind kind : scene.general.models)
       {
         progress.doing("building " + to_string(kind));
         models.push_back(make_elastic_run(kind, *mesh, scene));
@@ -477,12 +477,11 @@ namespace PeriDeal
         lower[d] = summary["domain"]["lower"][d];
         upper[d] = summary["domain"]["upper"][d];
       }
-    summary["values on sides"] =
-      values_on_sides(scene,
-                      lower,
-                      upper,
-                      scene.time.steady ? 0. : scene.time.end_time,
-                      summary.value("places", json::object()));
+    summary["values on sides"] = values_on_sides(scene,
+                                                 lower,
+                                                 upper,
+                                                 scene.time.steady ? 0. : scene.time.end_time,
+                                                 summary.value("places", json::object()));
     if (const std::string reason = no_stress_intensity(scene, summary["models"]);
         at_the_end && !reason.empty())
       summary["no stress intensity"] = reason;

@@ -176,7 +176,7 @@ namespace PeriDeal
         const bool has = model.contains("stress intensity");
         found          = found || has;
         all            = all && has;
-        local          = local || name != to_string(Model::peridynamics);
+        local          = local || name != to_string(ModelKind::peridynamics);
       }
     if (found)
       return all ? "" : "peridynamics has none: they follow from the local stress of elements";
@@ -282,14 +282,14 @@ namespace PeriDeal
                              json                                                &comparison,
                              json                                                &comparisons)
   {
-    const auto find = [&](const Model kind) -> const ElasticRun<dim> * {
+    const auto find = [&](const ModelKind kind) -> const ElasticRun<dim> * {
       for (const auto &model : models)
         if (model->name() == to_string(kind))
           return model.get();
       return nullptr;
     };
-    const ElasticRun<dim> *fem = find(Model::finite_elements), *pd = find(Model::peridynamics),
-                          *coupled = find(Model::coupled);
+    const ElasticRun<dim> *fem = find(ModelKind::finite_elements),
+                          *pd = find(ModelKind::peridynamics), *coupled = find(ModelKind::coupled);
     if (fem != nullptr && pd != nullptr)
       compare_two(*pd, *fem, domain, t, comparison);
     for (const ElasticRun<dim> *other : {fem, pd})

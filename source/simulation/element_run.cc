@@ -30,15 +30,15 @@ namespace PeriDeal
        * @param model finite elements, coupled, or peridynamics by exchange, which is `coupled` with
        *              the zone everywhere
        */
-      FEMRun(const Model model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
+      FEMRun(const ModelKind model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
         : scene(scene)
         , model(model)
-        , element(model == Model::finite_elements ? scene.finite_elements.degree : 1)
+        , element(model == ModelKind::finite_elements ? scene.finite_elements.degree : 1)
         , handler(mesh)
       {
         number_unknowns();
         build_operator();
-        if (model == Model::coupled && scene.coupling.certificate)
+        if (model == ModelKind::coupled && scene.coupling.certificate)
           examine();
       }
 
@@ -54,7 +54,7 @@ namespace PeriDeal
 
       const Nodes<dim> *nodes() const override
       {
-        return model == Model::peridynamics ? node_set.get() : nullptr;
+        return model == ModelKind::peridynamics ? node_set.get() : nullptr;
       }
 
       double volume_of(const unsigned int node) const override
@@ -81,7 +81,7 @@ namespace PeriDeal
         const auto initial = [&](const Point<dim> &p) {
           return scene.initial_and_source.initial_value.value(p);
         };
-        if (element.degree == 1 && model != Model::peridynamics)
+        if (element.degree == 1 && model != ModelKind::peridynamics)
           {
             Vector volumes(u);
             integrate(initial, u);
@@ -142,7 +142,7 @@ namespace PeriDeal
           fem->initialize_vector(component);
         std::vector<OutputField> fields;
         const std::string        flux_name = names_of(scene.general.physics).flux;
-        if (model == Model::finite_elements)
+        if (model == ModelKind::finite_elements)
           {
             element_heat_flux<dim>(handler, scene.material, fem->cut_cells(), u, flux);
             fields.push_back(vector_field<dim>(flux_name, flux));
@@ -223,15 +223,17 @@ namespace PeriDeal
         std::vector<std::pair<std::string, std::string>> list{
           {"element", "Q" + std::to_string(element.degree)},
           {"capacity", scene.finite_elements.consistent_capacity ? "consistent" : "lumped"}};
-        if (model != Model::finite_elements)
+        if (model != ModelKind::finite_elements)
           {
             for (const auto &setting : bond_settings(scene, fem->bonds().families()))
-              if (setting.first != "boundary treatment" || model == Model::peridynamics)
+              if (setting.first != "boundary treatment" || model == ModelKind::peridynamics)
                 list.push_back(setting);
             list.emplace_back("coupling",
-                              model == Model::coupled ? scene.coupling.scheme_text() : "exchange");
+                              model == ModelKind::coupled ? scene.coupling.scheme_text() :
+                                                            "exchange");
             list.emplace_back("zone",
-                              model == Model::coupled ? scene.coupling.zone_text() : "everywhere");
+                              model == ModelKind::coupled ? scene.coupling.zone_text() :
+                                                            "everywhere");
             list.emplace_back("share of the body in the zone",
                               to_text(100. * fem->bonds().zone_share()) + " %");
           }
@@ -334,14 +336,14 @@ namespace PeriDeal
       {
         Timings::Scope                 scope(this->timings, "operator");
         std::unique_ptr<Coupling<dim>> coupling;
-        if (model != Model::finite_elements)
+        if (model != ModelKind::finite_elements)
           {
             node_set = std::make_unique<Nodes<dim>>(handler,
                                                     scene.domain,
                                                     scene.cracks,
                                                     NodalVolume::partial);
             Zone<dim> zone;
-            if (model == Model::coupled)
+            if (model == ModelKind::coupled)
               zone = Zone<dim>(scene.coupling, scene.horizon());
             if (scene.domain.shape != Shape::mesh_file)
               zone.stay_in({{scene.domain.lower, scene.domain.upper}});
@@ -368,7 +370,7 @@ namespace PeriDeal
       /** Peridynamics alone has nothing to splice or to blend with. */
       CouplingScheme scheme() const
       {
-        return model == Model::coupled ? scene.coupling.scheme : CouplingScheme::exchange;
+        return model == ModelKind::coupled ? scene.coupling.scheme : CouplingScheme::exchange;
       }
 
 
@@ -393,7 +395,7 @@ namespace PeriDeal
               }
             cut[0].local_element(i) = all > 0. ? gone / all : 0.;
           }
-        if (model == Model::coupled)
+        if (model == ModelKind::coupled)
           fields.push_back(vector_field<1>("zone", zone));
         fields.push_back(vector_field<1>("node_volume", volume));
         fields.push_back(vector_field<1>("cut_fraction", cut));
@@ -448,7 +450,7 @@ namespace PeriDeal
       }
 
       const Scene<dim>                  &scene;
-      const Model                        model;
+      const ModelKind                    model;
       FE_Q<dim>                          element;
       DoFHandler<dim>                    handler;
       std::unique_ptr<Nodes<dim>>        node_set; // null for finite elements alone
@@ -461,7 +463,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<ModelRun<dim>> make_element_run(const Model               model,
+  std::unique_ptr<ModelRun<dim>> make_element_run(const ModelKind           model,
                                                   const Triangulation<dim> &mesh,
                                                   const Scene<dim>         &scene)
   {
@@ -469,13 +471,13 @@ namespace PeriDeal
   }
 
 
-  template std::unique_ptr<ModelRun<1>> make_element_run(const Model,
+  template std::unique_ptr<ModelRun<1>> make_element_run(const ModelKind,
                                                          const Triangulation<1> &,
                                                          const Scene<1> &);
-  template std::unique_ptr<ModelRun<2>> make_element_run(const Model,
+  template std::unique_ptr<ModelRun<2>> make_element_run(const ModelKind,
                                                          const Triangulation<2> &,
                                                          const Scene<2> &);
-  template std::unique_ptr<ModelRun<3>> make_element_run(const Model,
+  template std::unique_ptr<ModelRun<3>> make_element_run(const ModelKind,
                                                          const Triangulation<3> &,
                                                          const Scene<3> &);
 } // namespace PeriDeal

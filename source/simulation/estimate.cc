@@ -47,7 +47,7 @@ namespace PeriDeal
     {
       return std::any_of(scene.general.models.begin(),
                          scene.general.models.end(),
-                         [](const Model model) { return model != Model::finite_elements; });
+                         [](const ModelKind model) { return model != ModelKind::finite_elements; });
     }
 
 
@@ -89,12 +89,12 @@ namespace PeriDeal
       const double per_node = scene.general.physics == Physics::elasticity ? dim : 1;
       const double family   = has_bonds(scene) ? family_size(scene) : 0.;
       result.memory         = 32. * family;
-      for (const Model model : scene.general.models)
+      for (const ModelKind model : scene.general.models)
         {
           ModelEstimate estimate;
           estimate.name     = to_string(model);
           estimate.unknowns = per_node * result.cells;
-          if (model == Model::peridynamics)
+          if (model == ModelKind::peridynamics)
             estimate.bonds = 0.5 * result.cells * std::min(family, result.cells);
           result.memory += bytes_of_node * result.cells * std::sqrt(per_node);
           result.models.push_back(estimate);

@@ -19,12 +19,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<ModelRun<dim>> make_model_run(const Model               model,
+  std::unique_ptr<ModelRun<dim>> make_model_run(const ModelKind           model,
                                                 const Triangulation<dim> &mesh,
                                                 const Scene<dim>         &scene)
   {
     std::unique_ptr<ModelRun<dim>> run;
-    if (model == Model::peridynamics && scene.peridynamics.treatment != BoundaryTreatment::exchange)
+    if (model == ModelKind::peridynamics &&
+        scene.peridynamics.treatment != BoundaryTreatment::exchange)
       run = make_bond_run(mesh, scene);
     else
       run = make_element_run(model, mesh, scene);
@@ -35,13 +36,13 @@ namespace PeriDeal
   template void                         set_start(ModelRun<1> &);
   template void                         set_start(ModelRun<2> &);
   template void                         set_start(ModelRun<3> &);
-  template std::unique_ptr<ModelRun<1>> make_model_run(const Model,
+  template std::unique_ptr<ModelRun<1>> make_model_run(const ModelKind,
                                                        const Triangulation<1> &,
                                                        const Scene<1> &);
-  template std::unique_ptr<ModelRun<2>> make_model_run(const Model,
+  template std::unique_ptr<ModelRun<2>> make_model_run(const ModelKind,
                                                        const Triangulation<2> &,
                                                        const Scene<2> &);
-  template std::unique_ptr<ModelRun<3>> make_model_run(const Model,
+  template std::unique_ptr<ModelRun<3>> make_model_run(const ModelKind,
                                                        const Triangulation<3> &,
                                                        const Scene<3> &);
 } // namespace PeriDeal

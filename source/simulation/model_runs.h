@@ -19,7 +19,7 @@ namespace PeriDeal
    * zone everywhere.
    */
   template <int dim>
-  std::unique_ptr<ModelRun<dim>> make_element_run(const Model                       model,
+  std::unique_ptr<ModelRun<dim>> make_element_run(const ModelKind                   model,
                                                   const dealii::Triangulation<dim> &mesh,
                                                   const Scene<dim>                 &scene);
 

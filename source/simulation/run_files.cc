@@ -27,7 +27,7 @@ namespace PeriDeal
       add(!scene.output.line.empty(), "line.csv");
       add(!scene.output.grid.empty(), "grid.csv");
       add(static_cast<bool>(scene.domain.image), "image_as_read.png");
-      for (const Model model : scene.general.models)
+      for (const ModelKind model : scene.general.models)
         {
           const std::string series = series_of(to_string(model));
           add(scene.output.vtu, series + ".pvd");

@@ -243,7 +243,7 @@ namespace PeriDeal
     sample.nodes        = number_of<dim>(scene.domain.cells, 1);
     const bool   known  = forget_peak_memory();
     const double before = resident_memory();
-    for (const Model model : scene.general.models)
+    for (const ModelKind model : scene.general.models)
       sample.models.push_back({to_string(model)});
     std::vector<std::string>                  notes;
     const Watch                               building;

@@ -134,7 +134,7 @@ namespace PeriDeal
       record->notes.push_back(
         "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' (an insulated side "
         "needs 'side: 0' there).");
-    for (const Model model : scene.general.models)
+    for (const ModelKind model : scene.general.models)
       {
         if (files)
           progress.doing("building " + to_string(model));
@@ -404,7 +404,7 @@ namespace PeriDeal
         fields[0].components[0].update_ghost_values();
         for (OutputField &field : models[m]->derived_fields(models[m]->solution, t))
           fields.push_back(std::move(field));
-        if (models[m]->name() == to_string(Model::peridynamics) && difference.size() > 0)
+        if (models[m]->name() == to_string(ModelKind::peridynamics) && difference.size() > 0)
           {
             fields.push_back({"peridynamics_minus_finite_elements", {difference}});
             fields.back().components[0].update_ghost_values();

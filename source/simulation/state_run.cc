@@ -47,7 +47,7 @@ namespace PeriDeal
 
       std::string name() const override
       {
-        return to_string(Model::peridynamics);
+        return to_string(ModelKind::peridynamics);
       }
 
       const DoFHandler<dim> &dofs() const override

@@ -198,7 +198,7 @@ namespace PeriDeal
   {
     // Between two steps: within one, half a step of their force would be lost and with it energy of
     // order dt.
-    if (op.break_bonds(u) == 0)
+    if (op.break_bonds(u, t) == 0)
       return;
     jumps -= kept_back(step_now);
     operator_changed();

@@ -99,7 +99,7 @@ namespace PeriDeal
     if (!op.brittle())
       return;
     bool any = false;
-    for (double energy = op.energy(u); op.break_bonds(u, share) > 0;)
+    for (double energy = op.energy(u); op.break_bonds(u, t, share) > 0;)
       {
         any = true;
         solver->operator_changed();

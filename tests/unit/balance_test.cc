@@ -69,7 +69,7 @@ namespace PeriDeal
     template <int dim>
     void expect_balance(const std::string &what,
                         const Settings    &settings,
-                        const Model        model = Model::peridynamics)
+                        const ModelKind    model = ModelKind::peridynamics)
     {
       const Problem<dim> problem(settings, model);
       ASSERT_TRUE(problem.op().symmetric()) << what;
@@ -105,7 +105,7 @@ namespace PeriDeal
                                     {"Peridynamics/Boundary treatment", "fictitious mirror"},
                                     {"Boundary conditions/Dirichlet", hot + ": 3; " + cold + ": 1"},
                                     {"Boundary conditions/Symmetry", beside}},
-                                   Model::peridynamics);
+                                   ModelKind::peridynamics);
           Vector           u = problem.values(
             [&](const Point<2> &p) { return upright ? 1. + 2. * p[1] : 3. - 2. * p[0]; });
           problem.op().distribute(u, 0.);
@@ -171,31 +171,31 @@ namespace PeriDeal
         mesh,
         plate + sides +
           Settings{{"Cracks/Mesh", mesh}, {"Cracks/Segments", "0.21,0.41 ; 0.43,0.55"}},
-        Model::finite_elements);
+        ModelKind::finite_elements);
     expect_balance<2>("scaled",
                       plate + sides + crack +
                         Settings{{"Peridynamics/Surface correction", "crack scaling"}},
-                      Model::finite_elements);
+                      ModelKind::finite_elements);
     expect_balance<2>("faces",
                       plate + sides +
                         Settings{{"Cracks/Mesh", "faces"}, {"Cracks/Segments", "-1,0.4 ; 0.5,0.4"}},
-                      Model::finite_elements);
+                      ModelKind::finite_elements);
     for (const std::string degree : {"2", "3"})
       expect_balance<2>("Q" + degree,
                         plate + sides + Settings{{"Finite elements/Degree", degree}},
-                        Model::finite_elements);
+                        ModelKind::finite_elements);
     expect_balance<1>("bar",
                       {{"Domain/Cells", "30"},
                        {"Boundary conditions/Dirichlet", "left: 1"},
                        {"Boundary conditions/Convection", "right: 3, 5"},
                        {"Initial and source/Source", "x"}},
-                      Model::finite_elements);
+                      ModelKind::finite_elements);
     expect_balance<3>("brick",
                       {{"Domain/Cells", "5, 4, 3"},
                        {"Boundary conditions/Dirichlet", "left: 1"},
                        {"Boundary conditions/Convection", "right: 3, 5"},
                        {"Initial and source/Source", "x"}},
-                      Model::finite_elements);
+                      ModelKind::finite_elements);
   }
 
 
@@ -211,7 +211,7 @@ namespace PeriDeal
                                    Settings{{"Boundary conditions/Dirichlet", "left: 1 + y*t"},
                                             {"Boundary conditions/Flux", "top: 3*x; right: t"}} +
                                    more,
-                                 Model::peridynamics);
+                                 ModelKind::peridynamics);
         Vector           u = problem.values(bumpy<2>);
         problem.op().distribute(u, 0.7);
         expect_entering(more[0].second, problem, u);
@@ -223,7 +223,7 @@ namespace PeriDeal
   {
     // Steady bar: flux 3 in on the right, source x, temperature 1 on the left: everything leaves on
     // the left.
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       {
         const Problem<1> problem({{"Domain/Cells", "40"},
                                   {"Material/Conductivity", "2"},
@@ -240,7 +240,7 @@ namespace PeriDeal
         // counted either.
         EXPECT_NEAR(balance.sides.at("left"), -3.5, 1e-9);
         EXPECT_NEAR(balance.throughput(), 3.5, 1e-12);
-        if (model == Model::finite_elements)
+        if (model == ModelKind::finite_elements)
           {
             // Exact at the vertices: 2 T'' = -x, 2 T'(1) = 3.
             const Vector exact = problem.values(

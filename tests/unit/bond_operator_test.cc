@@ -203,7 +203,7 @@ namespace PeriDeal
       double       largest = 0.;
       unsigned int n       = 0;
       const double size    = u.linfty_norm();
-      const double reach   = problem.bonds->families().reach() * (1. + 1e-9);
+      const double reach   = problem.bonds->diffusion_bonds().weights().reach() * (1. + 1e-9);
       for (unsigned int i = 0; i < y.locally_owned_size(); ++i)
         {
           bool inside = true;

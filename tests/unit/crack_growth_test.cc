@@ -137,7 +137,7 @@ namespace PeriDeal
                                      {"Peridynamics/Surface correction", correction}},
                           growing,
                           at_end,
-                          Model::coupled);
+                          ModelKind::coupled);
   }
 
 
@@ -148,7 +148,7 @@ namespace PeriDeal
         {
           const Problem<2>   problem(square + growing +
                                      Settings{{"Coupling/Scheme", scheme}, {"Coupling/Zone", zone}},
-                                   Model::coupled);
+                                   ModelKind::coupled);
           const unsigned int n_broken = expect_history_kept(problem, scheme + ", " + zone);
           // With the other schemes a bond joins with its first node, ahead of the tip.
           if (scheme == "exchange")
@@ -191,7 +191,7 @@ namespace PeriDeal
                       square + Settings{{"Peridynamics/Surface correction", correction}},
                       growing,
                       at_end,
-                      Model::finite_elements);
+                      ModelKind::finite_elements);
     const Settings block{{"Domain/Lower corner", "0, 0, 0"},
                          {"Domain/Upper corner", "1, 1, 1"},
                          {"Domain/Cells", "8, 8, 8"},
@@ -200,7 +200,7 @@ namespace PeriDeal
       small{{"Cracks/Polygons", "0.3,0.3,0.44 ; 0.5,0.3,0.44 ; 0.5,0.6,0.44 ; 0.3,0.6,0.44"},
             {"Cracks/Growth", "2: 0, 0.3,0,0, 0.6 ; 3: 0, 0.3,0.1,0, 0.6"}},
       large{{"Cracks/Polygons", "0.3,0.3,0.44 ; 0.68,0.3,0.44 ; 0.68,0.66,0.44 ; 0.3,0.6,0.44"}};
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       expect_grown<3>("3D, " + to_string(model), block, small, large, model);
     expect_grown<3>("3D, energy",
                     block + Settings{{"Peridynamics/Surface correction", "energy"}},
@@ -212,10 +212,11 @@ namespace PeriDeal
   TEST(CrackGrowth, heat_stays_through_every_cut)
   {
     const Settings graded{{"Domain/Cells", "48, 40"}, {"Domain/Coarsening", "2"}};
-    for (const Model model : {Model::peridynamics, Model::finite_elements, Model::coupled})
+    for (const ModelKind model :
+         {ModelKind::peridynamics, ModelKind::finite_elements, ModelKind::coupled})
       for (const std::string stepper : {"euler", "chebyshev", "rkc2", "sdirk2"})
         {
-          const bool       merged = model == Model::coupled;
+          const bool       merged = model == ModelKind::coupled;
           const Problem<2> problem(square + growing + (merged ? graded : Settings()), model);
           Vector           start = problem.values(bumpy<2>);
           const double     heat  = problem.op().balance(start, 0., false).content;
@@ -232,7 +233,7 @@ namespace PeriDeal
   TEST(CrackGrowth, same_on_every_number_of_processes)
   {
     const Settings held{{"Boundary conditions/Dirichlet", "left: y ; top: 2"}};
-    const auto     gap = [&](const Settings &more, const Model model, const std::string &stepper) {
+    const auto gap = [&](const Settings &more, const ModelKind model, const std::string &stepper) {
       const Problem<2> all(square + growing + held + more, model),
         alone(square + growing + held + more, model, MPI_COMM_SELF);
       return difference(all, advanced(all, stepper, 0.9), alone, advanced(alone, stepper, 0.9));
@@ -240,20 +241,20 @@ namespace PeriDeal
     for (const std::string stepper : {"euler", "chebyshev"})
       for (const std::string correction : {"none", "crack scaling", "energy"})
         EXPECT_EQ(
-          gap({{"Peridynamics/Surface correction", correction}}, Model::peridynamics, stepper),
+          gap({{"Peridynamics/Surface correction", correction}}, ModelKind::peridynamics, stepper),
           0.)
           << stepper << ", " << correction;
     EXPECT_EQ(
-      gap({{"Cracks/Transmission", "if(t < 0.3, 0, t - 0.3)"}}, Model::peridynamics, "euler"),
+      gap({{"Cracks/Transmission", "if(t < 0.3, 0, t - 0.3)"}}, ModelKind::peridynamics, "euler"),
       0.);
-    EXPECT_LE(gap({}, Model::finite_elements, "chebyshev"), 1e-12);
-    EXPECT_LE(gap({}, Model::peridynamics, "sdirk2"), 1e-7);
+    EXPECT_LE(gap({}, ModelKind::finite_elements, "chebyshev"), 1e-12);
+    EXPECT_LE(gap({}, ModelKind::peridynamics, "sdirk2"), 1e-7);
   }
 
 
   TEST(CrackGrowth, a_crack_that_closes_conducts_again)
   {
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       {
         const Settings   crack{{"Cracks/Segments", "-0.1,0.52 ; 1.3,0.52"},
                              {"Boundary conditions/Dirichlet", "top: 1; bottom: 0"},
@@ -279,7 +280,7 @@ namespace PeriDeal
         // Transmission changes by at most 0.02 between events.
         EXPECT_LE(largest_difference(image(closing), image(intact)), 0.021 * size);
         const double through = intact.op().balance(u, 1., false).cracks.at(0);
-        EXPECT_NEAR(through, -1.2, model == Model::peridynamics ? 0.1 : 1e-12);
+        EXPECT_NEAR(through, -1.2, model == ModelKind::peridynamics ? 0.1 : 1e-12);
         EXPECT_NEAR(previous, through, 0.02 * 1.2);
       }
   }
@@ -340,7 +341,7 @@ namespace PeriDeal
     expect({{"Cracks/Transmission", "x"}}, {"'Transmission'", "time t only"});
     expect({{"Cracks/Transmission", "-1"}}, {"'Transmission'", "from 0 to 1"});
     // The last of four cracks around a node.
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       SceneTests::expect_parts(
         message_of([&] {
           const Problem<2> problem(

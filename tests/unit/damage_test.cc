@@ -48,7 +48,7 @@ namespace PeriDeal
                                       {"Peridynamics/Kernel", "constant"},
                                       {"Peridynamics/Kernel exponent", "1"}} +
                              more,
-                           Model::peridynamics);
+                           ModelKind::peridynamics);
       const std::vector<double> &found    = body.states->critical_stretches();
       const Scene<dim>          &scene    = body.scene;
       const double               expected = critical_stretch_constant(1.,
@@ -73,13 +73,13 @@ namespace PeriDeal
       const Settings settings = box<dim>() + breaking_at(critical) +
                                 Settings{{"Elasticity/Kinematics", full ? "full" : "linear"}} +
                                 more;
-      const Body<dim> body(settings, Model::peridynamics),
-        alone(settings, Model::peridynamics, MPI_COMM_SELF);
+      const Body<dim> body(settings, ModelKind::peridynamics),
+        alone(settings, ModelKind::peridynamics, MPI_COMM_SELF);
       unsigned long long expected = 0;
       for (unsigned int i = 0; i < alone.nodes->n_owned(); ++i)
         {
-          std::vector<typename Families<dim>::Bond> family;
-          alone.states->families().bonds_of(i, family, false);
+          std::vector<typename Families<dim>::Member> family;
+          alone.states->families().members_of(i, family);
           for (const auto &bond : family)
             {
               const Tensor<1, dim> xi  = alone.position(bond.neighbor) - alone.position(i);
@@ -95,16 +95,16 @@ namespace PeriDeal
           const Vector     u      = b->values(pulled<dim>);
           const double     before = op.energy(u);
           EXPECT_TRUE(op.brittle());
-          EXPECT_EQ(op.break_bonds(b->values(squeezed)), 0u);
-          EXPECT_EQ(op.break_bonds(u), expected / 2);
+          EXPECT_EQ(op.break_bonds(b->values(squeezed), 0.), 0u);
+          EXPECT_EQ(op.break_bonds(u, 0.), expected / 2);
           EXPECT_EQ(op.n_broken_bonds(), expected / 2);
           EXPECT_GT(op.released_energy(), 0.1 * before);
           EXPECT_NEAR(op.energy(u) + op.released_energy(), before, 1e-12 * before);
-          EXPECT_EQ(op.break_bonds(u), 0u);
+          EXPECT_EQ(op.break_bonds(u, 0.), 0u);
           Vector zero, y;
           op.initialize_vector(zero);
           op.initialize_vector(y);
-          EXPECT_EQ(op.break_bonds(zero), 0u);
+          EXPECT_EQ(op.break_bonds(zero, 0.), 0u);
           EXPECT_EQ(op.n_broken_bonds(), expected / 2); // they do not heal
           op.multiply(y, u);
           if (full)
@@ -161,13 +161,13 @@ namespace PeriDeal
     for (const bool breaks : {false, true})
       {
         const Body<2>    body(box<2>() + breaking_at(breaks ? 0.099 : 0.101) + cold,
-                           Model::peridynamics);
+                           ModelKind::peridynamics);
         ElasticOperator &op = body.op();
         Vector           u, r;
         op.initialize_vector(u);
         op.initialize_vector(r);
         const double before = op.energy(u);
-        EXPECT_EQ(op.break_bonds(u) > 0, breaks);
+        EXPECT_EQ(op.break_bonds(u, 0.) > 0, breaks);
         op.unbalanced(r, u, 0.);
         // Without bonds there is neither energy nor force left.
         EXPECT_EQ(r.linfty_norm() == 0., breaks);
@@ -194,7 +194,7 @@ namespace PeriDeal
     options.tolerance = 1e-11;
     for (const char *name : {"linear", "conjugate gradients"})
       {
-        const Body<2> body(settings, Model::peridynamics);
+        const Body<2> body(settings, ModelKind::peridynamics);
         SlowLoading   loading(body.op(), make_static_solver(name, body.op(), options), options);
         Vector        u;
         loading.begin(u, 0.);
@@ -221,16 +221,16 @@ namespace PeriDeal
 
   TEST(Damage, EntriesThatHaveNoEffectAreRefused)
   {
-    const auto fault_of = [](const Model model, const Settings &more) {
+    const auto fault_of = [](const ModelKind model, const Settings &more) {
       return message_of([&] {
         Body<2>(box<2>() + Settings{{"Material/Fracture energy", "1"}} + more, model);
       });
     };
-    expect_parts(fault_of(Model::finite_elements, {}), {"Fracture energy", "no effect"});
-    expect_parts(fault_of(Model::coupled, {}), {"Fracture energy", "coupled"});
-    expect_parts(fault_of(Model::peridynamics, {{"Material/Critical stretch", "1"}}),
+    expect_parts(fault_of(ModelKind::finite_elements, {}), {"Fracture energy", "no effect"});
+    expect_parts(fault_of(ModelKind::coupled, {}), {"Fracture energy", "coupled"});
+    expect_parts(fault_of(ModelKind::peridynamics, {{"Material/Critical stretch", "1"}}),
                  {"Critical stretch", "Fracture energy"});
-    expect_parts(fault_of(Model::peridynamics, {{"Material/Fracture energy", "x - 0.5"}}),
+    expect_parts(fault_of(ModelKind::peridynamics, {{"Material/Fracture energy", "x - 0.5"}}),
                  {"Fracture energy", "not positive"});
   }
 } // namespace PeriDeal

@@ -18,7 +18,7 @@ namespace
   template <int dim>
   void check_patch(const Settings &settings)
   {
-    const Body<dim> body(settings, Model::coupled);
+    const Body<dim> body(settings, ModelKind::coupled);
     EXPECT_LT(defect(body, linear_field<dim>), 1e-12);
     EXPECT_LT(asymmetry(body), 1e-13);
     EXPECT_LT(unbalanced(body), 1e-13);
@@ -61,7 +61,7 @@ TEST(ElasticExchange, layers_stay_exact)
     zoned<2>("everywhere", 0.) + Settings{{"Material/Young modulus", "3"},
                                           {"Material/Phases/Regions", "stiff: x > 0.7"},
                                           {"Material/Phases/Young modulus", "stiff: 30"}};
-  const Body<2>                          body(layers, Model::coupled);
+  const Body<2>                          body(layers, ModelKind::coupled);
   dealii::TrilinosWrappers::SparseMatrix with;
   body.elements->assemble_intact(with, true);
   Vector y, x = body.values([](const dealii::Point<2> &p) {
@@ -81,7 +81,7 @@ TEST(ElasticExchange, free_thermal_expansion)
 {
   const auto check = [](const Settings &settings, auto dimension) {
     constexpr int dim = decltype(dimension)::value;
-    Body<dim>     body(settings, Model::coupled);
+    Body<dim>     body(settings, ModelKind::coupled);
     const double  strain =
       0.01 *
       (settings.back().second == "strain" ? 1.3 : 1.); // alpha dT, in plane strain times 1 + nu
@@ -151,7 +151,7 @@ namespace
                                  {"Material/Thermal expansion", "0.001"},
                                  {"Elasticity/Temperature change", "3 + x*x + 2*x"}} +
                         more;
-    const Body<dim> coupled(settings, Model::coupled), alone(settings, Model::peridynamics);
+    const Body<dim> coupled(settings, ModelKind::coupled), alone(settings, ModelKind::peridynamics);
     // Both have ghosts of their own.
     Vector     x           = coupled.values(bumpy_vector<dim>), y(x);
     Vector     x_alone     = alone.values(bumpy_vector<dim>), y_alone(x_alone);
@@ -204,11 +204,11 @@ TEST(StateCouplings, splice_is_exact_for_linear_fields_but_does_not_balance)
 {
   for (const std::string overlap : {"0", "0.5"})
     {
-      const Body<1> bar(block<1>("splice", overlap), Model::coupled);
-      const Body<2> plate(block<2>("splice", overlap), Model::coupled);
+      const Body<1> bar(block<1>("splice", overlap), ModelKind::coupled);
+      const Body<2> plate(block<2>("splice", overlap), ModelKind::coupled);
       EXPECT_LT(defect(bar, linear_field<1>), 1e-13);
       EXPECT_LT(defect(plate, linear_field<2>), 1e-13);
-      EXPECT_LT(defect(Body<3>(block<3>("splice", overlap), Model::coupled), linear_field<3>),
+      EXPECT_LT(defect(Body<3>(block<3>("splice", overlap), ModelKind::coupled), linear_field<3>),
                 1e-13);
       EXPECT_FALSE(plate.elements->symmetric());
       EXPECT_GT(asymmetry(plate), 1e-3);
@@ -221,7 +221,7 @@ TEST(StateCouplings, blending_balances_but_is_not_exact)
 {
   for (const std::string overlap : {"0", "0.5", "1"})
     {
-      const Body<2> plate(block<2>("blending", overlap), Model::coupled);
+      const Body<2> plate(block<2>("blending", overlap), ModelKind::coupled);
       EXPECT_TRUE(plate.elements->symmetric());
       EXPECT_LT(asymmetry(plate), 1e-14);
       EXPECT_LT(unbalanced(plate), 1e-14);
@@ -232,7 +232,7 @@ TEST(StateCouplings, blending_balances_but_is_not_exact)
       EXPECT_GT(linear, 1e-2);
       EXPECT_LT(linear, 0.3);
     }
-  const Body<3> block_3d(block<3>("blending", "0.5"), Model::coupled);
+  const Body<3> block_3d(block<3>("blending", "0.5"), ModelKind::coupled);
   EXPECT_LT(asymmetry(block_3d), 1e-14);
   EXPECT_LT(unbalanced(block_3d), 1e-14);
   EXPECT_GE(block_3d.elements->lowest_remainder(), -1e-14);
@@ -244,7 +244,7 @@ TEST(StateCouplings, certificates)
 {
   for (const std::string scheme : {"exchange", "splice", "blending"})
     {
-      const Body<2>             plate(block<2>(scheme), Model::coupled);
+      const Body<2>             plate(block<2>(scheme), ModelKind::coupled);
       const CouplingCertificate found = examine_coupling(*plate.elements);
       EXPECT_EQ(found.linear < 1e-12, scheme != "blending") << scheme << ": " << found.linear;
       EXPECT_EQ(found.asymmetry < 1e-13, scheme != "splice") << scheme << ": " << found.asymmetry;
@@ -265,7 +265,7 @@ TEST(StateCouplings, free_thermal_expansion)
     {
       const Settings warm{{"Material/Thermal expansion", "0.001"},
                           {"Elasticity/Temperature change", "10"}};
-      const Body<2>  body(block<2>(scheme, "0.5") + warm, Model::coupled);
+      const Body<2>  body(block<2>(scheme, "0.5") + warm, ModelKind::coupled);
       Vector         u =
         body.values([](const dealii::Point<2> &p) -> dealii::Tensor<1, 2> { return 0.01 * p; });
       Vector r(u);

@@ -81,8 +81,8 @@ namespace PeriDeal
 
     inline void expect_same_on_all_processes(const Settings &settings)
     {
-      const Body<2> together(settings, Model::coupled),
-        alone(settings, Model::coupled, MPI_COMM_SELF);
+      const Body<2> together(settings, ModelKind::coupled),
+        alone(settings, ModelKind::coupled, MPI_COMM_SELF);
       Vector x = together.values(bumpy_vector<2>), y(x), x1 = alone.values(bumpy_vector<2>), y1(x1);
       together.elements->multiply(y, x);
       alone.elements->multiply(y1, x1);

@@ -23,7 +23,7 @@ namespace
 
 
   template <int dim>
-  void check_operator(const Settings &more, const Model model)
+  void check_operator(const Settings &more, const ModelKind model)
   {
     const Body<dim>        body(box<dim>() + more, model);
     const ElasticOperator &op = body.op();
@@ -96,7 +96,7 @@ namespace
           }
       }
     const Body<dim>  body(box<dim>() + Settings{{"Boundary conditions/Displacement", sides}} + more,
-                         Model::finite_elements);
+                         ModelKind::finite_elements);
     ElasticOperator &op = body.op();
     Vector           u, rhs, change;
     for (Vector *v : {&u, &rhs, &change})
@@ -123,7 +123,7 @@ namespace
   template <int dim>
   void patch_of_states(const Settings &more, const double stress_error)
   {
-    const Body<dim>              body(box<dim>() + more, Model::peridynamics);
+    const Body<dim>              body(box<dim>() + more, ModelKind::peridynamics);
     const dealii::Tensor<2, dim> g = some_gradient<dim>();
     const Vector        u = body.values([&](const dealii::Point<dim> &p) { return g * p; });
     std::vector<double> theta;
@@ -132,7 +132,7 @@ namespace
     const auto              strain  = symmetrize(g);
     const auto              sigma =
       stress(body.scene.material.moduli(dealii::Point<dim>()), body.scene.elasticity.plane, strain);
-    const double reach = body.states->families().reach();
+    const double reach = body.states->families().weights().reach();
     double       worst = 0., n = 0.;
     for (unsigned int i = 0; i < theta.size(); ++i)
       {
@@ -169,7 +169,7 @@ namespace
 
 
   template <int dim>
-  void same_on_all(const Settings &more, const Model model, const double bound)
+  void same_on_all(const Settings &more, const ModelKind model, const double bound)
   {
     const Body<dim> all(box<dim>() + more, model), alone(box<dim>() + more, model, MPI_COMM_SELF);
     Vector          a, b;
@@ -189,7 +189,7 @@ namespace
 
 TEST(ElasticOperator, symmetric_and_without_resultant)
 {
-  for (const Model model : {Model::finite_elements, Model::peridynamics})
+  for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
     {
       check_operator<1>({}, model);
       for (const std::string nu : {"-0.4", "0.45"})
@@ -200,26 +200,27 @@ TEST(ElasticOperator, symmetric_and_without_resultant)
       check_operator<3>({{"Domain/Cells", "4, 3, 2"}}, model);
     }
   check_operator<2>({{"Domain/Cells", "4, 3"}, {"Finite elements/Degree", "2"}},
-                    Model::finite_elements);
+                    ModelKind::finite_elements);
   check_operator<2>({{"Domain/Cells", "8, 6"}, {"Elasticity/Model", "bond-based"}},
-                    Model::peridynamics);
+                    ModelKind::peridynamics);
   check_operator<2>({{"Domain/Cells", "8, 6"}, {"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}},
-                    Model::peridynamics);
+                    ModelKind::peridynamics);
   check_operator<2>({{"Domain/Cells", "8, 6"}, {"Domain/Nodes", "cell centers"}},
-                    Model::peridynamics);
+                    ModelKind::peridynamics);
   for (const std::string law : {"volume", "energy", "moments"})
     for (const std::string nodes : {"vertices", "cell centers"})
       {
         const Settings corrected{{"Peridynamics/Surface correction", law}, {"Domain/Nodes", nodes}};
-        check_operator<1>(corrected, Model::peridynamics);
+        check_operator<1>(corrected, ModelKind::peridynamics);
         for (const std::string nu : {"-0.4", "0.45"})
           check_operator<2>(corrected +
                               Settings{{"Domain/Cells", "8, 6"}, {"Material/Poisson ratio", nu}},
-                            Model::peridynamics);
+                            ModelKind::peridynamics);
         check_operator<2>(
           corrected + Settings{{"Domain/Cells", "8, 6"}, {"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}},
-          Model::peridynamics);
-        check_operator<3>(corrected + Settings{{"Domain/Cells", "4, 3, 2"}}, Model::peridynamics);
+          ModelKind::peridynamics);
+        check_operator<3>(corrected + Settings{{"Domain/Cells", "4, 3, 2"}},
+                          ModelKind::peridynamics);
       }
 }
 
@@ -251,19 +252,19 @@ TEST(ElasticOperator, same_on_all_processes)
                       {"Elasticity/Temperature change", "1 + x*x"},
                       {"Boundary conditions/Traction", "right: 1, 2"},
                       {"Initial and source/Body force", "x, y"}};
-  for (const Model model : {Model::finite_elements, Model::peridynamics})
+  for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
     same_on_all<2>(warm, model, 1e-13);
-  same_on_all<2>({{"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}}, Model::peridynamics, 1e-13);
-  same_on_all<3>({}, Model::peridynamics, 1e-13);
+  same_on_all<2>({{"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}}, ModelKind::peridynamics, 1e-13);
+  same_on_all<3>({}, ModelKind::peridynamics, 1e-13);
   for (const std::string law : {"none", "volume", "energy", "moments"})
     for (const std::string nodes : {"vertices", "cell centers"})
       {
         const Settings surface{{"Peridynamics/Surface correction", law},
                                {"Boundary conditions/Traction layer", "0.2"},
                                {"Domain/Nodes", nodes}};
-        same_on_all<2>(surface + warm, Model::peridynamics, 1e-13);
+        same_on_all<2>(surface + warm, ModelKind::peridynamics, 1e-13);
         same_on_all<3>(surface + Settings{{"Boundary conditions/Traction", "right: 1, 2, y"}},
-                       Model::peridynamics,
+                       ModelKind::peridynamics,
                        1e-13);
       }
 }
@@ -276,7 +277,7 @@ namespace
    * families are cut off.
    */
   template <int dim>
-  void expand_freely(const Model model, const Settings &more, const double factor = 1.)
+  void expand_freely(const ModelKind model, const Settings &more, const double factor = 1.)
   {
     const Body<dim>  body(box<dim>() +
                            Settings{{"Boundary conditions/Displacement", ""},
@@ -304,7 +305,7 @@ namespace
 
 TEST(ElasticOperator, free_thermal_expansion)
 {
-  for (const Model model : {Model::finite_elements, Model::peridynamics})
+  for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
     {
       expand_freely<1>(model, {});
       expand_freely<2>(model, {});
@@ -321,7 +322,7 @@ namespace
    * been another one before.
    */
   template <int dim>
-  void warm_nodes(const Model model, const Settings &more)
+  void warm_nodes(const ModelKind model, const Settings &more)
   {
     const Settings expands =
       box<dim>() + Settings{{"Material/Thermal expansion", "0.1*(1 + x)"}} + more;
@@ -365,24 +366,24 @@ namespace
 
 TEST(ElasticOperator, temperature_at_nodes_is_that_of_the_formula)
 {
-  for (const Model model : {Model::finite_elements, Model::peridynamics})
+  for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
     {
       warm_nodes<1>(model, {});
       warm_nodes<2>(model, {{"Elasticity/Plane", "strain"}});
       warm_nodes<3>(model, {});
     }
-  warm_nodes<2>(Model::finite_elements, {{"Finite elements/Degree", "2"}});
-  warm_nodes<2>(Model::peridynamics, {{"Domain/Nodes", "cell centers"}});
-  warm_nodes<2>(Model::peridynamics,
+  warm_nodes<2>(ModelKind::finite_elements, {{"Finite elements/Degree", "2"}});
+  warm_nodes<2>(ModelKind::peridynamics, {{"Domain/Nodes", "cell centers"}});
+  warm_nodes<2>(ModelKind::peridynamics,
                 {{"Elasticity/Kinematics", "full"}, {"Elasticity/Solver", "conjugate gradients"}});
-  warm_nodes<2>(Model::peridynamics, {{"Material/Critical stretch", "0.1"}});
-  warm_nodes<2>(Model::coupled, {{"Coupling/Zone", "x - 0.5"}});
+  warm_nodes<2>(ModelKind::peridynamics, {{"Material/Critical stretch", "0.1"}});
+  warm_nodes<2>(ModelKind::coupled, {{"Coupling/Zone", "x - 0.5"}});
 }
 
 
 TEST(ElasticOperator, linear_solver_says_why_it_stopped)
 {
-  for (const Model model : {Model::finite_elements, Model::peridynamics})
+  for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
     {
       const Body<2> body(box<2>(), model);
       Vector        x, rhs = body.values(bumpy_vector<2>);

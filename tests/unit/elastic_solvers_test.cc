@@ -41,7 +41,7 @@ namespace PeriDeal
     /** All solvers find the same displacement as a process alone. */
     template <int dim>
     void check_statics(const Settings                 &more,
-                       const Model                     model,
+                       const ModelKind                 model,
                        const std::vector<std::string> &names)
     {
       StaticOptions options;
@@ -159,7 +159,7 @@ namespace PeriDeal
 
     /** Orders against the exact motion, and energies. */
     template <int dim>
-    void check_orders(const Settings &more, const Model model)
+    void check_orders(const Settings &more, const ModelKind model)
     {
       const Settings  settings = box<dim>() + moving + more;
       const Body<dim> body(settings, model), alone(settings, model, MPI_COMM_SELF);
@@ -213,7 +213,7 @@ namespace PeriDeal
     const std::vector<std::string> quick{"linear",
                                          "conjugate gradients",
                                          "adaptive dynamic relaxation"};
-    for (const Model model : {Model::finite_elements, Model::peridynamics})
+    for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
       {
         check_statics<1>({{"Initial and source/Body force", "x"}, {"Domain/Cells", "12"}},
                          model,
@@ -222,7 +222,7 @@ namespace PeriDeal
       }
     check_statics<3>(
       {{"Domain/Cells", "6, 4, 3"}, {"Boundary conditions/Traction", "right: 0, 1, 0"}},
-      Model::peridynamics,
+      ModelKind::peridynamics,
       quick);
   }
 
@@ -235,12 +235,12 @@ namespace PeriDeal
                         {"Domain/Cells", "24, 6"},
                         {"Boundary conditions/Displacement", "left: 0, 0; right: free, 0.4"}};
     const std::vector<std::string> names{"conjugate gradients", "adaptive dynamic relaxation"};
-    check_statics<2>(bent, Model::peridynamics, names);
+    check_statics<2>(bent, ModelKind::peridynamics, names);
     check_statics<2>(Settings{{"Elasticity/Kinematics", "full"},
                               {"Domain/Cells", "12, 9"},
                               {"Material/Thermal expansion", "0.05"},
                               {"Elasticity/Temperature change", "x"}},
-                     Model::peridynamics,
+                     ModelKind::peridynamics,
                      names);
   }
 
@@ -250,7 +250,7 @@ namespace PeriDeal
     StaticOptions options;
     options.max_iterations = 3;
     const Body<2> body(box<2>() + Settings{{"Initial and source/Body force", "1, 0"}},
-                       Model::peridynamics);
+                       ModelKind::peridynamics);
     for (unsigned int k = 1; k < static_solver_names().size(); ++k)
       {
         options.multigrid         = false;
@@ -261,7 +261,7 @@ namespace PeriDeal
       }
     const Body<2> bent(box<2>() + Settings{{"Elasticity/Kinematics", "full"},
                                            {"Elasticity/Solver", "conjugate gradients"}},
-                       Model::peridynamics);
+                       ModelKind::peridynamics);
     EXPECT_NE(SceneTests::message_of([&] {
                 make_static_solver("linear", bent.op(), options);
               }).find("'Kinematics = linear'"),
@@ -271,12 +271,12 @@ namespace PeriDeal
 
   TEST(MotionSteppers, order_two)
   {
-    for (const Model model : {Model::finite_elements, Model::peridynamics})
+    for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
       {
         check_orders<1>({{"Domain/Cells", "12"}}, model);
         check_orders<2>({{"Domain/Cells", "8, 6"}}, model);
       }
-    check_orders<3>({{"Domain/Cells", "4, 3, 2"}}, Model::peridynamics);
+    check_orders<3>({{"Domain/Cells", "4, 3, 2"}}, ModelKind::peridynamics);
   }
 
 
@@ -286,7 +286,7 @@ namespace PeriDeal
     const Settings driven{{"Domain/Cells", "12, 9"},
                           {"Boundary conditions/Displacement", "left: 0.1*sin(t)^2, 0"},
                           {"Boundary conditions/Traction", "right: 0, 0.1*t"}};
-    for (const Model model : {Model::finite_elements, Model::peridynamics})
+    for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
       for (const std::string name : {"verlet", "newmark"})
         {
           double lost[2];
@@ -317,13 +317,12 @@ namespace PeriDeal
     // Free, with full kinematics: the moment of momentum stays, and energy.
     for (const std::string name : {"verlet", "newmark"})
       {
-        const Body<2> body(
-          box<2>() + full +
-            Settings{{"Domain/Cells", "8, 6"},
-                     {"Boundary conditions/Displacement", ""},
-                     {"Peridynamics/Kernel exponent", "2"}},
-          Model::peridynamics);
-        Vector u, v = body.values([](const Point<2> &p) {
+        const Body<2> body(box<2>() + full +
+                             Settings{{"Domain/Cells", "8, 6"},
+                                      {"Boundary conditions/Displacement", ""},
+                                      {"Peridynamics/Kernel exponent", "2"}},
+                           ModelKind::peridynamics);
+        Vector        u, v = body.values([](const Point<2> &p) {
           return Tensor<1, 2>({-0.5 * (p[1] - 0.375), 0.5 * (p[0] - 0.5)});
         });
         body.op().initialize_vector(u);
@@ -357,7 +356,7 @@ namespace PeriDeal
 
   TEST(MotionSteppers, unstable_steps)
   {
-    const Body<2> body(box<2>() + moving, Model::peridynamics);
+    const Body<2> body(box<2>() + moving, ModelKind::peridynamics);
     const double  limit   = stable_motion_step(body.op());
     std::string   message = SceneTests::message_of(
       [&] { make_motion_stepper("verlet", body.op(), with_step(1.01 * limit)); });

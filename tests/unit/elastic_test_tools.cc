@@ -8,7 +8,7 @@ namespace PeriDeal
   namespace OperatorTests
   {
     template <int dim>
-    Body<dim>::Body(const Settings &settings, const Model model, const MPI_Comm communicator)
+    Body<dim>::Body(const Settings &settings, const ModelKind model, const MPI_Comm communicator)
     {
       scene.general.set("Models", to_string(model));
       scene.general.set("Physics", "elasticity");
@@ -16,11 +16,11 @@ namespace PeriDeal
       std::vector<std::string> notes;
       mesh = build_mesh(scene, communicator, notes);
       handler.reinit(*mesh);
-      if (model != Model::peridynamics)
+      if (model != ModelKind::peridynamics)
         {
           handler.distribute_dofs(dealii::FE_Q<dim>(scene.finite_elements.degree));
           std::unique_ptr<ElasticCoupling<dim>> coupling;
-          if (model == Model::coupled)
+          if (model == ModelKind::coupled)
             {
               number_along_lattice(handler, scene.domain);
               nodes    = std::make_unique<Nodes<dim>>(handler,

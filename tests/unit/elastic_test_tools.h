@@ -17,7 +17,7 @@ namespace PeriDeal
     struct Body
     {
       Body(const Settings &settings,
-           const Model     model,
+           const ModelKind model,
            const MPI_Comm  communicator = MPI_COMM_WORLD);
 
       ~Body();

@@ -26,12 +26,12 @@ namespace PeriDeal
                            const unsigned int first,
                            const bool         one)
     {
-      const Problem<dim> plain(settings, Model::peridynamics, MPI_COMM_SELF),
-        corrected(settings + energy, Model::peridynamics, MPI_COMM_SELF);
-      const Families<dim>                      &families = plain.bonds->families();
-      const unsigned int                        n        = families.nodes().n_owned();
-      std::vector<typename Families<dim>::Bond> bonds, found;
-      std::vector<Tensor<1, dim>>               g(n);
+      const Problem<dim> plain(settings, ModelKind::peridynamics, MPI_COMM_SELF),
+        corrected(settings + energy, ModelKind::peridynamics, MPI_COMM_SELF);
+      const DiffusionBonds<dim>                      &families = plain.bonds->diffusion_bonds();
+      const unsigned int                              n        = families.nodes().n_owned();
+      std::vector<typename DiffusionBonds<dim>::Bond> bonds, found;
+      std::vector<Tensor<1, dim>>                     g(n);
       for (unsigned int i = 0; i < n; ++i)
         {
           Tensor<1, dim> Z;
@@ -39,20 +39,20 @@ namespace PeriDeal
           for (const auto &bond : bonds)
             for (unsigned int d = 0; d < dim; ++d)
               Z[d] += 0.25 * bond.weight / families.nodes().volume(i) *
-                      std::pow(families.bond_vector(i, bond.neighbor)[d], 2);
+                      std::pow(families.neighbors().bond_vector(i, bond.neighbor)[d], 2);
           for (unsigned int d = 0; d < dim; ++d)
-            g[i][d] = 0.5 * families.conductivity(i) / Z[d];
+            g[i][d] = 0.5 * families.conductivities().of_node(i) / Z[d];
         }
       double largest = 0., effect = 0.;
       for (unsigned int i = 0; i < n; ++i)
         {
           families.bonds_of(i, bonds);
-          corrected.bonds->families().bonds_of(i, found);
+          corrected.bonds->diffusion_bonds().bonds_of(i, found);
           ASSERT_EQ(bonds.size(), found.size());
           for (unsigned int b = 0; b < bonds.size(); ++b)
             {
               const unsigned int   j      = bonds[b].neighbor;
-              const Tensor<1, dim> xi     = families.bond_vector(i, j);
+              const Tensor<1, dim> xi     = families.neighbors().bond_vector(i, j);
               double               factor = 0.;
               for (unsigned int d = 0; d < dim; ++d)
                 {

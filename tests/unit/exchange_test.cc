@@ -68,7 +68,7 @@ namespace
           const Problem<dim> problem(
             shape + patch<dim>("1 + 2*x + 3*y - 2.5*z", "0", zone, shape.back().second == "0.23") +
               Settings{{"Peridynamics/Horizon ratio", m}},
-            Model::coupled);
+            ModelKind::coupled);
           EXPECT_GT(problem.fem->size().bonds, 0u);
           EXPECT_LT(patch_error(problem), 1e-13) << name << ", m = " << m;
           EXPECT_LT(examine_coupling(*problem.fem, true).asymmetry, 1e-14) << name << ", m = " << m;
@@ -138,7 +138,7 @@ TEST(Exchange, linear_patch_with_bonds_across_levels)
                            Settings{{"Domain/Coarsening", "1"},
                                     {"Domain/Fine where", "0.45 - x + 0.3*y"},
                                     {"Peridynamics/Horizon ratio", m}},
-                         Model::finite_elements);
+                         ModelKind::finite_elements);
       Nodes<2>   nodes(problem.handler,
                      problem.scene.domain,
                      problem.scene.cracks,
@@ -174,7 +174,7 @@ TEST(Exchange, agrees_with_the_reference)
                                 {"Domain/Upper corner", "16, 16"},
                                 {"Peridynamics/Horizon ratio", m},
                                 {"Coupling/Zone", zone}},
-                               Model::coupled);
+                               ModelKind::coupled);
       EXPECT_EQ(problem.fem->size().bonds, n_bonds) << m << ' ' << zone;
       // K itself: without its capacity, whose nodes on the sides are lighter.
 
@@ -203,8 +203,8 @@ TEST(Exchange, both_forms_agree)
   for (const char *correction : {"none", "crack scaling"})
     {
       const Settings   all = shape + Settings{{"Peridynamics/Surface correction", correction}};
-      const Problem<2> form(all + Settings{{"Coupling/Zone", "everywhere"}}, Model::coupled);
-      const Problem<2> matrix(all + Settings{{"Coupling/Zone", "1"}}, Model::coupled);
+      const Problem<2> form(all + Settings{{"Coupling/Zone", "everywhere"}}, ModelKind::coupled);
+      const Problem<2> matrix(all + Settings{{"Coupling/Zone", "1"}}, ModelKind::coupled);
       EXPECT_EQ(form.fem->size().form, "lattice");
       EXPECT_EQ(matrix.fem->size().form, "matrix");
       EXPECT_EQ(form.fem->size().bonds, matrix.fem->size().bonds);
@@ -222,7 +222,7 @@ TEST(Exchange, both_forms_agree)
 TEST(Exchange, equals_bonds_alone_inside)
 {
   const Settings   shape = cells("20, 20", "1, 1");
-  const Problem<2> exchange(shape + Settings{{"Coupling/Zone", "everywhere"}}, Model::coupled);
+  const Problem<2> exchange(shape + Settings{{"Coupling/Zone", "everywhere"}}, ModelKind::coupled);
   const Problem<2> alone(shape + Settings{{"Peridynamics/Boundary treatment", "none"}});
   Vector           a = exchange.vector(), b = alone.vector();
   exchange.op().apply(a, exchange.values(bumpy<2>));
@@ -253,7 +253,7 @@ TEST(Exchange, layers_and_graded_materials)
                      "(x < 0.5 ? " + r + " * x : x - 0.5 + " + r + " / 2) * 2 / (1 + " + r + ")"},
                    {"Time/Steady", "true"},
                    {"Coupling/Zone", "everywhere"}},
-        Model::coupled);
+        ModelKind::coupled);
       EXPECT_LT(patch_error(layers), 1e-12) << ratio;
     }
   // Conductivity 1 + x, T = log(1 + x).
@@ -266,7 +266,7 @@ TEST(Exchange, layers_and_graded_materials)
                                          {"Initial and source/Initial value", "ln(1 + x)"},
                                          {"Time/Steady", "true"},
                                          {"Coupling/Zone", "everywhere"}},
-                              Model::coupled);
+                              ModelKind::coupled);
       const double     error = patch_error(graded);
       std::cout << "graded " << n << ' ' << error << std::endl;
       if (last > 0.)
@@ -284,7 +284,7 @@ TEST(Couplings, splice_is_exact_for_quadratics)
     cells("20, 20", "1, 1") +
       patch<2>("x^2 + x*y - 2*y^2", "2", "0.22 - max(abs(x - 0.5), abs(y - 0.5))") +
       Settings{{"Coupling/Scheme", "splice"}},
-    Model::coupled);
+    ModelKind::coupled);
   EXPECT_LT(patch_error(problem), 1e-12);
   const CouplingCertificate found = examine_coupling(*problem.fem, false);
   EXPECT_LT(found.quadratic, 1e-12);
@@ -303,7 +303,7 @@ TEST(Couplings, blending_is_symmetric_but_not_exact)
           Settings{{"Coupling/Zone", "0.2 - max(abs(x - 0.5), abs(y - 0.5))"},
                    {"Coupling/Scheme", "blending"},
                    {"Coupling/Overlap", overlap}},
-        Model::coupled);
+        ModelKind::coupled);
       const CouplingCertificate found = examine_coupling(*problem.fem, true);
       std::cout << "blending, overlap " << overlap << ": " << found.linear << std::endl;
       EXPECT_LT(found.asymmetry, 1e-14);
@@ -321,7 +321,7 @@ TEST(Couplings, certificate_of_exchange)
   const Problem<2>          problem(cells("24, 24", "1, 1") +
                              Settings{{"Cracks/Segments", "0.3,0.4 ; 0.7,0.55"},
                                       {"Boundary conditions/Dirichlet", "left: 1"}},
-                           Model::coupled);
+                           ModelKind::coupled);
   const CouplingCertificate found = examine_coupling(*problem.fem, true);
   EXPECT_EQ(found.fault(), "");
   EXPECT_LT(found.linear, 1e-13);
@@ -349,10 +349,10 @@ TEST(Exchange, higher_patches_converge)
         {
           // A random zone has another pattern on another mesh.
           const Problem<2> quadratic(cells(n, "1, 1") + patch<2>("x^2 + x*y - 2*y^2", "2", zone),
-                                     Model::coupled);
+                                     ModelKind::coupled);
           const Problem<2> cubic(cells(n, "1, 1") +
                                    patch<2>("x^3 - y^2*x + y^3", "-4*x - 6*y", zone),
-                                 Model::coupled);
+                                 ModelKind::coupled);
           const double     a = patch_error(quadratic), b = patch_error(cubic);
           std::cout << name << ' ' << n << ": " << a << ' ' << b << std::endl;
           if (last_quadratic > 0.)

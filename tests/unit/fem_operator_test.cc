@@ -22,7 +22,7 @@ namespace PeriDeal
       for (unsigned int s = 0; s < 2 * dim; ++s)
         dirichlet += (s > 0 ? ";" : "") + box_side_names()[s] + ": " + formula[dim];
       const Problem<dim> problem(settings + Settings{{"Boundary conditions/Dirichlet", dirichlet}},
-                                 Model::finite_elements);
+                                 ModelKind::finite_elements);
       Vector             u = problem.vector();
       solve_steady(problem.op(), u, 0., 1e-14, 1000);
       const Vector exact = problem.values([](const Point<dim> &p) {
@@ -36,7 +36,7 @@ namespace PeriDeal
     template <int dim>
     dealii::FullMatrix<double> checked_matrix(const Settings &settings, const std::string &what)
     {
-      const Problem<dim>    problem(settings, Model::finite_elements);
+      const Problem<dim>    problem(settings, ModelKind::finite_elements);
       const DenseProperties matrix(problem.op());
       EXPECT_LT(matrix.asymmetry, 1e-14) << what;
       EXPECT_GT(matrix.smallest, -1e-12 * matrix.largest) << what;
@@ -66,7 +66,7 @@ namespace PeriDeal
       {
         const Settings   settings{{"Domain/Cells", "8, 8"},
                                 {"Cracks/Segments", "-1," + height + " ; 2," + height}};
-        const Problem<2> problem(settings, Model::finite_elements);
+        const Problem<2> problem(settings, ModelKind::finite_elements);
         Vector above = problem.values([](const auto &p) { return p[1] > 0.49 ? 1. : 0.; }),
                y     = problem.vector();
         problem.op().apply(y, above);
@@ -99,7 +99,7 @@ namespace PeriDeal
                                   {"Cracks/Segments", "-1,0.48 ; 2,0.48"},
                                   {"Cracks/" + given, given == "Transmission" ? "0.4" : "3"},
                                   {"Boundary conditions/Dirichlet", "bottom: 0 ; top: 1"}},
-                                 Model::finite_elements);
+                                 ModelKind::finite_elements);
         Vector           u = problem.vector();
         solve_steady(problem.op(), u, 0., 1e-13, 1000);
         const double flux = problem.op().balance(u, 0., true).sides.at("top");
@@ -119,7 +119,7 @@ namespace PeriDeal
   {
     const Problem<2> halves(
       {{"Domain/Cells", "8, 8"}, {"Cracks/Mesh", "faces"}, {"Cracks/Segments", "-1,0.5 ; 2,0.5"}},
-      Model::finite_elements);
+      ModelKind::finite_elements);
     Vector above = halves.vector(), y = halves.vector();
     for (unsigned int i = 0; i < above.locally_owned_size(); ++i)
       above.local_element(i) = halves.sides[i][1] > 0.5 ? 1. : 0.;
@@ -139,7 +139,7 @@ namespace PeriDeal
     const Problem<2> problem({{"Domain/Cells", "8, 8"},
                               {"Cracks/Mesh", "removed"},
                               {"Cracks/Segments", "-1,0.47 ; 2,0.47"}},
-                             Model::finite_elements);
+                             ModelKind::finite_elements);
     Vector           above = problem.values([](const auto &p) { return p[1] > 0.47 ? 1. : 0.; }),
            y               = problem.vector();
     problem.op().apply(y, above);
@@ -150,7 +150,7 @@ namespace PeriDeal
       Problem<2>({{"Domain/Cells", "8, 8"},
                   {"Cracks/Mesh", "removed"},
                   {"Cracks/Segments", "-1,0.47 ; 2,0.47 ; -1,0.55 ; 2,0.55"}},
-                 Model::finite_elements);
+                 ModelKind::finite_elements);
     });
     SceneTests::expect_parts(message, {"'Mesh'", "'Cracks'", "without any conducting cell"});
   }
@@ -163,7 +163,7 @@ namespace PeriDeal
         const Problem<2> problem({{"Domain/Cells", "6, 6"},
                                   {"Material/Density", "2 + x"},
                                   {"Finite elements/Capacity", kind}},
-                                 Model::finite_elements);
+                                 ModelKind::finite_elements);
         Vector           one = problem.vector(), y = problem.vector();
         one = 1.;
         problem.op().apply_capacity(y, one);
@@ -179,7 +179,7 @@ namespace PeriDeal
     SceneTests::expect_parts(SceneTests::message_of([] {
                                Problem<2>(
                                  {{"Domain/Cells", "8, 8"}, {"Material/Conductivity", "x - 0.3"}},
-                                 Model::finite_elements);
+                                 ModelKind::finite_elements);
                              }),
                              {"'Conductivity'", "positive"});
     SceneTests::expect_parts(

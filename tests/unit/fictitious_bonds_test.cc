@@ -46,12 +46,12 @@ namespace
   template <int dim>
   void check_uniform_strain(const Settings &more)
   {
-    const Body<dim>           body(completed<dim>() + more, Model::peridynamics);
+    const Body<dim>           body(completed<dim>() + more, ModelKind::peridynamics);
     const StateOperator<dim> &op = *body.states;
     const Vector              u  = body.values(strained<dim>);
     Vector                    y(u);
     op.multiply(y, u);
-    const double   farthest = op.families().reach() + 1e-9, largest = y.linfty_norm();
+    const double   farthest = op.families().weights().reach() + 1e-9, largest = y.linfty_norm();
     const bool     at_centers = body.scene.domain.nodes == NodePlacement::cell_centers;
     const auto     tensors    = op.tensors(u);
     Tensor<1, dim> right; // the force on the right side
@@ -112,10 +112,10 @@ namespace
     explicit Halves(const Settings &more)
       : half(sized(zeros[dim], dim == 2 ? "16, 12" : "8, 6, 4") +
                Settings{{"Boundary conditions/Symmetry", "left"}} + half_of(more),
-             Model::peridynamics,
+             ModelKind::peridynamics,
              MPI_COMM_SELF)
       , whole(sized(dim == 2 ? "-1, 0" : "-1, 0, 0", dim == 2 ? "32, 12" : "16, 6, 4") + more,
-              Model::peridynamics,
+              ModelKind::peridynamics,
               MPI_COMM_SELF)
     {}
 
@@ -224,7 +224,8 @@ TEST(FictitiousBonds, bonds_break_as_in_the_whole_body)
         nodes + Settings{{"Elasticity/Solver", "dynamics"}, {"Material/Critical stretch", "0.03"}});
       const Vector u    = bodies.half.values(Halves<2>::field),
                    v    = bodies.whole.values(Halves<2>::field);
-      const auto n_half = bodies.half.op().break_bonds(u), n = bodies.whole.op().break_bonds(v);
+      const auto n_half = bodies.half.op().break_bonds(u, 0.),
+                 n      = bodies.whole.op().break_bonds(v, 0.);
       EXPECT_GT(n_half, 100u);
       EXPECT_NEAR(static_cast<double>(n_half), 0.5 * n, 7.); // those that the plane halves
       EXPECT_NEAR(2. * bodies.half.op().released_energy() / bodies.whole.op().released_energy(),
@@ -250,7 +251,7 @@ TEST(FictitiousBonds, diagonal_is_that_of_the_matrix)
       const Body<2>                          body(completed<2>() + nodes +
                            Settings{{"Boundary conditions/Displacement", "left: 0, free"},
                                     {"Boundary conditions/Symmetry", "bottom"}},
-                         Model::peridynamics);
+                         ModelKind::peridynamics);
       dealii::TrilinosWrappers::SparseMatrix matrix;
       body.states->matrix(matrix);
       const Vector &diagonal = body.op().diagonal();
@@ -275,8 +276,8 @@ TEST(FictitiousBonds, same_on_all_processes)
     {
       const Settings settings =
         completed<2>() + nodes + Settings{{"Boundary conditions/Symmetry", "bottom"}};
-      const Body<2> together(settings, Model::peridynamics),
-        alone(settings, Model::peridynamics, MPI_COMM_SELF);
+      const Body<2> together(settings, ModelKind::peridynamics),
+        alone(settings, ModelKind::peridynamics, MPI_COMM_SELF);
       const Vector u = together.values(bumpy_vector<2>), v = alone.values(bumpy_vector<2>);
       Vector       y(u), z(v);
       together.op().multiply(y, u);
@@ -295,7 +296,7 @@ TEST(FictitiousBonds, same_on_all_processes)
 
 TEST(FictitiousBonds, turned_bodies_have_no_forces)
 {
-  const Body<2> body(completed<2>() + full, Model::peridynamics);
+  const Body<2> body(completed<2>() + full, ModelKind::peridynamics);
   const auto    turned = [](const Point<2> &p) {
     const double c = std::cos(1.2), s = std::sin(1.2);
     return Tensor<1, 2>({c * p[0] - s * p[1] - p[0], s * p[0] + c * p[1] - p[1]});

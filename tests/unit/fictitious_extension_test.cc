@@ -43,12 +43,12 @@ namespace
   template <int dim>
   void check_completed(const Settings &settings)
   {
-    const Body<dim> body(settings, Model::coupled);
+    const Body<dim> body(settings, ModelKind::coupled);
     EXPECT_LT(asymmetry(body), 1e-14);
     EXPECT_LT(unbalanced(body), 1e-13);
     Matrix elements;
     body.elements->assemble_intact(elements, false);
-    const double farthest = body.elements->bonds().families().reach() + 1e-9;
+    const double farthest = body.elements->bonds().families().weights().reach() + 1e-9;
     Vector       x        = body.values(
              [](const dealii::Point<dim> &p) -> dealii::Tensor<1, dim> { return 0.1 * p; }),
            y(x), z(x);
@@ -106,8 +106,9 @@ TEST(FictitiousExtension, plane_of_symmetry)
     return dealii::Tensor<1, 2>(
       {std::sin(2. * p[0]) * (1. + p[1]), std::cos(3. * p[0]) * p[1] * p[1]});
   };
-  const Body<2> a(half, Model::coupled, MPI_COMM_SELF), b(whole, Model::coupled, MPI_COMM_SELF);
-  Vector        x = a.values(field), of_half(x), x_whole = b.values(field), of_whole(x_whole);
+  const Body<2> a(half, ModelKind::coupled, MPI_COMM_SELF),
+    b(whole, ModelKind::coupled, MPI_COMM_SELF);
+  Vector x = a.values(field), of_half(x), x_whole = b.values(field), of_whole(x_whole);
   a.elements->unbalanced(of_half, x, 0.);
   b.elements->unbalanced(of_whole, x_whole, 0.);
   unsigned int n_compared = 0;
@@ -126,7 +127,7 @@ TEST(FictitiousExtension, free_thermal_expansion)
 {
   const Body<2> body(completed<2>() + Settings{{"Material/Thermal expansion", "0.001"},
                                                {"Elasticity/Temperature change", "10"}},
-                     Model::coupled);
+                     ModelKind::coupled);
   Vector        u =
     body.values([](const dealii::Point<2> &p) -> dealii::Tensor<1, 2> { return 0.01 * p; });
   Vector r(u);

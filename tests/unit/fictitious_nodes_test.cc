@@ -191,7 +191,7 @@ namespace PeriDeal
         Vector              u = problem.values([](const Point<2> &) { return 7.; });
         u.update_ghost_values();
         problem.bonds->fictitious_values(u, 2., outside);
-        const auto &fictitious = problem.bonds->families().fictitious();
+        const auto &fictitious = problem.bonds->diffusion_bonds().neighbors().outside();
         for (unsigned int f = 0; f < fictitious.size(); ++f)
           {
             const Point<2> p = problem.nodes->lattice()->position(fictitious[f].site);
@@ -209,15 +209,15 @@ namespace PeriDeal
     for (const std::string placement : {"vertices", "cell centers"})
       {
         const Problem<2> problem(harmonic_box(2, "3", "conical", 2, placement) + mirror_box(2));
-        const auto      &families = problem.bonds->families();
-        std::vector<typename Families<2>::Bond> bonds;
+        const auto      &families = problem.bonds->diffusion_bonds();
+        std::vector<typename DiffusionBonds<2>::Bond> bonds;
         for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)
           {
             families.bonds_of(i, bonds);
             double sum = 0., expected = 0.;
             for (const auto &bond : bonds)
               sum += bond.weight / problem.nodes->volume(i);
-            for (const auto &member : families.lattice_members())
+            for (const auto &member : families.weights().members())
               expected += member.weight / 400.;
             EXPECT_NEAR(sum, expected, 1e-12 * expected) << problem.positions[i];
           }

@@ -34,7 +34,7 @@ namespace PeriDeal
     template <int dim>
     void check_rotation(const Settings &more)
     {
-      const Body<dim>        body(box<dim>() + full + more, Model::peridynamics);
+      const Body<dim>        body(box<dim>() + full + more, ModelKind::peridynamics);
       const ElasticOperator &op    = body.op();
       const Tensor<2, dim>   turn  = rotation<dim>(2.);
       const auto             place = [](const Point<dim> &p) {
@@ -68,8 +68,8 @@ namespace PeriDeal
     template <int dim>
     void check_derivatives(const Settings &more)
     {
-      Body<dim>        body(box<dim>() + full + more, Model::peridynamics);
-      const Body<dim>  linear(box<dim>() + moving + more, Model::peridynamics);
+      Body<dim>        body(box<dim>() + full + more, ModelKind::peridynamics);
+      const Body<dim>  linear(box<dim>() + moving + more, ModelKind::peridynamics);
       ElasticOperator &op = body.op();
       Vector           r, s, y;
       for (Vector *v : {&r, &s, &y})
@@ -122,7 +122,7 @@ namespace PeriDeal
 
 
     template <int dim>
-    void check_damping(const Model model)
+    void check_damping(const ModelKind model)
     {
       const Body<dim>        body(box<dim>(), model);
       const ElasticOperator &op = body.op();
@@ -194,7 +194,7 @@ namespace PeriDeal
                         {"Material/Young modulus", "3"},
                         {"Material/Poisson ratio", "0.2"},
                         {"Material/Density", "0.7"}};
-      const Body<dim> body(settings + moving + more, Model::peridynamics);
+      const Body<dim> body(settings + moving + more, ModelKind::peridynamics);
       const StateLaw  law =
         state_law(body.scene.material.moduli(Point<dim>()), dim, body.scene.elasticity.plane);
       Vector y;
@@ -251,9 +251,9 @@ namespace PeriDeal
 
   TEST(ElasticOperator, viscosity)
   {
-    for (const Model model : {Model::finite_elements, Model::peridynamics})
+    for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
       check_damping<2>(model);
-    check_damping<3>(Model::peridynamics);
+    check_damping<3>(ModelKind::peridynamics);
   }
 
 

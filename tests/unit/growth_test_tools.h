@@ -41,7 +41,7 @@ namespace PeriDeal
                       const Settings    &base,
                       const Settings    &changing,
                       const Settings    &final,
-                      const Model        model = Model::peridynamics)
+                      const ModelKind    model = ModelKind::peridynamics)
     {
       const Problem<dim> grown(base + changing, model), built(base + final, model);
       Vector             before = image(grown);
@@ -66,7 +66,7 @@ namespace PeriDeal
     {
       const Coupling<dim>     &coupling = problem.fem->bonds();
       const Families<dim>     &families = coupling.families();
-      const CrackHistory<dim> &history  = families.crack_history();
+      const CrackHistory<dim> &history  = families.cracks().history();
       const bool               at_tips =
         problem.scene.cracks.cuts_bonds_at_tips(problem.scene.peridynamics.surface_correction);
       std::set<std::pair<unsigned int, unsigned int>> known;

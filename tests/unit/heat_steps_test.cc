@@ -81,7 +81,7 @@ namespace PeriDeal
                                                               {"bdf2", t_end / 20},
                                                               {"bdf2", -1.},
                                                               {"crank nicolson", t_end / 20}};
-    for (const Model model : {Model::finite_elements, Model::peridynamics})
+    for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
       for (const auto &[stepper, step] : methods)
         for (const bool changes : {false, true})
           {
@@ -101,12 +101,12 @@ namespace PeriDeal
   {
     const Problem<2> consistent(plate + sides + moving +
                                   Settings{{"Finite elements/Capacity", "consistent"}},
-                                Model::finite_elements);
+                                ModelKind::finite_elements);
     for (const std::string stepper : {"sdirk2", "bdf2", "crank nicolson"})
       EXPECT_LE(advanced(consistent, stepper, with_step(t_end / 20)).lost(), 1e-11) << stepper;
     const Problem<2> mirrored(plate + sides + moving +
                                 Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"}},
-                              Model::peridynamics);
+                              ModelKind::peridynamics);
     for (const std::string stepper : {"rk4", "rkc2", "sdirk2"})
       EXPECT_LE(advanced(mirrored, stepper, with_step(-1.)).lost(), 1e-11) << stepper;
   }
@@ -116,7 +116,7 @@ namespace PeriDeal
   {
     // At the default tolerance, and by fixed steps of a tenth of the time, whose correction leaves
     // a little more.
-    for (const Model model : {Model::finite_elements, Model::peridynamics})
+    for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
       {
         const Problem<2> problem(plate + closed, model);
         for (const auto &[stepper, step] :
@@ -141,7 +141,7 @@ namespace PeriDeal
   {
     const Settings varying{{"Material/Heat capacity", "1 + T + T^2/4"},
                            {"Material/Conductivity", "1 + T/2"}};
-    for (const Model model : {Model::finite_elements, Model::peridynamics})
+    for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
       for (const std::string stepper : {"rkc2", "sdirk2"})
         {
           const Problem<2> problem(plate + sides + moving + varying, model);
@@ -156,8 +156,8 @@ namespace PeriDeal
   {
     // Melting: a peak of area 3 between 0.9 and 1.1 on top of 1. One Gauss rule over the whole
     // range misses most of it.
-    const Problem<1> problem({{"Domain/Cells", "4"},
-                              {"Material/Heat capacity", "1 + 30*max(0, 1 - 10*abs(T - 1))"}});
+    const Problem<1> problem(
+      {{"Domain/Cells", "4"}, {"Material/Heat capacity", "1 + 30*max(0, 1 - 10*abs(T - 1))"}});
     EXPECT_NEAR(heat_content(problem.scene.material, Point<1>(0.5), 2.), 5., 1e-2);
     EXPECT_NEAR(heat_content(problem.scene.material, Point<1>(0.5), -1.), -1., 1e-12);
   }

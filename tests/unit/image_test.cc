@@ -267,12 +267,14 @@ namespace PeriDeal
     const Settings   layers = image.settings({{"Material/Phases/Conductivity", "fibre: 3"},
                                               {"Boundary conditions/Dirichlet", "left: 0 ; right: 1"},
                                               {"Time/Steady", "true"}});
-    const Problem<2> problem(layers, Model::finite_elements);
+    const Problem<2> problem(layers, ModelKind::finite_elements);
     Vector           u = problem.vector();
     solve_steady(problem.op(), u, 0., 1e-12, 1000);
     EXPECT_NEAR(problem.op().balance(u, 0., true).sides.at("right"), 3. / (4. + 2. / 3.), 1e-10);
     const Problem<2> all(layers + Settings{{"Domain/Cells per pixel", "3"}}),
-      alone(layers + Settings{{"Domain/Cells per pixel", "3"}}, Model::peridynamics, MPI_COMM_SELF);
+      alone(layers + Settings{{"Domain/Cells per pixel", "3"}},
+            ModelKind::peridynamics,
+            MPI_COMM_SELF);
     Vector v = all.vector(), w = alone.vector();
     solve_steady(all.op(), v, 0., 1e-12, 1000);
     solve_steady(alone.op(), w, 0., 1e-12, 1000);
@@ -446,7 +448,7 @@ namespace PeriDeal
                         {"Peridynamics/Horizon ratio", "3"},
                         {"Coupling/Zone", "everywhere"},
                         {"Boundary conditions/Dirichlet", "left: 0 ; right: 1"}};
-    const Problem<2> from_image(image.settings(both), Model::coupled);
+    const Problem<2> from_image(image.settings(both), ModelKind::coupled);
     const Problem<2> plate(Settings{{"Domain/Shape", "plate with hole"},
                                     {"Domain/Lower corner", "0, 0"},
                                     {"Domain/Upper corner", "11, 11"},
@@ -454,7 +456,7 @@ namespace PeriDeal
                                     {"Domain/Hole center", "5.5, 5.5"},
                                     {"Domain/Hole radius", "0.4"}} +
                              both,
-                           Model::coupled);
+                           ModelKind::coupled);
     EXPECT_EQ(from_image.op().size().bonds, plate.op().size().bonds);
     const Vector &found = from_image.op().diagonal(), &expected = plate.op().diagonal();
     ASSERT_EQ(found.locally_owned_size(), expected.locally_owned_size());

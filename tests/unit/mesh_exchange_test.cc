@@ -97,7 +97,7 @@ namespace
                                    "0.55 - x",
                                    "sin(4375.85*x + 1234.5*y + 777.7*z + 2) + 0.2"})
       {
-        const Problem<dim>        problem(on<dim>(mesh, horizon, zone), Model::coupled);
+        const Problem<dim>        problem(on<dim>(mesh, horizon, zone), ModelKind::coupled);
         const CouplingCertificate found = examine_coupling(*problem.fem, true);
         const double              kept =
           dynamic_cast<const MeshExchange<dim> &>(problem.fem->bonds()).kept_share();
@@ -270,19 +270,19 @@ TEST(MeshExchange, calibrated_over_the_zone)
 {
   const Problem<2> problem(
     on<2>(distorted_mesh<2>(16, 0.1, 1.5), "0.075", "0.1 - max(abs(x - 0.5), abs(y - 0.5))"),
-    Model::coupled);
+    ModelKind::coupled);
   EXPECT_LT(examine_coupling(*problem.fem, true).linear, 1e-12);
-  const Families<2>                      &families = problem.fem->bonds().families();
-  const Nodes<2>                         &nodes    = families.nodes();
-  std::vector<typename Families<2>::Bond> bonds;
-  double                                  sum = 0., n = 0.;
+  const Families<2>                        &families = problem.fem->bonds().families();
+  const Nodes<2>                           &nodes    = families.nodes();
+  std::vector<typename Families<2>::Member> bonds;
+  double                                    sum = 0., n = 0.;
   for (unsigned int i = 0; i < nodes.n_owned(); ++i)
     {
       if (!problem.fem->bonds().in_zone(i))
         continue;
-      families.bonds_of(i, bonds);
+      families.members_of(i, bonds);
       for (const auto &bond : bonds)
-        sum += bond.intact * families.bond_vector(i, bond.neighbor).norm_square() /
+        sum += bond.weight * families.neighbors().bond_vector(i, bond.neighbor).norm_square() /
                (4. * nodes.volume(i));
       n += 1.;
     }
@@ -295,11 +295,11 @@ TEST(MeshExchange, calibrated_over_the_zone)
 
 TEST(MeshExchange, crack_cut_into_the_mesh)
 {
-  const Settings            shape{{"Domain/Cells", "16, 16"},
+  const Settings   shape{{"Domain/Cells", "16, 16"},
                        {"Cracks/Segments", "0.25,0.5 ; 0.75,0.5"},
                        {"Cracks/Mesh", "faces"},
                        {"Coupling/Zone", "everywhere"}};
-  const Problem<2>          problem(shape, Model::coupled), elements(shape, Model::finite_elements);
+  const Problem<2> problem(shape, ModelKind::coupled), elements(shape, ModelKind::finite_elements);
   const CouplingCertificate found = examine_coupling(*problem.fem, true);
   EXPECT_LT(found.linear, 1e-12);
   EXPECT_GT(found.lowest_remainder, -1e-13);
@@ -312,8 +312,9 @@ namespace
   /** The same on all processes together and on one alone. */
   void compare_processes(const Settings &settings)
   {
-    const Problem<2> all(settings, Model::coupled), alone(settings, Model::coupled, MPI_COMM_SELF);
-    Vector           a = all.vector(), b = alone.vector();
+    const Problem<2> all(settings, ModelKind::coupled),
+      alone(settings, ModelKind::coupled, MPI_COMM_SELF);
+    Vector a = all.vector(), b = alone.vector();
     all.fem->apply(a, all.values(bumpy<2>));
     alone.fem->apply(b, alone.values(bumpy<2>));
     EXPECT_LT(difference(all, a, alone, b), 1e-13 * alone.op().diagonal().linfty_norm());
@@ -376,7 +377,7 @@ TEST(MeshExchange, sides_that_are_not_quite_straight)
     for (const double degrees : {20., 37., 47., 53.})
       {
         const Settings   settings = on<2>(turned_mesh(degrees, n_digits), "0.8", "everywhere");
-        const Problem<2> problem(settings, Model::coupled);
+        const Problem<2> problem(settings, ModelKind::coupled);
         const CouplingCertificate found = examine_coupling(*problem.fem, true);
         EXPECT_LT(found.linear, 1e-12) << degrees << ", " << n_digits;
         EXPECT_LT(found.asymmetry, 1e-13) << degrees << ", " << n_digits;
@@ -406,11 +407,11 @@ TEST(MeshExchange, moving_zone_ends_where_a_new_operator_starts)
         const Settings base =
           on<2>(mesh, "0.15", zone) + Settings{{"Peridynamics/Surface correction", correction},
                                                {"Boundary conditions/Convection", "0: 2, 1"}};
-        expect_grown<2>(zone + ", " + correction, base, growing, at_end, Model::coupled);
+        expect_grown<2>(zone + ", " + correction, base, growing, at_end, ModelKind::coupled);
       }
   for (const std::string zone : {"cracks: 1", "cracks: 0.4"})
     {
-      const Problem<2> problem(on<2>(mesh, "0.15", zone) + growing, Model::coupled);
+      const Problem<2> problem(on<2>(mesh, "0.15", zone) + growing, ModelKind::coupled);
       EXPECT_GT(expect_history_kept(problem, zone), 0u) << zone;
     }
 }

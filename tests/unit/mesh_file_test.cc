@@ -84,13 +84,13 @@ namespace PeriDeal
     // A linear temperature between top and bottom; calibrated on the mean of the full families, so
     // exact up to their scatter and, most of all, the cut families on the sides.
     const Settings sides{{"Boundary conditions/Dirichlet", "3: 0 ; 4: 1"}};
-    for (const Model model : {Model::finite_elements, Model::peridynamics})
+    for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
       {
         const Problem<2> problem(file("quads.msh", "0.12") + sides, model);
         Vector           u = problem.vector();
         solve_steady(problem.op(), u, 0., 1e-12, 1000);
         const double heat = problem.op().balance(u, 0., true).sides.at("4");
-        EXPECT_NEAR(heat, 2., model == Model::finite_elements ? 1e-10 : 0.4);
+        EXPECT_NEAR(heat, 2., model == ModelKind::finite_elements ? 1e-10 : 0.4);
       }
   }
 
@@ -98,7 +98,7 @@ namespace PeriDeal
   TEST(MeshFile, cut_along_faces)
   {
     // The line y = 1/2 consists of faces: cut right through nothing is conducted any more.
-    for (const Model model : {Model::finite_elements, Model::peridynamics})
+    for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
       {
         const Problem<2> problem(insulated_crack("faces"), model);
         Vector           u = problem.vector();
@@ -119,7 +119,7 @@ namespace PeriDeal
   TEST(MeshFile, same_on_every_number_of_processes)
   {
     for (const std::string mesh : {"faces", "pairs"})
-      for (const Model model : {Model::finite_elements, Model::peridynamics})
+      for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
         {
           const Problem<2> all(insulated_crack(mesh), model),
             alone(insulated_crack(mesh), model, MPI_COMM_SELF);
@@ -141,13 +141,13 @@ namespace PeriDeal
                                            {"Material/Phases/Conductivity", "upper: 100"},
                                            {"Boundary conditions/Dirichlet", "3: 0 ; 4: 1"}};
     const double exact = 2. / (0.5 + 0.5 / 100.);
-    for (const Model model : {Model::finite_elements, Model::peridynamics})
+    for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
       {
         const Problem<2> problem(layers, model);
         Vector           u = problem.vector();
         solve_steady(problem.op(), u, 0., 1e-12, 1000);
         const double heat = problem.op().balance(u, 0., true).sides.at("4");
-        EXPECT_NEAR(heat, exact, model == Model::finite_elements ? 1e-10 : 0.3 * exact);
+        EXPECT_NEAR(heat, exact, model == ModelKind::finite_elements ? 1e-10 : 0.3 * exact);
         for (const double y : {0.1, 0.4, 0.6, 0.9})
           EXPECT_EQ(problem.scene.material.conductivity.value(Point<2>(0.77, y)),
                     y > 0.5 ? 100. : 1.);

@@ -279,12 +279,12 @@ namespace PeriDeal
   TEST(Nodes, own_points_beside_a_crack)
   {
     // Doubled nodes know on which side they are; no bond of 0.5 < y reaches below.
-    const Problem<2>                        problem(square("16, 16", "-1,0.5 ; 2,0.5"));
-    std::vector<typename Families<2>::Bond> bonds;
+    const Problem<2>                              problem(square("16, 16", "-1,0.5 ; 2,0.5"));
+    std::vector<typename DiffusionBonds<2>::Bond> bonds;
     EXPECT_TRUE(problem.nodes->has_doubled_nodes());
     for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)
       {
-        problem.bonds->families().bonds_of(i, bonds);
+        problem.bonds->diffusion_bonds().bonds_of(i, bonds);
         const bool above = problem.nodes->crack_point(i)[1] > 0.5;
         for (const auto &bond : bonds)
           EXPECT_EQ(bond.cut, (problem.nodes->crack_point(bond.neighbor)[1] > 0.5) != above);

@@ -26,7 +26,7 @@ namespace PeriDeal
 
   TEST(NodeConstraints, the_side_named_first_holds_at_corners)
   {
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       {
         const Settings   plate{{"Domain/Cells", "6, 6"}};
         const Problem<2> first(
@@ -115,9 +115,9 @@ namespace PeriDeal
         Vector           u = problem.values(bumpy<2>);
         problem.op().distribute(u, 0.);
         u.update_ghost_values();
-        const auto                             &families = problem.bonds->families();
-        std::vector<typename Families<2>::Bond> bonds;
-        unsigned int                            n = 0;
+        const auto                                   &families = problem.bonds->diffusion_bonds();
+        std::vector<typename DiffusionBonds<2>::Bond> bonds;
+        unsigned int                                  n = 0;
         for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)
           {
             const Point<2> p     = problem.positions[i];
@@ -130,7 +130,7 @@ namespace PeriDeal
             families.bonds_of(i, bonds, false);
             for (const auto &bond : bonds)
               {
-                const auto   xi = families.bond_vector(i, bond.neighbor);
+                const auto   xi = families.neighbors().bond_vector(i, bond.neighbor);
                 const double L  = of_right ? -xi[0] : bottom ? xi[1] : -xi[1];
                 if (L < 1e-9)
                   continue;

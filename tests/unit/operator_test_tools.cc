@@ -32,21 +32,23 @@ namespace PeriDeal
 
 
     template <int dim>
-    Problem<dim>::Problem(const Settings &settings, const Model model, const MPI_Comm communicator)
+    Problem<dim>::Problem(const Settings &settings,
+                          const ModelKind model,
+                          const MPI_Comm  communicator)
     {
       scene.general.set("Models", to_string(model));
       set(scene, settings);
       mesh = build_mesh(scene, communicator, notes);
       set_material_ids(*mesh, scene.material.phases.all());
       handler.reinit(*mesh);
-      if (model == Model::peridynamics && scene.domain.nodes == NodePlacement::cell_centers)
+      if (model == ModelKind::peridynamics && scene.domain.nodes == NodePlacement::cell_centers)
         handler.distribute_dofs(dealii::FE_DGQ<dim>(0));
       else
-        handler.distribute_dofs(
-          dealii::FE_Q<dim>(model == Model::finite_elements ? scene.finite_elements.degree : 1));
+        handler.distribute_dofs(dealii::FE_Q<dim>(
+          model == ModelKind::finite_elements ? scene.finite_elements.degree : 1));
       if (scene.domain.shape != Shape::mesh_file && handler.get_fe().degree <= 1)
         number_along_lattice(handler, scene.domain);
-      if (model == Model::peridynamics)
+      if (model == ModelKind::peridynamics)
         {
           nodes = std::make_unique<Nodes<dim>>(handler,
                                                scene.domain,
@@ -57,7 +59,7 @@ namespace PeriDeal
       else
         {
           std::unique_ptr<Coupling<dim>> coupling;
-          if (model == Model::coupled)
+          if (model == ModelKind::coupled)
             {
               nodes    = std::make_unique<Nodes<dim>>(handler,
                                                    scene.domain,

@@ -52,7 +52,7 @@ namespace PeriDeal
     struct Problem
     {
       explicit Problem(const Settings &settings,
-                       const Model     model        = Model::peridynamics,
+                       const ModelKind model        = ModelKind::peridynamics,
                        const MPI_Comm  communicator = MPI_COMM_WORLD);
 
       ~Problem();

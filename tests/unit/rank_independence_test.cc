@@ -25,7 +25,7 @@ namespace PeriDeal
     void expect_same(const std::string &what,
                      const Settings    &settings,
                      const double       accuracy,
-                     const Model        model = Model::peridynamics)
+                     const ModelKind    model = ModelKind::peridynamics)
     {
       const Problem<dim> all(settings, model), alone(settings, model, MPI_COMM_SELF);
       const auto         residual = [](const Problem<dim> &problem) {
@@ -178,7 +178,7 @@ namespace PeriDeal
                                     {"Coupling/Zone", zone},
                                     {"Peridynamics/Surface correction", correction}},
                          1e-13,
-                         Model::coupled);
+                         ModelKind::coupled);
     expect_same<2>("materials and hole",
                    {{"Domain/Shape", "plate with hole"},
                     {"Domain/Cells", "30, 30"},
@@ -188,11 +188,11 @@ namespace PeriDeal
                     {"Coupling/Zone", "everywhere"},
                     {"Boundary conditions/Dirichlet", "hole: 1"}},
                    1e-13,
-                   Model::coupled);
+                   ModelKind::coupled);
     expect_same<1>("bar",
                    {{"Domain/Cells", "33"}, {"Coupling/Zone", "0.6 - x"}},
                    1e-13,
-                   Model::coupled);
+                   ModelKind::coupled);
     for (const std::string zone : {"cracks: 0.5", "everywhere"})
       expect_same<3>("brick",
                      {{"Domain/Cells", "12, 12, 8"},
@@ -202,7 +202,7 @@ namespace PeriDeal
                       {"Coupling/Zone", zone},
                       {"Boundary conditions/Dirichlet", "left: y ; front: 1"}},
                      1e-13,
-                     Model::coupled);
+                     ModelKind::coupled);
   }
 
 
@@ -215,7 +215,7 @@ namespace PeriDeal
                               {"Boundary conditions/Convection", "bottom: 3, x"},
                               {"Initial and source/Source", "x*y"},
                               {"Peridynamics/Surface correction", "crack scaling"}};
-    for (const Model model : {Model::coupled, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::coupled, ModelKind::finite_elements})
       {
         expect_same<2>("plate", cracked + conditions, 1e-13, model);
         expect_same<3>("brick",
@@ -248,36 +248,36 @@ namespace PeriDeal
       expect_same<2>(mesh,
                      cracked + conditions + Settings{{"Cracks/Mesh", mesh}},
                      1e-13,
-                     Model::finite_elements);
+                     ModelKind::finite_elements);
     expect_same<2>("scaled, consistent",
                    cracked + conditions +
                      Settings{{"Peridynamics/Surface correction", "crack scaling"},
                               {"Finite elements/Capacity", "consistent"}},
                    1e-13,
-                   Model::finite_elements);
+                   ModelKind::finite_elements);
     expect_same<2>("faces",
                    {{"Domain/Cells", "32, 32"},
                     {"Cracks/Mesh", "faces"},
                     {"Cracks/Segments", "0.25,0.5 ; 0.75,0.5 ; 0.5,0.25 ; 0.5,0.75"}},
                    1e-13,
-                   Model::finite_elements);
-    expect_same<1>("bar", {{"Domain/Cells", "33"}}, 1e-13, Model::finite_elements);
+                   ModelKind::finite_elements);
+    expect_same<1>("bar", {{"Domain/Cells", "33"}}, 1e-13, ModelKind::finite_elements);
     expect_same<3>("brick",
                    {{"Domain/Cells", "6, 6, 4"}, {"Boundary conditions/Dirichlet", "back: x"}},
                    1e-13,
-                   Model::finite_elements);
+                   ModelKind::finite_elements);
     expect_same<2>("Q2",
                    {{"Domain/Cells", "8, 8"},
                     {"Finite elements/Degree", "2"},
                     {"Boundary conditions/Dirichlet", "left: y*y"}},
                    1e-12,
-                   Model::finite_elements);
+                   ModelKind::finite_elements);
   }
 
 
   TEST(RankIndependence, steady_solutions)
   {
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       {
         const Settings settings =
           cracked + Settings{{"Boundary conditions/Dirichlet", "left: 1 ; right: y"}};

@@ -86,7 +86,7 @@ end
                    scene);
     EXPECT_EQ(scene.general.title, "A");
     EXPECT_EQ(scene.general.models,
-              (std::vector<Model>{Model::peridynamics, Model::finite_elements}));
+              (std::vector<ModelKind>{ModelKind::peridynamics, ModelKind::finite_elements}));
     EXPECT_EQ(scene.domain.lower, Point<2>(-1., -2.));
     EXPECT_EQ(scene.domain.upper, Point<2>(1., 2.));
     EXPECT_EQ(scene.domain.cells, (std::array<unsigned int, 2>{{10u, 40u}}));

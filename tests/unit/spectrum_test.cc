@@ -19,7 +19,7 @@ namespace PeriDeal
     void expect_bounds(const std::string &what,
                        const Settings    &settings,
                        const double       slack,
-                       const Model        model = Model::peridynamics)
+                       const ModelKind    model = ModelKind::peridynamics)
     {
       const Problem<dim>    problem(settings, model);
       const Spectrum        spectrum = problem.op().spectrum();
@@ -72,8 +72,8 @@ namespace PeriDeal
     expect_bounds<3>("brick",
                      {{"Domain/Cells", "6, 5, 5"}, {"Peridynamics/Horizon", "0.45"}},
                      0.02);
-    expect_bounds<2>("elements", plate + sides, 0.02, Model::finite_elements);
-    expect_bounds<2>("elements, crack", plate + sides + crack, 0.02, Model::finite_elements);
+    expect_bounds<2>("elements", plate + sides, 0.02, ModelKind::finite_elements);
+    expect_bounds<2>("elements, crack", plate + sides + crack, 0.02, ModelKind::finite_elements);
     expect_bounds<2>("heavy on the right",
                      plate + Settings{{"Material/Density", "1 + 1000*(x > 0.5)"}},
                      0.02);

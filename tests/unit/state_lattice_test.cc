@@ -90,8 +90,8 @@ namespace
   template <int dim>
   void expect_same(const Settings &more, const double stored_share)
   {
-    const Body<dim> lattice(box<dim>() + form("lattice") + more, Model::peridynamics),
-      stored(box<dim>() + form("stored") + more, Model::peridynamics);
+    const Body<dim> lattice(box<dim>() + form("lattice") + more, ModelKind::peridynamics),
+      stored(box<dim>() + form("stored") + more, ModelKind::peridynamics);
     std::string what = std::to_string(dim) + "D";
     for (const auto &[entry, value] : more)
       what += ", " + entry + " = " + value;
@@ -226,7 +226,7 @@ TEST(StateLattice, soft_beside_stiff)
                                                 {"Material/Phases/Young modulus", "stiff: 3e6"},
                                                 {"Material/Phases/Poisson ratio", "stiff: 0.2"}};
   const auto     forces   = [&](const std::string &name) {
-    const Body<2> body(settings + form(name), Model::peridynamics);
+    const Body<2> body(settings + form(name), ModelKind::peridynamics);
     Vector        y;
     body.op().initialize_vector(y);
     body.states->multiply(y, body.values(bumpy_vector<2>));
@@ -247,8 +247,8 @@ TEST(StateLattice, does_not_depend_on_the_number_of_processes)
                                      {"Cracks/Segments", "0.3,0.412 ; 0.61,0.33"},
                                      {"Material/Phases/Regions", "stiff: x > 0.6"},
                                      {"Material/Phases/Young modulus", "stiff: 30"}};
-  const Body<2> all(settings, Model::peridynamics),
-    alone(settings, Model::peridynamics, MPI_COMM_SELF);
+  const Body<2> all(settings, ModelKind::peridynamics),
+    alone(settings, ModelKind::peridynamics, MPI_COMM_SELF);
   const auto multiply = [](const Body<2> &body) {
     Vector y;
     body.op().initialize_vector(y);
@@ -268,10 +268,10 @@ TEST(StateLattice, does_not_depend_on_the_number_of_processes)
 TEST(StateLattice, choice_of_the_form)
 {
   const auto form_of = [](const Settings &more) {
-    return Body<2>(box<2>() + more, Model::peridynamics).states->size().form;
+    return Body<2>(box<2>() + more, ModelKind::peridynamics).states->size().form;
   };
   EXPECT_EQ(form_of({}), "lattice");
-  EXPECT_EQ(Body<1>(box<1>(), Model::peridynamics).states->size().form, "stored");
+  EXPECT_EQ(Body<1>(box<1>(), ModelKind::peridynamics).states->size().form, "stored");
   EXPECT_EQ(form_of(form("stored")), "stored");
   EXPECT_EQ(form_of({{"Material/Critical stretch", "0.1"}}), "stored");
   EXPECT_EQ(

@@ -16,7 +16,7 @@ namespace
   template <int dim>
   void expect_same(const Settings &more, const bool deformed = false)
   {
-    const Body<dim>     body(box<dim>() + more, Model::peridynamics);
+    const Body<dim>     body(box<dim>() + more, ModelKind::peridynamics);
     StateOperator<dim> &op = *body.states;
     const Vector        u  = body.values(bumpy_vector<dim>);
     const Vector        v  = body.values(

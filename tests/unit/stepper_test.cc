@@ -82,7 +82,7 @@ namespace PeriDeal
                      {"Peridynamics/Boundary treatment", "fictitious mirror"},
                      {"Boundary conditions/Dirichlet", "left: 0 ; right: 0 ; bottom: 0 ; top: 0"}})
       {
-        for (const auto &member : problem.bonds->families().lattice_members())
+        for (const auto &member : problem.bonds->diffusion_bonds().weights().members())
           lambda += member.weight / (cells * cells) *
                     (1. - std::cos(pi * member.offset[0] / cells) *
                             std::cos(pi * member.offset[1] / cells));
@@ -165,7 +165,7 @@ namespace PeriDeal
     const unsigned int n = 16;
     const Problem<2>   problem(
       {{"Domain/Cells", "16, 4"}, {"Finite elements/Capacity", "consistent"}},
-      Model::finite_elements);
+      ModelKind::finite_elements);
     EXPECT_FALSE(problem.op().capacity_is_diagonal());
     EXPECT_EQ(choose_stepper(problem.op()), "sdirk2");
     const double   c = std::cos(pi / n), lambda = 6. * n * n * (1. - c) / (2. + c);
@@ -189,7 +189,7 @@ namespace PeriDeal
        {"Finite elements/Capacity", "consistent"},
        {"Boundary conditions/Dirichlet", "left: cos(3*t) ; right: 2*cos(3*t)"},
        {"Initial and source/Source", "-3*(1 + x)*sin(3*t)"}},
-      Model::finite_elements);
+      ModelKind::finite_elements);
     const Solution exact = [](const Point<2> &p, const double t) {
       return (1. + p[0]) * std::cos(3. * t);
     };

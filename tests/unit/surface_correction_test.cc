@@ -132,7 +132,7 @@ namespace
   {
     const Body<dim>   body(box<dim>() + Settings{{"Peridynamics/Surface correction", "moments"}} +
                            more,
-                         Model::peridynamics);
+                         ModelKind::peridynamics);
     std::vector<bool> wrong(body.nodes->n_owned(), false);
     for (unsigned int a = 0; a < dim; ++a)
       for (unsigned int b = a; b < dim; ++b)
@@ -192,13 +192,13 @@ TEST(SurfaceCorrection, moments_make_uniform_strains_exact)
 TEST(SurfaceCorrection, corners_are_left)
 {
   const Settings moments{{"Peridynamics/Surface correction", "moments"}};
-  const Body<1>  bar(box<1>() + moments, Model::peridynamics);
+  const Body<1>  bar(box<1>() + moments, ModelKind::peridynamics);
   EXPECT_EQ(bar.states->n_uncorrected_nodes(), 0u);
   for (const std::string cells : {"20, 20", "30, 30"})
     {
       const Body<2> square(
         box<2>() + Settings{{"Domain/Upper corner", "1, 1"}, {"Domain/Cells", cells}} + moments,
-        Model::peridynamics);
+        ModelKind::peridynamics);
       EXPECT_EQ(square.states->n_uncorrected_nodes(), 4u);
     }
 }
@@ -208,7 +208,7 @@ TEST(SurfaceCorrection, refuses_energies_that_are_not_positive)
 {
   const Settings auxetic = box<2>() + Settings{{"Material/Poisson ratio", "-0.95"}};
   const auto     make    = [&](const std::string &law) {
-    Body<2>(auxetic + Settings{{"Peridynamics/Surface correction", law}}, Model::peridynamics);
+    Body<2>(auxetic + Settings{{"Peridynamics/Surface correction", law}}, ModelKind::peridynamics);
   };
   for (const std::string law : {"none", "moments"})
     EXPECT_NO_THROW(make(law));

@@ -46,7 +46,7 @@ namespace PeriDeal
   {
     // theta = T + T^2/2 is linear in the steady state; bonds and elements with the mean of both
     // ends carry exactly its differences.
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       {
         const Problem<2> problem(wall + mirrored, model);
         Vector           u = problem.vector();
@@ -59,7 +59,7 @@ namespace PeriDeal
         largest = dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD);
         // Elements are exact at their vertices; beyond a side the mirror keeps T, not theta,
         // linear: measured 5e-4.
-        EXPECT_LE(largest, model == Model::finite_elements ? 1e-10 : 8e-4);
+        EXPECT_LE(largest, model == ModelKind::finite_elements ? 1e-10 : 8e-4);
         const auto balance = problem.op().balance(u, 0., true);
         EXPECT_NEAR(balance.sides.at("right"), 1.5 * 0.4, 5e-3);
         EXPECT_NEAR(balance.imbalance(), 0., 1e-10);
@@ -70,7 +70,7 @@ namespace PeriDeal
   TEST(Temperature, orders_of_the_steppers)
   {
     const Settings both = wall + mirrored + Settings{{"Material/Heat capacity", "1 + T/2"}};
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       {
         const Problem<2> problem(both, model);
         const Vector     exact = advanced(problem, "crank nicolson", 0.05 / 512);
@@ -99,7 +99,7 @@ namespace PeriDeal
 
   TEST(Temperature, flows_are_those_of_the_last_temperatures)
   {
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       for (const auto &[stepper, step] :
            std::vector<std::pair<std::string, double>>{{"euler", 1.2e-4},
                                                        {"rkc2", 0.05 / 8},
@@ -119,7 +119,7 @@ namespace PeriDeal
 
   TEST(Temperature, content_is_the_integral_of_the_capacity)
   {
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       {
         const Problem<2> problem(wall + Settings{{"Material/Heat capacity", "1 + T/2"}}, model);
         Vector           u = problem.values([](const Point<2> &) { return 2.; });
@@ -139,7 +139,7 @@ namespace PeriDeal
       scaled{{"Peridynamics/Surface correction", "crack scaling"}},
       slaves{{"Boundary conditions/Flux", "right: 2"},
              {"Peridynamics/Flux treatment", "extrapolation"}};
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       for (const Settings &more : {contact, scaled, contact + scaled, contact + slaves})
         {
           const Problem<2> cold(wall + crack + more, model),
@@ -163,7 +163,7 @@ namespace PeriDeal
 
   TEST(Temperature, same_on_every_number_of_processes)
   {
-    for (const Model model : {Model::peridynamics, Model::finite_elements})
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       for (const std::string treatment : {"none", "fictitious mirror"})
         {
           const Settings   both = wall + Settings{{"Material/Heat capacity", "1 + T/2"},
@@ -175,7 +175,7 @@ namespace PeriDeal
                               alone,
                               advanced(alone, stepper, step));
           };
-          EXPECT_LE(gap("euler", 1.2e-4), model == Model::peridynamics ? 0. : 1e-12);
+          EXPECT_LE(gap("euler", 1.2e-4), model == ModelKind::peridynamics ? 0. : 1e-12);
           EXPECT_LE(gap("sdirk2", 0.05 / 32), 1e-9);
         }
   }

@@ -25,9 +25,9 @@ namespace
   {
     const Settings loaded =
       box<dim>() + Settings{{"Boundary conditions/Traction", traction}} + more;
-    const Body<dim> plain(loaded, Model::peridynamics),
+    const Body<dim> plain(loaded, ModelKind::peridynamics),
       layered(loaded + Settings{{"Boundary conditions/Traction layer", std::to_string(depth)}},
-              Model::peridynamics);
+              ModelKind::peridynamics);
     const unsigned int axis = layered.scene.boundary_conditions.traction.front().id / 2;
     const double       side = layered.scene.domain.upper[axis];
     // Sums over columns, by their place across the side.

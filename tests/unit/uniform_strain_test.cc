@@ -48,9 +48,9 @@ namespace
                                     {"Peridynamics/Kernel", lattice.kernel},
                                     {"Peridynamics/Kernel exponent", lattice.exponent}} +
                            more,
-                         Model::peridynamics);
+                         ModelKind::peridynamics);
     const Moduli    moduli = body.scene.material.moduli(dealii::Point<dim>());
-    const double    reach  = body.states->families().reach();
+    const double    reach  = body.states->families().weights().reach();
     double          n = 0., worst = 0.;
     for (unsigned int a = 0; a < dim; ++a)
       for (unsigned int b = a; b < dim; ++b)
@@ -104,7 +104,7 @@ namespace
     const Body<2>     body(box<2>() + Settings{{"Domain/Upper corner", size + ", " + size},
                                            {"Domain/Cells", size + ", " + size},
                                            {"Material/Poisson ratio", nu}},
-                       Model::peridynamics);
+                       ModelKind::peridynamics);
     return body.op().energy(
       body.values([&](const dealii::Point<2> &p) { return dealii::Tensor<1, 2>(strain * p); }));
   }
@@ -167,19 +167,19 @@ namespace
                                            const dealii::SymmetricTensor<2, 3> &strain)
   {
     const std::string size = std::to_string(n);
-    const Body<3> body(box<3>() + Settings{{"Domain/Upper corner", size + "," + size + "," + size},
-                                           {"Domain/Cells", size + "," + size + "," + size},
-                                           {"Material/Poisson ratio", "0.25"},
-                                           {"Elasticity/Model", "bond-based"},
-                                           {"Elasticity/Micromodulus",
-                                            constant ? "constant" : "family"}},
-                       Model::peridynamics);
+    const Body<3>     body(box<3>() +
+                         Settings{{"Domain/Upper corner", size + "," + size + "," + size},
+                                  {"Domain/Cells", size + "," + size + "," + size},
+                                  {"Material/Poisson ratio", "0.25"},
+                                  {"Elasticity/Model", "bond-based"},
+                                  {"Elasticity/Micromodulus", constant ? "constant" : "family"}},
+                       ModelKind::peridynamics);
     // Of Young modulus 3; lambda is equal to the shear modulus.
-    const double  lambda = 1.2, volume = n * n * n;
-    const double  classical = volume * (0.5 * lambda * trace(strain) * trace(strain) +
+    const double lambda = 1.2, volume = n * n * n;
+    const double classical = volume * (0.5 * lambda * trace(strain) * trace(strain) +
                                        lambda * strain.norm() * strain.norm());
-    const double  found     = body.op().energy(body.values(
-      [&](const dealii::Point<3> &p) { return dealii::Tensor<1, 3>(strain * p); }));
+    const double found     = body.op().energy(
+      body.values([&](const dealii::Point<3> &p) { return dealii::Tensor<1, 3>(strain * p); }));
 
     const auto size_of = [&](const std::array<int, 3> &site) {
       double v = 1.;
@@ -188,14 +188,14 @@ namespace
       return v;
     };
     double complete = 0., sum = 0.;
-    for (const auto &member : body.states->families().lattice_members())
+    for (const auto &member : body.states->families().weights().members())
       complete += member.weight * member.r * member.r;
     for (int x = 0; x <= static_cast<int>(n); ++x)
       for (int y = 0; y <= static_cast<int>(n); ++y)
         for (int z = 0; z <= static_cast<int>(n); ++z)
           {
             double q = 0., energy = 0.;
-            for (const auto &member : body.states->families().lattice_members())
+            for (const auto &member : body.states->families().weights().members())
               {
                 dealii::Tensor<1, 3> xi;
                 for (unsigned int d = 0; d < 3; ++d)
@@ -203,7 +203,7 @@ namespace
                 const double weight = member.weight * size_of({{x + member.offset[0],
                                                                 y + member.offset[1],
                                                                 z + member.offset[2]}}),
-                             e = xi * (strain * xi) / member.r;
+                             e      = xi * (strain * xi) / member.r;
                 q += weight * member.r * member.r;
                 energy += weight * e * e;
               }
@@ -221,7 +221,7 @@ TEST(StateOperator, surfaces_of_bond_based_bodies)
   // surfaces or not; the constant micromodulus has it inside, less by what families lack at
   // surfaces.
   dealii::SymmetricTensor<2, 3> equal = dealii::unit_symmetric_tensor<3>(), shear;
-  shear[0][1] = 0.5;
+  shear[0][1]                         = 0.5;
   for (const bool constant : {false, true})
     for (const auto &strain : {equal, shear})
       {
@@ -251,11 +251,11 @@ TEST(StateOperator, dilatation_on_rectangular_cells)
       const Body<2>       body(box<2>() + Settings{{"Domain/Upper corner", "1, 1"},
                                              {"Domain/Cells", cells},
                                              {"Peridynamics/Horizon ratio", "6"}},
-                         Model::peridynamics);
+                         ModelKind::peridynamics);
       std::vector<double> theta;
       body.states->dilatations(body.values([&](const dealii::Point<2> &p) { return g * p; }),
                                theta);
-      const double reach = body.states->families().reach();
+      const double reach = body.states->families().weights().reach();
       double       n     = 0.;
       for (unsigned int i = 0; i < theta.size(); ++i)
         if (std::max(std::abs(body.position(i)[0] - 0.5), std::abs(body.position(i)[1] - 0.5)) <

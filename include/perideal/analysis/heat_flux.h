@@ -6,7 +6,7 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <perideal/base/types.h>
-#include <perideal/bonds/families.h>
+#include <perideal/bonds/diffusion_bonds.h>
 #include <perideal/operators/fem_operator.h>
 
 #include <array>
@@ -28,7 +28,7 @@ namespace PeriDeal
    *                the vectors must be initialized.
    */
   template <int dim>
-  void bond_heat_flux(const Families<dim>       &families,
+  void bond_heat_flux(const DiffusionBonds<dim> &bonds,
                       const Vector              &u,
                       const std::vector<double> &outside,
                       VectorField<dim>          &two_sided,
@@ -47,7 +47,7 @@ namespace PeriDeal
 
   /** Part of each family (by volume) whose bonds cross a crack. Not collective. */
   template <int dim>
-  void cut_fraction(const Families<dim> &families, Vector &fraction);
+  void cut_fraction(const DiffusionBonds<dim> &bonds, Vector &fraction);
 
   /**
    * Finite element heat flux -kappa grad T at the vertices, as the mean over the adjacent cells by

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/bonds/families.h>
+#include <perideal/bonds/diffusion_bonds.h>
 
 #include <functional>
 #include <memory>
@@ -76,7 +76,7 @@ namespace PeriDeal
 
   /** Every bond stored, in compressed rows with 32-bit columns: any nodes, any bonds. */
   template <int dim>
-  std::unique_ptr<BondForm> make_stored_form(const Families<dim> &families);
+  std::unique_ptr<BondForm> make_stored_form(const DiffusionBonds<dim> &bonds);
 
   /**
    * No bond stored: the family of a lattice is the same everywhere, so the sum is a convolution on
@@ -85,12 +85,12 @@ namespace PeriDeal
    * corrections. Only for nodes with unique lattice sites.
    */
   template <int dim>
-  std::unique_ptr<BondForm> make_lattice_form(const Families<dim> &families);
+  std::unique_ptr<BondForm> make_lattice_form(const DiffusionBonds<dim> &bonds);
 
   /**
    * Whether the lattice form is possible and pays: unique sites and one conductivity. Says why not
    * in @p reason.
    */
   template <int dim>
-  bool lattice_form_suits(const Families<dim> &families, std::string &reason);
+  bool lattice_form_suits(const DiffusionBonds<dim> &bonds, std::string &reason);
 } // namespace PeriDeal

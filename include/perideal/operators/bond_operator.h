@@ -60,7 +60,7 @@ namespace PeriDeal
     std::string   place_of(const unsigned int local_index) const override;
     OperatorSize  size() const override;
 
-    const Families<dim> &families() const;
+    const DiffusionBonds<dim> &diffusion_bonds() const;
 
     /** Which form is in use, and why, for the user. */
     const std::string &form_note() const;
@@ -126,7 +126,8 @@ namespace PeriDeal
     bool reaches_outside(const unsigned int node) const;
 
     const Scene<dim>                     &scene;
-    Families<dim>                         bonds;
+    Families<dim>                         families;
+    DiffusionBonds<dim>                   bonds;
     std::unique_ptr<NodeConstraints<dim>> constraints;
     double                                cracks_of; // representative time of the cracks in K
     std::unique_ptr<BondForm>             form;

@@ -6,7 +6,7 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/full_matrix.h>
 
-#include <perideal/bonds/families.h>
+#include <perideal/bonds/diffusion_bonds.h>
 #include <perideal/operators/bond_form.h>
 #include <perideal/scene/zone.h>
 
@@ -29,7 +29,7 @@ namespace PeriDeal
   class Coupling
   {
   public:
-    using Bond = typename Families<dim>::Bond;
+    using Bond = typename DiffusionBonds<dim>::Bond;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
     virtual ~Coupling() = default;
@@ -107,6 +107,7 @@ namespace PeriDeal
     /** Whether an owned node is in the zone. */
     virtual bool in_zone(const unsigned int node) const = 0;
 
+    /** Of all nodes, whole. */
     virtual const Families<dim> &families() const = 0;
 
     virtual std::size_t memory_consumption() const = 0;

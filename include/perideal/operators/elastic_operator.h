@@ -167,9 +167,12 @@ namespace PeriDeal
      * Returns how many bonds; K and its diagonal have changed if any, and its spectrum has hardly
      * grown (none of the springs; dilatations of more than a pressure may a little). Collective.
      *
+     * @param t     the time of u, kept with each bond
      * @param share of the largest stretch over critical stretch: only bonds above it
      */
-    virtual unsigned long long break_bonds(const Vector & /*u*/, const double /*share*/ = 0.)
+    virtual unsigned long long break_bonds(const Vector & /*u*/,
+                                           const double /*t*/,
+                                           const double /*share*/ = 0.)
     {
       return 0;
     }

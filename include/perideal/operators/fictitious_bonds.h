@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/base/types.h>
+#include <perideal/bonds/bond_state.h>
 #include <perideal/bonds/boundary_images.h>
 
 #include <functional>
@@ -39,17 +40,14 @@ namespace PeriDeal
       unsigned int           node, image;
       dealii::Tensor<1, dim> moment; // W xi, of the tangent W x Y/|Y|
       double                 spring;
+      bool                   whole;
     };
 
-    /** @param cracks that cut the bonds of the families. Not collective. */
-    FictitiousBonds(const Families<dim>                   &families,
-                    const std::array<BeyondSide, 2 * dim> &beyond,
-                    std::vector<CrackGeometry<dim>>        cracks);
+    /** Families have to outlive this object, with the cracks that they have now. Not collective. */
+    FictitiousBonds(const Families<dim> &families, const std::array<BeyondSide, 2 * dim> &beyond);
 
     /** The same of a mesh. Not collective. */
-    FictitiousBonds(const Families<dim>                   &families,
-                    const std::vector<BoundaryImage<dim>> &beyond,
-                    std::vector<CrackGeometry<dim>>        cracks);
+    FictitiousBonds(const Families<dim> &families, const std::vector<BoundaryImage<dim>> &beyond);
 
     /** Add sum W x^2/V_i to q of the owned nodes. */
     void add_weights(Vector &q) const;
@@ -72,7 +70,7 @@ namespace PeriDeal
     {
       if (!starts.empty())
         for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          visit(Bond{k, i, images[k], moments[k], springs[k]});
+          visit(Bond{k, i, images[k], moments[k], springs[k], state.is_whole(k)});
     }
 
     template <typename Visit>
@@ -158,7 +156,7 @@ namespace PeriDeal
      */
     bool         may_break(const Bond &bond) const;
     unsigned int n_ends(const Bond &bond) const;
-    void         break_bond(const std::size_t number);
+    void         break_bond(const std::size_t number, const BondState::Mark mark, const double t);
 
     /** The node of the body that an image is one of, and its volume. */
     unsigned int origin(const unsigned int image) const;
@@ -168,7 +166,9 @@ namespace PeriDeal
      * Break those bonds of a node that others, broken by now, would have to hold: of its neighbours
      * @p lost in the body. Returns whether there were any.
      */
-    bool break_dependent(const unsigned int node, const std::vector<unsigned int> &lost);
+    bool break_dependent(const unsigned int               node,
+                         const std::vector<unsigned int> &lost,
+                         const double                     t);
 
     std::size_t size() const;
     std::size_t memory_consumption() const;
@@ -197,11 +197,12 @@ namespace PeriDeal
 
     const Families<dim>                                     &families;
     const FictitiousExtension<dim>                           extension;
-    const std::vector<CrackGeometry<dim>>                    cracks;
     std::unordered_map<std::size_t, unsigned int>            image_of; // while bonds are found
     std::vector<unsigned int>                                list;
     std::vector<std::size_t>                                 starts; // of all owned nodes, or empty
     std::vector<unsigned int>                                images;
+    std::vector<std::size_t>                                 parted; // while bonds are found
+    BondState                                                state;
     std::vector<dealii::Tensor<1, dim>>                      moments;
     std::vector<double>                                      springs, lengths, across, strains;
     std::vector<Index>                                       sites; // of the images, on a lattice

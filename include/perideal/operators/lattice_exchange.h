@@ -58,6 +58,7 @@ namespace PeriDeal
     void find_full_matrix();
 
     LatticeBonds<dim>          bonds;
+    DiffusionBonds<dim>        of_families;
     OperatorForm               form       = OperatorForm::automatic;
     bool                       calibrated = true; // A is the unit matrix
     dealii::FullMatrix<double> surplus;           // M - Q[A], for unit conductivity

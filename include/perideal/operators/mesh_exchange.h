@@ -89,7 +89,8 @@ namespace PeriDeal
     void take(const double weight, const std::vector<PathPiece<dim>> &way);
     void find_strains();
 
-    Families<dim>                                     bonds;
+    Families<dim>                                     own_families;
+    DiffusionBonds<dim>                               bonds;
     Zone<dim>                                         zone;
     std::vector<bool>                                 joined, may_join; // by local number of nodes
     bool                                              stays = false;    // all have joined

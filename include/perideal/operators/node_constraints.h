@@ -4,7 +4,7 @@
 #pragma once
 
 #include <perideal/base/types.h>
-#include <perideal/bonds/families.h>
+#include <perideal/bonds/diffusion_bonds.h>
 
 #include <Eigen/SparseLU>
 #include <cstdint>
@@ -38,7 +38,7 @@ namespace PeriDeal
     };
 
     /** Throws UserError for treatments that need a box. Collective. */
-    NodeConstraints(const Families<dim> &families, const Scene<dim> &scene);
+    NodeConstraints(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene);
 
     /** Of an owned node. */
     Kind kind(const unsigned int node) const;
@@ -82,23 +82,23 @@ namespace PeriDeal
     };
 
     void find_prescribed(const Scene<dim> &scene);
-    void find_slaves(const Families<dim> &families, const Scene<dim> &scene);
+    void find_slaves(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene);
 
-    void check_parts(const Families<dim> &families, const Scene<dim> &scene) const;
+    void check_parts(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene) const;
 
     // These two return what is wrong, or nothing: only some processes may see it.
-    std::string extrapolate(const Families<dim> &families,
-                            const unsigned int   side,
-                            const std::string   &name,
-                            Slave               &slave) const;
+    std::string extrapolate(const DiffusionBonds<dim> &bonds,
+                            const unsigned int         side,
+                            const std::string         &name,
+                            Slave                     &slave) const;
 
     /** The fluxes of the side and of its parts at a slave. */
     void        add_fluxes(const BoundaryConditions<dim> &conditions,
                            const unsigned int             side,
                            Slave                         &slave) const;
-    std::string extrapolate_layer(const Families<dim> &families,
-                                  const unsigned int   side,
-                                  const Scene<dim>    &scene);
+    std::string extrapolate_layer(const DiffusionBonds<dim> &bonds,
+                                  const unsigned int         side,
+                                  const Scene<dim>          &scene);
     void        couple_slaves(const Nodes<dim> &nodes);
     void        set_slaves(Vector &u, const double t, const bool homogeneous) const;
 

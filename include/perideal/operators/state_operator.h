@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/bonds/bond_state.h>
 #include <perideal/bonds/families.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/mesh/cell_corners.h>
@@ -57,8 +58,7 @@ namespace PeriDeal
    * over the axes n, has stored, at this stretch while all else is at rest, s^2 (b B + c d D) with
    *   B = 1/q sum over half the family of omega f V xi_n x^2,
    *   D = h_n sum over the layers on one side of (1/q sum over what crosses of omega f V x^2)^2.
-   * q stays that of the body before. Viscosity is in the bonds and parallel to them (Le 2014
-   * eq 2.43): its matrix is K without the dilatations.
+   * q stays that of the body before. Viscosity (Le 2014 eq 2.43) is K without the dilatations.
    */
   template <int dim>
   class StateOperator : public ElasticOperator
@@ -99,7 +99,7 @@ namespace PeriDeal
     double              largest_stretch(const Vector &u) const override;
     Inversion           inverted(const Vector &u) const override;
     bool                brittle() const override;
-    unsigned long long  break_bonds(const Vector &u, const double share = 0.) override;
+    unsigned long long  break_bonds(const Vector &u, double t, double share = 0.) override;
     double              released_energy() const override;
     unsigned long long  n_broken_bonds() const override;
 
@@ -151,6 +151,7 @@ namespace PeriDeal
       unsigned int           neighbor;
       dealii::Tensor<1, dim> moment;         // W xi, of the tangent W x Y/|Y|
       double                 spring, length; // length: W x, with full kinematics
+      bool                   whole;
     };
 
     /** A bond of a complete family, with volumes of 1. */
@@ -161,7 +162,7 @@ namespace PeriDeal
       double                       weight; // w x^2
     };
 
-    /** Visit the unbroken bonds of an owned node, stored or not, in the order of its family. */
+    /** Visit the bonds of an owned node, broken or not, stored or not, in its family's order. */
     template <typename Visit>
     void for_each_bond(const unsigned int i, const Visit &visit) const;
 
@@ -177,9 +178,9 @@ namespace PeriDeal
     bool     has_complete_family(const unsigned int i) const; // cut or not
     double   complete_weighted() const;                       // q of one that is not cut
     void     find_bonds();
-    void     store_bonds(const unsigned int                               i,
-                         const std::vector<typename Families<dim>::Bond> &family,
-                         std::string                                     &message);
+    void     store_bonds(const unsigned int                                 i,
+                         const std::vector<typename Families<dim>::Member> &family,
+                         std::string                                       &message);
     void     find_springs();
     void     correct_surface();
     void     make_lattice();
@@ -200,7 +201,6 @@ namespace PeriDeal
     void sum_deformed_forces(Vector &y, const Vector &u) const;
     void find_forces(Vector &y, const Vector &u) const;
 
-    // What the bonds beyond the sides add.
     void         add_images_to_dilatations(const Vector &u, const bool strained) const; // to tau
     void         add_strained_image_forces(Vector &y, const Vector &u) const;
     void         add_geometric_image_forces(Vector &y, const Vector &x) const;
@@ -209,7 +209,7 @@ namespace PeriDeal
     void         add_images_to_diagonal(const std::vector<double> &factor);
     Vector       rows_of_images(const bool with_dilatations) const;
     void         find_overstretched_images(const double *u);
-    unsigned int break_images(); // ends of bonds
+    unsigned int break_images(const double t); // ends of bonds
 
     bool holds(const CellCorner<dim> &corner) const; // no bond of its node has broken
     dealii::Tensor<1, dim> deformed_bond(const double *u, unsigned int i, unsigned int j) const;
@@ -227,7 +227,7 @@ namespace PeriDeal
 
     Bond stored_bond(const std::size_t k) const
     {
-      return {neighbors[k], moments[k], springs[k], full ? lengths[k] : 0.};
+      return {neighbors[k], moments[k], springs[k], full ? lengths[k] : 0., state.is_whole(k)};
     }
 
     double strained_extension_moment(const double *u, const unsigned int i, const Bond &bond) const;
@@ -247,6 +247,7 @@ namespace PeriDeal
     std::vector<unsigned int>           neighbors;
     std::vector<dealii::Tensor<1, dim>> moments; // W xi, of the tangent W x Y/|Y|
     std::vector<double>                 springs; // (b_i/q_i + b_j/q_j)/(W x^2)
+    BondState                           state;   // of the stored bonds, where bonds may break
     std::vector<double> lengths, across; // full kinematics: W x; tangent's stiffness across bonds
     bool   full = false, volumetric = false, any_thermal = false, several_phases = false;
     double n_bonds = 0., released = 0., moments_gap = 0.;
@@ -254,8 +255,7 @@ namespace PeriDeal
     std::vector<TractionShare<dim>> tractions;
     std::vector<double>       critical; // stretch, of owned nodes and ghosts; empty: nothing breaks
     std::vector<unsigned int> loaded_side; // which in `Traction` is within a horizon of these
-    // Overstretched bonds: place, stretch over critical stretch.
-    std::vector<std::pair<std::size_t, double>> breaking, breaking_images;
+    std::vector<std::pair<std::size_t, double>> breaking, breaking_images; // place, overstretch
     bool           breaks = false, loads_vary = false; // some bond may break, on any process
     Vector         mass, stiffness_diagonal, thermal_loads, constant_loads;
     mutable Vector scratch, source, tau;          // tau_i = c_i theta_i/q_i
@@ -289,12 +289,12 @@ namespace PeriDeal
     const double      own    = laws[i].law.extension / weighted.local_element(i);
     for (const LatticeBond &bond : list)
       {
-        const unsigned int j = bonds.node_at(site + bond.offset);
+        const unsigned int j = bonds.neighbors().node_at(site + bond.offset);
         if (j == dealii::numbers::invalid_unsigned_int)
           continue;
         const double w     = volume * nodes.volume(j);
         const double other = laws[j].law.extension / weighted.local_element(j);
-        visit(Bond{j, w * bond.moment, (own + other) / (w * bond.weight), 0.});
+        visit(Bond{j, w * bond.moment, (own + other) / (w * bond.weight), 0., true});
       }
   }
 } // namespace PeriDeal

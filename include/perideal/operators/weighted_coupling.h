@@ -42,10 +42,11 @@ namespace PeriDeal
     const NodeWeights<dim> &weights() const;
 
   private:
-    Families<dim>    bonds;
-    Zone<dim>        zone;
-    double           overlap; // a length
-    NodeWeights<dim> weights_now, weights_at_end;
+    Families<dim>       own_families;
+    DiffusionBonds<dim> bonds;
+    Zone<dim>           zone;
+    double              overlap; // a length
+    NodeWeights<dim>    weights_now, weights_at_end;
   };
 
 

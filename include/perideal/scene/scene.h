@@ -22,7 +22,7 @@
 
 namespace PeriDeal
 {
-  enum class Model
+  enum class ModelKind
   {
     finite_elements,
     peridynamics,
@@ -30,7 +30,7 @@ namespace PeriDeal
   };
 
   /** `finite elements`, `peridynamics` or `coupled`: as in scenes and in all output files. */
-  std::string to_string(const Model model);
+  std::string to_string(const ModelKind model);
 
 
   /** The entries outside all sections. */
@@ -39,10 +39,10 @@ namespace PeriDeal
   public:
     General();
 
-    std::string        title, output_directory;
-    Physics            physics   = Physics::heat;
-    unsigned int       dimension = 2;
-    std::vector<Model> models; // in the order the user named them
+    std::string            title, output_directory;
+    Physics                physics   = Physics::heat;
+    unsigned int           dimension = 2;
+    std::vector<ModelKind> models; // in the order the user named them
 
     /**
      * Throws UserError: unknown physics or models, none or one twice, a dimension other than 1,
@@ -140,9 +140,9 @@ namespace PeriDeal
 
   /** Whether `Models` names this one. */
   template <int dim>
-  bool runs(const Scene<dim> &scene, const Model model)
+  bool runs(const Scene<dim> &scene, const ModelKind model)
   {
-    const std::vector<Model> &models = scene.general.models;
+    const std::vector<ModelKind> &models = scene.general.models;
     return std::find(models.begin(), models.end(), model) != models.end();
   }
 

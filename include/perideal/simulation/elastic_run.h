@@ -113,7 +113,7 @@ namespace PeriDeal
 
   /** Builds a model's nodes and operator. The time goes into its timings. */
   template <int dim>
-  std::unique_ptr<ElasticRun<dim>> make_elastic_run(const Model                       model,
+  std::unique_ptr<ElasticRun<dim>> make_elastic_run(const ModelKind                   model,
                                                     const dealii::Triangulation<dim> &mesh,
                                                     const Scene<dim>                 &scene);
 } // namespace PeriDeal

@@ -127,7 +127,7 @@ namespace PeriDeal
 
   /** Builds a model's unknowns and operator. The time goes into the run's timings. */
   template <int dim>
-  std::unique_ptr<ModelRun<dim>> make_model_run(const Model                       model,
+  std::unique_ptr<ModelRun<dim>> make_model_run(const ModelKind                   model,
                                                 const dealii::Triangulation<dim> &mesh,
                                                 const Scene<dim>                 &scene);
 } // namespace PeriDeal

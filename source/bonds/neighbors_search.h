@@ -3,15 +3,15 @@
 
 #pragma once
 
-#include <perideal/bonds/families.h>
+#include <perideal/bonds/neighbors.h>
 
 #include <nanoflann.hpp>
 
 namespace PeriDeal
 {
-  /** A k-d tree over the nodes of this process and its halo, for families off the lattice. */
+  /** A k-d tree over the nodes of this process and its halo, for neighbours off the lattice. */
   template <int dim>
-  struct Families<dim>::Search
+  struct Neighbors<dim>::Search
   {
     explicit Search(const Nodes<dim> &nodes)
       : nodes(nodes)

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Which of a list of bonds are whole, and why and since when others are not: their one owner. A
+   * byte a bond, by its number in the list; both ends of a bond have numbers of their own and are
+   * marked together. What a bond bears is set to nothing where it is stored, so that sums need not
+   * ask; nobody else concludes from a zero that a bond is gone.
+   */
+  class BondState
+  {
+  public:
+    enum Mark : std::uint8_t
+    {
+      whole,
+      parted,   // by a crack of the scene
+      broken,   // stretched too far
+      dependent // of a fictitious node: what it follows from is gone
+    };
+
+    /** A list of so many bonds, all whole. Without it all bonds are whole, and none is marked. */
+    void resize(const std::size_t n);
+
+    std::size_t size() const;
+
+    bool is_whole(const std::size_t number) const
+    {
+      return marks.empty() || marks[number] == whole;
+    }
+
+    Mark operator[](const std::size_t number) const
+    {
+      return marks.empty() ? whole : marks[number];
+    }
+
+    /** Of a whole bond; it stays so. @param time since when, that of the run */
+    void mark(const std::size_t number, const Mark mark, const double time);
+
+    /** Since when a bond is not whole; infinity while it is, 0 if it is parted from the start. */
+    double since(const std::size_t number) const;
+
+    /** Of those marks. */
+    std::size_t count(const Mark mark) const;
+
+    std::size_t memory_consumption() const;
+
+  private:
+    std::vector<Mark>                           marks;
+    std::vector<std::pair<std::size_t, double>> times; // in the order of marking; few bonds break
+  };
+} // namespace PeriDeal

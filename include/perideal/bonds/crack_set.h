@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/bonds/bond_conductivities.h>
+#include <perideal/scene/crack_geometry.h>
+#include <perideal/scene/crack_history.h>
+#include <perideal/scene/domain.h>
+
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * The cracks of one time as bonds see them: which bonds they cut and what they let through. Voids
+   * that bonds must not cross count as cracks that let nothing through.
+   */
+  template <int dim>
+  class CrackSet
+  {
+  public:
+    /**
+     * The cracks at the beginning. Neighbours and voids have to outlive this object.
+     * @param cut_at_tips          bonds that only touch a tip are cut, too
+     * @param contact_conductance  of cracks; negative: none is given, they let through their
+     *                             transmission
+     * @param voids                that bonds must not cross, or nullptr
+     */
+    CrackSet(const Neighbors<dim>    &neighbors,
+             const CrackHistory<dim> &history,
+             const bool               cut_at_tips,
+             const double             contact_conductance,
+             const Domain<dim>       *voids);
+
+    /** Whether a bond crosses some crack. */
+    bool cuts(const unsigned int node, const unsigned int neighbor) const;
+
+    /** Whether some crack, wherever it is, lies between two points. */
+    bool separate(const dealii::Point<dim> &a, const dealii::Point<dim> &b) const;
+
+    /** No crack; there may be voids. */
+    bool empty() const;
+
+    /**
+     * What the cracks leave of a bond's conductance, and whether it crosses any.
+     * @param conductivities  without effect unless a contact conductance is given
+     */
+    double kept_fraction(const unsigned int             node,
+                         const unsigned int             neighbor,
+                         const BondConductivities<dim> &conductivities,
+                         bool                          &cut) const;
+
+    /**
+     * The cracks that a bond crosses: +1 if the node lies on the left side, -1 if its neighbour
+     * does. @p crossed is overwritten.
+     */
+    void crossed_cracks(const unsigned int                         node,
+                        const unsigned int                         neighbor,
+                        std::vector<std::pair<unsigned int, int>> &crossed) const;
+
+    /** Whether some crack is within a distance of a node; with voids always. */
+    bool is_near(const unsigned int node, const double distance) const;
+
+    /**
+     * Make the cracks those of the representative time (CrackHistory), and return the boxes around
+     * what has changed: bonds of nodes farther from all of them than the reach are as before.
+     */
+    std::vector<dealii::BoundingBox<dim>> set_time(const double time);
+
+    /** The representative time of the cracks as they are now. */
+    double now() const;
+
+    /** When the cracks or their transmission change. */
+    const CrackHistory<dim> &history() const;
+
+  private:
+    template <typename Test>
+    void test_crossings(const unsigned int        node,
+                        const unsigned int        neighbor,
+                        const CrackGeometry<dim> &crack,
+                        const Test               &test) const;
+    bool leaves_body(const unsigned int node, const unsigned int neighbor) const;
+    template <typename Test>
+    void test_images(const unsigned int         node,
+                     const FictitiousNode<dim> &fictitious,
+                     const Test                &test) const;
+
+    const Neighbors<dim>           &neighbors;
+    const CrackHistory<dim>         past;
+    const bool                      cut_at_tips;
+    const double                    contact_conductance;
+    const Domain<dim>              *voids;
+    double                          time; // the representative one
+    std::vector<CrackGeometry<dim>> cracks;
+    double                          transmission;
+  };
+} // namespace PeriDeal

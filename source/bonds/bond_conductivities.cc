@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/bonds/bond_conductivities.h>
+#include <perideal/laws/interface.h>
+#include <perideal/scene/lists.h>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  BondConductivities<dim>::BondConductivities(const Neighbors<dim> &neighbors,
+                                              const Material       &material,
+                                              const Expression     &initial_value)
+    : neighbors(neighbors)
+    , material(material)
+    , all_alike(material.uniform_conductivity())
+  {
+    const Nodes<dim>  &nodes = neighbors.nodes();
+    const unsigned int n     = all_alike ? 1 : nodes.n_local();
+    std::string        message;
+    values.resize(n);
+    for (unsigned int i = 0; i < n && message.empty(); ++i)
+      {
+        const Point<dim> p = nodes.n_local() > 0 ? nodes.position(i) : Point<dim>();
+        values[i]          = material.conductivity.value(p, initial_value.value(p));
+        if (!(values[i] > 0.))
+          message = "'Conductivity' in section 'Material' is " + std::to_string(values[i]) +
+                    " at a node; it must be positive everywhere in the body.";
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+  }
+
+
+  template <int dim>
+  void BondConductivities<dim>::take_at(const Vector &u)
+  {
+    if (!depend_on_temperature())
+      return;
+    const Nodes<dim> &nodes = neighbors.nodes();
+    std::string       message;
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      {
+        const double T = u.local_element(i);
+        values[i]      = material.conductivity.value(nodes.position(i), T);
+        if (!(values[i] > 0.) && message.empty())
+          message = "'Conductivity' in section 'Material' is " + number_text(values[i]) +
+                    " at T = " + number_text(T) +
+                    "; it must be positive at every temperature that the run reaches.";
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+  }
+
+
+  template <int dim>
+  double BondConductivities<dim>::of_node(const unsigned int node) const
+  {
+    return values[all_alike ? 0 : neighbors.real(node)];
+  }
+
+
+  template <int dim>
+  double BondConductivities<dim>::of_bond(const unsigned int node,
+                                          const unsigned int neighbor) const
+  {
+    if (all_alike)
+      return values[0];
+    const double a = of_node(node), b = of_node(neighbor);
+    if (material.interface_rule != InterfaceRule::harmonic)
+      return interface_conductivity(material.interface_rule, a, b);
+    // From the end that comes first in space, so that both ends of a bond see the same value to the
+    // last bit.
+    Point<dim> start = neighbors.position(node), end = neighbors.position(neighbor);
+    for (unsigned int d = 0; d < dim; ++d)
+      if (start[d] != end[d])
+        {
+          if (end[d] < start[d])
+            std::swap(start, end);
+          break;
+        }
+    const bool  real    = neighbors.is_real(neighbor);
+    const auto &lattice = neighbors.nodes().lattice();
+    return harmonic_conductivity([&](const double s) {
+      Point<dim> p = start + s * (end - start);
+      // Beyond a side the material is the mirror image of the body's.
+      for (unsigned int d = 0; d < dim && !real; ++d)
+        if (p[d] < lattice->lower[d])
+          p[d] = 2. * lattice->lower[d] - p[d];
+        else if (p[d] > lattice->upper[d])
+          p[d] = 2. * lattice->upper[d] - p[d];
+      return material.conductivity.value(p);
+    });
+  }
+
+
+  template <int dim>
+  bool BondConductivities<dim>::uniform() const
+  {
+    return all_alike;
+  }
+
+  template <int dim>
+  bool BondConductivities<dim>::depend_on_temperature() const
+  {
+    return material.conductivity.depends_on_temperature();
+  }
+
+  template <int dim>
+  std::size_t BondConductivities<dim>::memory_consumption() const
+  {
+    return values.capacity() * sizeof(double);
+  }
+
+  template class BondConductivities<1>;
+  template class BondConductivities<2>;
+  template class BondConductivities<3>;
+} // namespace PeriDeal

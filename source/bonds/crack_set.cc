@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/bonds/crack_set.h>
+#include <perideal/laws/crack_conductance.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  CrackSet<dim>::CrackSet(const Neighbors<dim>    &neighbors,
+                          const CrackHistory<dim> &history,
+                          const bool               cut_at_tips,
+                          const double             contact_conductance,
+                          const Domain<dim>       *voids)
+    : neighbors(neighbors)
+    , past(history)
+    , cut_at_tips(cut_at_tips)
+    , contact_conductance(contact_conductance)
+    , voids(voids)
+    , time(past.representative(0.))
+    , cracks(make_crack_geometries(past.pieces(time, cut_at_tips)))
+    , transmission(past.transmission(time))
+  {}
+
+
+  template <int dim>
+  template <typename Test>
+  void CrackSet<dim>::test_images(const unsigned int         node,
+                                  const FictitiousNode<dim> &fictitious,
+                                  const Test                &test) const
+  {
+    // The body and its cracks are mirrored to the outside. Instead of the cracks mirror the bond,
+    // about each set of the sides that it passes.
+    const Lattice<dim> &lattice = *neighbors.nodes().lattice();
+    const auto          origin  = lattice.index(neighbors.position(fictitious.mirror));
+    for (unsigned int image = 0; image < (1u << dim); ++image)
+      {
+        auto a = lattice.index(neighbors.position(node)), b = fictitious.site;
+        bool mirrored = true;
+        for (unsigned int d = 0; d < dim && mirrored; ++d)
+          if ((image >> d) & 1)
+            {
+              // The sum of the sites of mirror images of each other is that of the mirror and the
+              // fictitious node.
+              mirrored        = origin[d] != fictitious.site[d];
+              const int twice = origin[d] + fictitious.site[d];
+              a[d]            = twice - a[d];
+              b[d]            = twice - b[d];
+            }
+        if (mirrored)
+          test(lattice.position(a), lattice.position(b));
+      }
+  }
+
+
+  template <int dim>
+  template <typename Test>
+  void CrackSet<dim>::test_crossings(const unsigned int        node,
+                                     const unsigned int        neighbor,
+                                     const CrackGeometry<dim> &crack,
+                                     const Test               &test) const
+  {
+    const auto if_separated = [&](const Point<dim> &a, const Point<dim> &b) {
+      if (crack.separates(a, b))
+        test(a, b);
+    };
+    const Nodes<dim> &nodes = neighbors.nodes();
+    if (neighbors.is_real(neighbor))
+      if_separated(nodes.crack_point(node), nodes.crack_point(neighbor));
+    else
+      test_images(node, neighbors.outside()[neighbor - nodes.n_local()], if_separated);
+  }
+
+
+  template <int dim>
+  double CrackSet<dim>::kept_fraction(const unsigned int             node,
+                                      const unsigned int             neighbor,
+                                      const BondConductivities<dim> &conductivities,
+                                      bool                          &cut) const
+  {
+    double kept = 1.;
+    cut         = false;
+    for (std::size_t k = 0; k < cracks.size();)
+      {
+        // A bond may meet several pieces of a crack, or a piece and its mirror image where the
+        // crack ends on a side: that is one crossing.
+        double             fraction = 1.;
+        const unsigned int crack    = cracks[k].crack;
+        for (; k < cracks.size() && cracks[k].crack == crack; ++k)
+          {
+            if (!cracks[k].is_near(neighbors.position(node), neighbors.weights().reach()))
+              continue;
+            test_crossings(node,
+                           neighbor,
+                           cracks[k],
+                           [&](const Point<dim> &a, const Point<dim> &b) {
+                             cut = true;
+                             fraction =
+                               std::min(fraction,
+                                        contact_conductance < 0. ?
+                                          transmission :
+                                          contact_fraction(contact_conductance,
+                                                           std::abs((b - a) * cracks[k].normal()),
+                                                           conductivities.of_bond(node, neighbor)));
+                           });
+          }
+        kept *= fraction;
+      }
+    if (leaves_body(node, neighbor))
+      {
+        cut  = true;
+        kept = 0.;
+      }
+    return kept;
+  }
+
+
+  template <int dim>
+  bool CrackSet<dim>::cuts(const unsigned int node, const unsigned int neighbor) const
+  {
+    bool cut = false;
+    for (const CrackGeometry<dim> &crack : cracks)
+      if (!cut && crack.is_near(neighbors.position(node), neighbors.weights().reach()))
+        test_crossings(node, neighbor, crack, [&](const Point<dim> &, const Point<dim> &) {
+          cut = true;
+        });
+    return cut || leaves_body(node, neighbor);
+  }
+
+
+  template <int dim>
+  bool CrackSet<dim>::separate(const Point<dim> &a, const Point<dim> &b) const
+  {
+    return std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
+      return crack.separates(a, b);
+    });
+  }
+
+
+  template <int dim>
+  bool CrackSet<dim>::empty() const
+  {
+    return cracks.empty();
+  }
+
+
+  template <int dim>
+  bool CrackSet<dim>::leaves_body(const unsigned int node, const unsigned int neighbor) const
+  {
+    return voids != nullptr && neighbors.is_real(neighbor) &&
+           voids->leaves_body(neighbors.position(node), neighbors.position(neighbor));
+  }
+
+
+  template <int dim>
+  void CrackSet<dim>::crossed_cracks(const unsigned int                         node,
+                                     const unsigned int                         neighbor,
+                                     std::vector<std::pair<unsigned int, int>> &crossed) const
+  {
+    crossed.clear();
+    for (const CrackGeometry<dim> &crack : cracks)
+      if (crack.is_near(neighbors.position(node), neighbors.weights().reach()) &&
+          (crossed.empty() || crossed.back().first != crack.crack))
+        test_crossings(node, neighbor, crack, [&](const Point<dim> &a, const Point<dim> &) {
+          if (crossed.empty() || crossed.back().first != crack.crack)
+            crossed.emplace_back(crack.crack, crack.signed_distance(a) > 0. ? 1 : -1);
+        });
+  }
+
+
+  template <int dim>
+  std::vector<BoundingBox<dim>> CrackSet<dim>::set_time(const double t)
+  {
+    const auto boxes = past.changes(time, t);
+    cracks           = make_crack_geometries(past.pieces(t, cut_at_tips));
+    transmission     = past.transmission(t);
+    time             = t;
+    return boxes;
+  }
+
+
+  template <int dim>
+  bool CrackSet<dim>::is_near(const unsigned int node, const double distance) const
+  {
+    return voids != nullptr ||
+           std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
+             return crack.is_near(neighbors.position(node), distance);
+           });
+  }
+
+
+  template <int dim>
+  double CrackSet<dim>::now() const
+  {
+    return time;
+  }
+
+  template <int dim>
+  const CrackHistory<dim> &CrackSet<dim>::history() const
+  {
+    return past;
+  }
+
+  template class CrackSet<1>;
+  template class CrackSet<2>;
+  template class CrackSet<3>;
+} // namespace PeriDeal
