@@ -115,19 +115,6 @@ namespace PeriDeal
         return "chebyshev";
       }
 
-      void advance(Vector &u, const double t, const double t_end) override
-      {
-        const unsigned long long n = dt > 0. ? n_equal_steps(t_end - t, dt) :
-                                               n_expansions(t_end - t);
-        for (unsigned long long k = 0; k < n; ++k)
-          {
-            step(u, t, (t_end - t) / static_cast<double>(n));
-            tell_step(t + (k + 1) * ((t_end - t) / static_cast<double>(n)));
-          }
-        op.distribute(u, t_end);
-        check_finite(u, name(), t_end);
-      }
-
       double current_step() const override
       {
         return dt > 0. ? dt : 0.;
@@ -146,6 +133,26 @@ namespace PeriDeal
       }
 
     private:
+      void begin_span(const Vector &) override
+      {
+        const double length = span.end - span.start;
+        span.n_steps        = dt > 0. ? n_equal_steps(length, dt) : n_expansions(length);
+      }
+
+      void take_step(Vector &u) override
+      {
+        const double tau = (span.end - span.start) / static_cast<double>(span.n_steps);
+        step(u, span.start, tau);
+        span.now = span.start + (span.n_done + 1) * tau;
+        tell_step(span.now);
+      }
+
+      void end_span(Vector &u) override
+      {
+        op.distribute(u, span.end);
+        check_finite(u, name(), span.end);
+      }
+
       /** A little above the sharp bound: outside its interval a Chebyshev expansion grows. */
       double spectral_bound() const
       {

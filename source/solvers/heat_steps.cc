@@ -45,6 +45,13 @@ namespace PeriDeal
   }
 
 
+  void HeldHeat::exchange(Archive &archive, const UnknownKeys &keys)
+  {
+    if (needed)
+      archive.exchange("start of span", before, keys);
+  }
+
+
   ConservativeStep::ConservativeStep(const Operator &op)
     : op(op)
   {

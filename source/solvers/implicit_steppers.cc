@@ -57,59 +57,68 @@ namespace PeriDeal
         solver.operator_changed();
       }
 
-      void advance(Vector &u, const double t_start, const double t_end) override
+    protected:
+      void begin_span(const Vector &u) override
       {
         held.begin(u);
-        double                   t = t_start;
-        const unsigned long long n = fixed ? n_equal_steps(t_end - t, dt) : 0;
-        if (!fixed && dt == 0.)
-          dt = std::min(1e-3 * (t_end - t), 2. / op.spectrum().sharp);
-        for (unsigned long long k = 0; fixed ? k < n : t < t_end; ++k)
+        const double length = span.end - span.start;
+        if (fixed)
+          span.n_steps = n_equal_steps(length, dt);
+        else if (dt == 0.)
+          dt = std::min(1e-3 * length, 2. / op.spectrum().sharp);
+      }
+
+      void take_step(Vector &u) override
+      {
+        const double t = span.now, t_end = span.end;
+        const bool lands = fixed ? span.n_done + 1 == span.n_steps : t + dt * (1. + 1e-10) >= t_end;
+        const double h   = fixed ? (t_end - span.start) / static_cast<double>(span.n_steps) :
+                           lands ? t_end - t :
+                                   std::min(dt, 0.5 * (t_end - t) + 0.5 * dt);
+        const int    order  = step(u, t, h);
+        double       growth = 1.;
+        if (!fixed && order > 0)
           {
-            const bool   lands  = fixed ? k + 1 == n : t + dt * (1. + 1e-10) >= t_end;
-            const double h      = fixed ? (t_end - t_start) / static_cast<double>(n) :
-                                  lands ? t_end - t :
-                                          std::min(dt, 0.5 * (t_end - t) + 0.5 * dt);
-            const double t_new  = lands ? t_end : fixed ? t_start + (k + 1) * h : t + h;
-            const int    order  = step(u, t, h);
-            double       growth = 1.;
-            if (!fixed && order > 0)
+            const double size = estimated_error(u, t, order);
+            growth            = std::clamp(0.85 * std::pow(std::max(size, 1e-12), -1. / order),
+                                0.2,
+                                2.); // BDF2 is stable for ratios up to 1 + sqrt 2
+            if (size > 1.)
               {
-                op.clear_constrained(error);
-                const double level = std::max(capacity_norm(op, u), capacity_norm(op, next));
-                const double bound = (order == 3 ? third_order_tolerance : tolerance) * level;
-                const double size  = level == 0. ? 0. : capacity_norm(op, error) / bound;
-                AssertThrow(std::isfinite(size), UserError(unstable_message(t)));
-                growth = std::clamp(0.85 * std::pow(std::max(size, 1e-12), -1. / order),
-                                    0.2,
-                                    2.); // BDF2 is stable for ratios up to 1 + sqrt 2
-                if (size > 1.)
-                  {
-                    ++spent.rejected;
-                    dt = h * std::min(growth, 0.9);
-                    continue;
-                  }
+                ++spent.rejected;
+                dt = h * std::min(growth, 0.9);
+                return;
               }
-            heat_entered += step_heat;
-            if (op.capacity_depends_on_solution())
-              {
-                op.heat_between(taken, u, next);
-                heat_entered += sum_of_held(op, taken, offset);
-              }
-            accept(u, h);
-            u = next;
-            t = t_new;
-            ++spent.steps;
-            tell_step(t);
-            if (!fixed)
-              dt = lands ? std::max(dt, h * growth) : h * growth;
           }
-        op.distribute(u, t_end);
-        check_finite(u, method, t_end);
+        heat_entered += step_heat;
+        if (op.capacity_depends_on_solution())
+          {
+            op.heat_between(taken, u, next);
+            heat_entered += sum_of_held(op, taken, offset);
+          }
+        accept(u, h);
+        u        = next;
+        span.now = lands ? t_end : fixed ? span.start + (span.n_done + 1) * h : t + h;
+        ++spent.steps;
+        tell_step(span.now);
+        if (!fixed)
+          dt = lands ? std::max(dt, h * growth) : h * growth;
+      }
+
+      void end_span(Vector &u) override
+      {
+        op.distribute(u, span.end);
+        check_finite(u, method, span.end);
         heat_entered += held.taken(u);
       }
 
-    protected:
+      void exchange_own(Archive &archive, const UnknownKeys &keys) override
+      {
+        archive.exchange("time step", dt);
+        archive.exchange("taken", taken, keys);
+        held.exchange(archive, keys);
+      }
+
       /**
        * One step of size h from u at t into `next`, what enters meanwhile into `step_heat`; the
        * local error estimate into `error`. Returns the order of the estimate in h, 0 if there is
@@ -225,6 +234,17 @@ namespace PeriDeal
       double    step_heat = 0.;
 
     private:
+      /** Of the step from u to `next`, as a multiple of what is allowed. */
+      double estimated_error(const Vector &u, const double t, const int order)
+      {
+        op.clear_constrained(error);
+        const double level = std::max(capacity_norm(op, u), capacity_norm(op, next));
+        const double bound = (order == 3 ? third_order_tolerance : tolerance) * level;
+        const double size  = level == 0. ? 0. : capacity_norm(op, error) / bound;
+        AssertThrow(std::isfinite(size), UserError(unstable_message(t)));
+        return size;
+      }
+
       std::string unstable_message(const double t) const
       {
         std::ostringstream message;
@@ -317,7 +337,18 @@ namespace PeriDeal
         previous   = u;
         h_oldest   = h_previous;
         h_previous = h;
-        n_known    = std::min(n_known + 1, 2);
+        n_known    = std::min(n_known + 1, 2ULL);
+      }
+
+      void exchange_own(Archive &archive, const UnknownKeys &keys) override
+      {
+        ImplicitStepper::exchange_own(archive, keys);
+        archive.exchange("previous", previous, keys);
+        archive.exchange("oldest", oldest, keys);
+        archive.exchange("previous step", h_previous);
+        archive.exchange("oldest step", h_oldest);
+        archive.exchange_share("heat before", heat_before);
+        archive.exchange("known values", n_known);
       }
 
       virtual void   method_step(const Vector &u, const double t, const double h) = 0;
@@ -335,7 +366,8 @@ namespace PeriDeal
 
       Vector previous, oldest, k1, k2;
       double h_previous = 0., h_oldest = 0., heat_before = 0.;
-      int    n_known = 0;
+
+      unsigned long long n_known = 0;
     };
 
 

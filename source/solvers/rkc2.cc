@@ -82,33 +82,6 @@ namespace PeriDeal
         return "rkc2";
       }
 
-      void advance(Vector &u, const double t, const double t_end) override
-      {
-        held.begin(u);
-        if (fixed)
-          {
-            const unsigned long long n = n_equal_steps(t_end - t, dt);
-            const double             h = (t_end - t) / static_cast<double>(n);
-            for (unsigned long long k = 0; k < n; ++k)
-              {
-                take_material_at(u, t + k * h);
-                compute_rate(op, u, t + k * h, rate);
-                heat_entered += stages(u, t + k * h, h, op.entering());
-                heat_entered += conservative.correct(u, now);
-                u.swap(now);
-                ++spent.steps;
-                tell_step(t + (k + 1) * h);
-              }
-            op.distribute(u, t_end);
-          }
-        else
-          advance_adaptively(u, t, t_end);
-        check_finite(u, name(), t_end);
-        heat_entered += held.taken(u);
-        if (fixed)
-          take_material_at(u, t_end); // for what is written there
-      }
-
       double current_step() const override
       {
         return dt;
@@ -132,6 +105,42 @@ namespace PeriDeal
       }
 
     private:
+      void begin_span(const Vector &u) override
+      {
+        held.begin(u);
+        has_rate = false;
+        if (fixed)
+          span.n_steps = n_equal_steps(span.end - span.start, dt);
+        else if (dt == 0.)
+          dt = std::min(span.end - span.start, 0.5 / op.spectrum().sharp);
+      }
+
+      void take_step(Vector &u) override
+      {
+        if (fixed)
+          take_fixed_step(u);
+        else
+          take_adaptive_step(u);
+      }
+
+      void end_span(Vector &u) override
+      {
+        if (fixed)
+          op.distribute(u, span.end);
+        check_finite(u, name(), span.end);
+        heat_entered += held.taken(u);
+        if (fixed)
+          take_material_at(u, span.end); // for what is written there
+      }
+
+      void exchange_own(Archive &archive, const UnknownKeys &keys) override
+      {
+        archive.exchange("time step", dt);
+        held.exchange(archive, keys);
+        if (archive.loads())
+          has_rate = false; // it is found again from u, to the last bit
+      }
+
       void take_material_at(Vector &v, const double t)
       {
         if (!op.depends_on_solution())
@@ -200,52 +209,77 @@ namespace PeriDeal
       }
 
 
-      void advance_adaptively(Vector &u, const double t_start, const double t_end)
+      void take_fixed_step(Vector &u)
       {
-        double t = t_start;
-        if (dt == 0.)
-          dt = std::min(t_end - t, 0.5 / op.spectrum().sharp);
+        const double h = (span.end - span.start) / static_cast<double>(span.n_steps);
+        const double t = span.start + span.n_done * h;
         take_material_at(u, t);
         compute_rate(op, u, t, rate);
-        double entering = op.entering();
-        while (t < t_end)
+        heat_entered += stages(u, t, h, op.entering());
+        heat_entered += conservative.correct(u, now);
+        u.swap(now);
+        ++spent.steps;
+        span.now = span.start + (span.n_done + 1) * h;
+        tell_step(span.now);
+      }
+
+
+      void find_rate(Vector &u, const double t)
+      {
+        take_material_at(u, t);
+        compute_rate(op, u, t, rate);
+        entering = op.entering();
+        has_rate = true;
+      }
+
+
+      void take_adaptive_step(Vector &u)
+      {
+        const double t = span.now, t_end = span.end;
+        if (!has_rate)
+          find_rate(u, t);
+        const bool   lands = t + dt * (1. + 1e-10) >= t_end;
+        const double h     = lands ? t_end - t : std::min(dt, 0.5 * (t_end - t) + 0.5 * dt);
+        double       heat  = stages(u, t, h, entering);
+        heat += conservative.correct(u, now);
+        take_material_at(now, t + h); // so that the error estimate sees what changes in the step
+        compute_rate(op, now, t + h, stage_rate);
+        const double error = estimated_error(u, h);
+        check_error(error, t);
+        const double growth = std::clamp(0.8 / std::cbrt(std::max(error, 1e-12)), 0.1, 5.);
+        if (error <= 1.)
           {
-            const bool   lands = t + dt * (1. + 1e-10) >= t_end;
-            const double h     = lands ? t_end - t : std::min(dt, 0.5 * (t_end - t) + 0.5 * dt);
-            double       heat  = stages(u, t, h, entering);
-            heat += conservative.correct(u, now);
-            take_material_at(now,
-                             t + h); // so that the error estimate sees what has changed in the step
-            compute_rate(op, now, t + h, stage_rate);
-            // Estimate of the local error (the method's equation 2.10), in the root mean square.
-            for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-              before.local_element(i) =
-                0.8 * (u.local_element(i) - now.local_element(i)) +
-                0.4 * h * (rate.local_element(i) + stage_rate.local_element(i));
-            // Where a prescribed value moves the rate is unknown, but there is no error either.
-            op.clear_constrained(before);
-            const double level = std::max(capacity_norm(op, u), capacity_norm(op, now));
-            const double error = level == 0. ? 0. : capacity_norm(op, before) / (tolerance * level);
-            check_error(error, t);
-            const double growth = std::clamp(0.8 / std::cbrt(std::max(error, 1e-12)), 0.1, 5.);
-            if (error <= 1.)
-              {
-                t = lands ? t_end : t + h;
-                u.swap(now);
-                rate.swap(stage_rate);
-                heat_entered += heat;
-                entering = op.entering();
-                ++spent.steps;
-                tell_step(t);
-                dt = lands ? std::max(dt, h * growth) : h * growth;
-              }
-            else
-              {
-                ++spent.rejected;
-                take_material_at(u, t);
-                dt = h * std::min(growth, 0.9);
-              }
+            span.now = lands ? t_end : t + h;
+            u.swap(now);
+            rate.swap(stage_rate);
+            heat_entered += heat;
+            entering = op.entering();
+            ++spent.steps;
+            tell_step(span.now);
+            dt = lands ? std::max(dt, h * growth) : h * growth;
           }
+        else
+          {
+            ++spent.rejected;
+            take_material_at(u, t);
+            dt = h * std::min(growth, 0.9);
+          }
+      }
+
+
+      /**
+       * Of the step of size h from u to `now`, as a multiple of what is allowed: the method's
+       * equation 2.10 in the root mean square.
+       */
+      double estimated_error(const Vector &u, const double h)
+      {
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          before.local_element(i) = 0.8 * (u.local_element(i) - now.local_element(i)) +
+                                    0.4 * h * (rate.local_element(i) + stage_rate.local_element(i));
+        // Where a prescribed value moves the rate is unknown, but there is no error either.
+        op.clear_constrained(before);
+        const double level = std::max(capacity_norm(op, u), capacity_norm(op, now));
+        return level == 0. ? 0. : capacity_norm(op, before) / (tolerance * level);
       }
 
 
@@ -269,6 +303,8 @@ namespace PeriDeal
       std::vector<double> inverse; // of the capacity
       ConservativeStep    conservative;
       HeldHeat            held;
+      bool                has_rate = false; // adaptive steps: `rate` is that of u
+      double              entering = 0.;    // with that rate
     };
   } // namespace
 

@@ -45,30 +45,6 @@ namespace PeriDeal
         return method;
       }
 
-      void advance(Vector &u, const double t, const double t_end) override
-      {
-        if (op.depends_on_solution())
-          {
-            advance_lagged(u, t, t_end);
-            return;
-          }
-        held.begin(u);
-        const unsigned long long n = n_equal_steps(t_end - t, dt);
-        for (unsigned long long k = 0; k < n; ++k)
-          {
-            const double now  = t + static_cast<double>(k) * dt;
-            const double size = (k + 1 == n) ? t_end - now : dt;
-            step(u, now, size);
-            ++spent.steps;
-            tell_step(now + size);
-            if (spent.steps % steps_between_checks == 0)
-              check_finite(u, method, now + size);
-          }
-        op.distribute(u, t_end);
-        check_finite(u, method, t_end);
-        heat_entered += held.taken(u);
-      }
-
       void restart() override
       {
         if (fixed)
@@ -83,31 +59,70 @@ namespace PeriDeal
       }
 
     protected:
-      /** The material is that of the temperatures at the beginning of each step. */
-      void advance_lagged(Vector &u, const double t_start, const double t_end)
+      void begin_span(const Vector &u) override
       {
-        for (double t = t_start; t < t_end;)
+        if (op.depends_on_solution())
+          return;
+        held.begin(u);
+        span.n_steps = n_equal_steps(span.end - span.start, dt);
+      }
+
+      void take_step(Vector &u) override
+      {
+        if (op.depends_on_solution())
           {
-            op.distribute(u, t);
-            op.take_material_at(u);
-            inverse = inverse_capacity(op);
-            restart(); // the bound of this step
-            const bool   lands = t + dt * (1. + 1e-10) >= t_end;
-            const double size  = lands ? t_end - t : dt;
-            if (conservative.needed())
-              old = u;
-            else
-              held.begin(u);
-            step(u, t, size);
-            t = lands ? t_end : t + dt;
-            op.distribute(u, t);
-            heat_entered += conservative.needed() ? conservative.correct(old, u) : held.taken(u);
-            ++spent.steps;
-            tell_step(t);
-            check_finite(u, method, t);
+            take_lagged_step(u);
+            return;
           }
-        op.distribute(u, t_end);
-        op.take_material_at(u); // for what is written there
+        const double now  = span.start + static_cast<double>(span.n_done) * dt;
+        const double size = (span.n_done + 1 == span.n_steps) ? span.end - now : dt;
+        step(u, now, size);
+        span.now = now + size;
+        ++spent.steps;
+        tell_step(span.now);
+        if (spent.steps % steps_between_checks == 0)
+          check_finite(u, method, span.now);
+      }
+
+      /** The material is that of the temperatures at the beginning of the step. */
+      void take_lagged_step(Vector &u)
+      {
+        const double t = span.now;
+        op.distribute(u, t);
+        op.take_material_at(u);
+        inverse = inverse_capacity(op);
+        restart(); // the bound of this step
+        const bool   lands = t + dt * (1. + 1e-10) >= span.end;
+        const double size  = lands ? span.end - t : dt;
+        if (conservative.needed())
+          old = u;
+        else
+          held.begin(u);
+        step(u, t, size);
+        span.now = lands ? span.end : t + dt;
+        op.distribute(u, span.now);
+        heat_entered += conservative.needed() ? conservative.correct(old, u) : held.taken(u);
+        ++spent.steps;
+        tell_step(span.now);
+        check_finite(u, method, span.now);
+      }
+
+      void end_span(Vector &u) override
+      {
+        op.distribute(u, span.end);
+        if (op.depends_on_solution())
+          {
+            op.take_material_at(u); // for what is written there
+            return;
+          }
+        check_finite(u, method, span.end);
+        heat_entered += held.taken(u);
+      }
+
+      void exchange_own(Archive &archive, const UnknownKeys &keys) override
+      {
+        archive.exchange("time step", dt);
+        held.exchange(archive, keys);
       }
 
       virtual void step(Vector &u, const double t, const double size) = 0;

@@ -34,6 +34,54 @@ namespace PeriDeal
   } // namespace
 
 
+  bool Stepper::advance(Vector &u, const double t, const double t_end, Interrupt *interrupt)
+  {
+    span         = Span();
+    span.start   = t;
+    span.end     = t_end;
+    span.now     = t;
+    span.is_open = true;
+    begin_span(u);
+    return go_on(u, interrupt);
+  }
+
+
+  bool Stepper::go_on(Vector &u, Interrupt *interrupt)
+  {
+    Assert(span.is_open, dealii::ExcMessage("No span has been interrupted."));
+    const auto is_over = [&] {
+      return span.n_steps > 0 ? span.n_done == span.n_steps : span.now >= span.end;
+    };
+    while (!is_over())
+      {
+        take_step(u);
+        ++span.n_done;
+        if (interrupt != nullptr && !is_over() && interrupt->asked(span.now))
+          return false;
+      }
+    span.is_open = false;
+    span.now     = span.end;
+    end_span(u);
+    return true;
+  }
+
+
+  void Stepper::exchange(Archive &archive, const UnknownKeys &keys)
+  {
+    archive.exchange("span start", span.start);
+    archive.exchange("span end", span.end);
+    archive.exchange("span now", span.now);
+    archive.exchange("span steps", span.n_steps);
+    archive.exchange("span steps done", span.n_done);
+    archive.exchange("span is open", span.is_open);
+    archive.exchange("steps", spent.steps);
+    archive.exchange("rejected", spent.rejected);
+    archive.exchange("iterations", spent.iterations);
+    archive.exchange_share("heat entered", heat_entered);
+    exchange_own(archive, keys);
+  }
+
+
   void refuse_unstable_step(const std::string &name, const Operator &op, const double dt)
   {
     if (dt <= 0. || stable_step(name, 1.) == std::numeric_limits<double>::infinity())

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
 #include <perideal/operators/operator.h>
 
 namespace PeriDeal
@@ -29,6 +30,9 @@ namespace PeriDeal
 
     /** What they have taken up when it ends with u, distributed; of this process. Collective. */
     double taken(const Vector &u);
+
+    /** The values that the span began with. Collective. */
+    void exchange(Archive &archive, const UnknownKeys &keys);
 
   private:
     const Operator &op;

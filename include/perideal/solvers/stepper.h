@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
 #include <perideal/operators/operator.h>
 
 #include <memory>
@@ -28,6 +29,20 @@ namespace PeriDeal
   };
 
 
+  /** Ends Stepper::advance() early. */
+  class Interrupt
+  {
+  public:
+    virtual ~Interrupt() = default;
+
+    /**
+     * Whether to stop at time t. Asked after each step, so it must be fast; the answer must be the
+     * same on all processes.
+     */
+    virtual bool asked(const double t) = 0;
+  };
+
+
   /**
    * Advances C du/dt = f(t) - K u of an Operator in time. Steppers allocate their vectors once, in
    * the constructor.
@@ -43,8 +58,33 @@ namespace PeriDeal
     /**
      * From u at time t to exactly t_end > t. u must be distributed at t, and comes back distributed
      * at t_end. Throws UserError as soon as values are no longer finite. Collective.
+     *
+     * Where @p interrupt asks for it, ends between two steps, and returns false: go_on() then takes
+     * the same steps as if there had been no break.
      */
-    virtual void advance(Vector &u, const double t, const double t_end) = 0;
+    bool advance(Vector &u, const double t, const double t_end, Interrupt *interrupt = nullptr);
+
+    /** The rest of a span that was interrupted, as advance(). Collective. */
+    bool go_on(Vector &u, Interrupt *interrupt = nullptr);
+
+    /** There is a rest of a span to go_on() with. */
+    bool is_inside_span() const
+    {
+      return span.is_open;
+    }
+
+    /** The end of the last step. */
+    double reached() const
+    {
+      return span.now;
+    }
+
+    /**
+     * All that the next steps depend on besides u, which the caller keeps, and the operator. A
+     * stepper that loads must be made as the one that saved, for an operator of the same scene at
+     * the same time. @p keys those of u. Collective.
+     */
+    void exchange(Archive &archive, const UnknownKeys &keys);
 
     /** Forget the past (multistep methods): the operator or the solution has changed abruptly. */
     virtual void restart() {}
@@ -91,6 +131,28 @@ namespace PeriDeal
     }
 
   protected:
+    /** The times between which advance() steps. */
+    struct Span
+    {
+      double             start = 0., end = 0., now = 0.;
+      unsigned long long n_steps = 0; // all of equal length; 0: as many as it takes
+      unsigned long long n_done  = 0; // rejected ones too
+      bool               is_open = false;
+    };
+
+    /** Called with u at the start of the span; sets n_steps where steps are equal. */
+    virtual void begin_span(const Vector &u) = 0;
+
+    /** One step of u from span.now, which is set to where it ends: where it began if rejected. */
+    virtual void take_step(Vector &u) = 0;
+
+    /** Called with u after the last step. */
+    virtual void end_span(Vector &u) = 0;
+
+    /** What this method has besides the members here. */
+    virtual void exchange_own(Archive &, const UnknownKeys &) {}
+
+    Span        span;
     StepperCost spent;
     double      heat_entered = 0.;
   };
