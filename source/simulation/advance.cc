@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "result_record.h"
+#include "run_output.h"
 
 namespace PeriDeal
 {
@@ -85,7 +86,7 @@ namespace PeriDeal
   {
     for (auto &model : models)
       {
-        if (files)
+        if (output->is_open())
           progress.doing("solving " + model->name());
         Timings::Scope scope(model->timings, "solve");
         with_formulas([&] {
@@ -164,7 +165,7 @@ namespace PeriDeal
         const double to   = std::min(t, next);
         for (unsigned int k = 0; k < models.size(); ++k)
           {
-            if (files)
+            if (output->is_open())
               {
                 const double begin = share_done(k, to), end = share_done(k + 1, to);
                 progress.doing(models[k]->name() + ": time stepping");

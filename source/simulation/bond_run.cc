@@ -111,6 +111,11 @@ namespace PeriDeal
           u.local_element(i) = scene.initial_and_source.initial_value.value(node_set->position(i));
       }
 
+      std::string field_name() const override
+      {
+        return names_of(scene.general.physics).field;
+      }
+
       std::vector<OutputField> derived_fields(const Vector &u, const double t) const override
       {
         VectorField<dim>    two_sided, one_sided;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "result_record.h"
+#include "run_output.h"
 
 namespace PeriDeal
 {
@@ -15,8 +16,9 @@ namespace PeriDeal
   void Simulation<dim>::dry_run()
   {
     build();
-    make_readers();
-    note_gaps();
+    find_points();
+    for (const std::string &note : output->gaps_in_line())
+      record->notes.push_back(note);
     make_steppers();
     double computing = 0.; // in seconds, negative if it is not known
     for (const auto &model : models)

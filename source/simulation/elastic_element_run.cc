@@ -90,6 +90,16 @@ namespace PeriDeal
         return elements->volume(node);
       }
 
+      std::vector<std::string> columns() const override
+      {
+        return elastic_columns(scene);
+      }
+
+      typename FieldWriter<dim>::Choice shown() const override
+      {
+        return [this](const Point<dim> &p) { return scene.domain.shows(p); };
+      }
+
       std::vector<double> at_points(const PointEvaluator<dim>              &reader,
                                     const std::vector<std::vector<double>> &points) const override
       {
@@ -136,7 +146,7 @@ namespace PeriDeal
         return rows;
       }
 
-      std::vector<OutputField> fields() const override
+      std::vector<OutputField> fields(const double) const override
       {
         std::vector<SymmetricTensor<2, 3>>   stress;
         std::vector<SymmetricTensor<2, dim>> strain;

@@ -11,6 +11,7 @@
 #include <algorithm>
 
 #include "result_record.h"
+#include "run_output.h"
 #include "summary_parts.h"
 
 namespace PeriDeal
@@ -62,7 +63,7 @@ namespace PeriDeal
     for (const auto &model : models)
       add_totals(*model, 0.);
     if (scene.output.starts_at_zero())
-      write_fields(0.);
+      output->write_fields(0.);
     end_output(0.);
     double now = 0.;
     for (const double t : times_of_output())

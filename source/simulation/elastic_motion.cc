@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "result_record.h"
+#include "run_output.h"
 
 namespace PeriDeal
 {
@@ -89,7 +90,7 @@ namespace PeriDeal
     constexpr unsigned int n_reports = 50; // of the progress between two times of output
     progress.begin("time");
     if (scene.output.starts_at_zero())
-      write_fields(0.);
+      output->write_fields(0.);
     double now = 0.;
     for (const double t : times_of_output())
       {
@@ -215,8 +216,7 @@ namespace PeriDeal
     json       balance;
     const auto add = [&](const std::string &key, const std::string &quantity, const double value) {
       balance[key] = value;
-      record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
-                        full_precision(value) + "\n";
+      output->add_row(model.name(), quantity, value, t);
     };
     const auto add_all = [&](const auto &energy, const double lost) {
       balance["strain"] = energy.strain;

@@ -23,8 +23,8 @@
 #include "elastic_sides.h"
 #include "elastic_summary.h"
 #include "finite_results.h"
-#include "point_readers.h"
 #include "result_record.h"
+#include "run_output.h"
 #include "scene_sample.h"
 #include "summary_parts.h"
 
@@ -43,6 +43,7 @@ namespace PeriDeal
     , quiet(quiet)
     , progress(communicator, quiet)
     , record(std::make_unique<ResultRecord>())
+    , output(std::make_unique<RunOutput<dim>>(scene, *record))
   {}
 
 
@@ -143,66 +144,20 @@ namespace PeriDeal
           progress.line(certificate_line(*certificate));
       }
     build_heat();
-    make_readers();
+    find_points();
   }
 
 
   template <int dim>
-  void ElasticSimulation<dim>::make_readers()
+  void ElasticSimulation<dim>::find_points()
   {
-    Timings::Scope scope(timings, "output");
-    probe_readers = make_point_readers<dim>(models, scene.cracks, scene.output.probes, "Probes");
-    line_readers  = make_point_readers<dim>(models, scene.cracks, scene.output.line, "Line");
-    for (const std::string &note : gaps_in_line<dim>(line_readers, scene.output.line))
+    Timings::Scope                    scope(timings, "output");
+    typename RunOutput<dim>::Problems problems;
+    for (const auto &model : models)
+      problems.push_back(model.get());
+    output->find_points(problems);
+    for (const std::string &note : output->gaps_in_line())
       record->notes.push_back(note);
-  }
-
-
-  template <int dim>
-  void ElasticSimulation<dim>::write_points(const double t)
-  {
-    const auto add = [&](const std::vector<std::vector<double>> &points,
-                         const std::string                      &file,
-                         const PointReaders<dim>                &readers,
-                         std::unique_ptr<PointTable>            &table) {
-      if (points.empty())
-        return;
-      if (!table)
-        table =
-          std::make_unique<PointTable>(files->folder, file, points, dim, elastic_columns(scene));
-      for (unsigned int k = 0; k < readers.size(); ++k)
-        table->add(t, models[k]->name(), models[k]->at_points(*readers[k], points));
-    };
-    add(scene.output.probes, "probes.csv", probe_readers, probes);
-    add(scene.output.line, "line.csv", line_readers, line);
-  }
-
-
-  template <int dim>
-  void ElasticSimulation<dim>::write_fields(const double t)
-  {
-    if (!scene.output.vtu && !scene.output.hdf5)
-      return;
-    nlohmann::ordered_json names = nlohmann::ordered_json::object();
-    for (unsigned int k = 0; k < models.size(); ++k)
-      {
-        const ElasticRun<dim> &model = *models[k];
-        if (writers.size() == k)
-          writers.push_back(std::make_unique<FieldWriter<dim>>(
-            model.dofs(),
-            files->folder,
-            series_of(model.name()),
-            [this](const Point<dim> &p) { return scene.domain.shows(p); }));
-        const std::string name =
-          writers[k]->write(model.fields(), t, scene.output.vtu, scene.output.hdf5);
-        if (!name.empty())
-          names[model.name()] = name;
-      }
-    record->fields.push_back({{"time", t}, {"files", names}});
-    if (!cracks)
-      cracks = std::make_unique<CrackWriter>(files->folder);
-    if (scene.output.vtu)
-      cracks->write(crack_corners(scene.cracks.pieces(t)), t);
   }
 
 
@@ -210,8 +165,7 @@ namespace PeriDeal
   void ElasticSimulation<dim>::add_totals(ElasticRun<dim> &model, const double t)
   {
     const auto row = [&](const std::string &quantity, const double value) {
-      record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
-                        full_precision(value) + "\n";
+      output->add_row(model.name(), quantity, value, t);
     };
     const ForceBalance          balance = model.op().forces(model.displacement, t);
     const double                energy  = model.op().energy(model.displacement);
@@ -282,10 +236,10 @@ namespace PeriDeal
   {
     refuse_what_is_not_computed(scene);
     require_memory(scene, communicator);
-    files = std::make_unique<RunFiles>(scene, text, communicator);
+    output->open(text, communicator);
     nlohmann::ordered_json summary;
-    with_orderly_end(*files, progress, [&] { summary = compute(); });
-    files.reset();
+    with_orderly_end(output->files(), progress, [&] { summary = compute(); });
+    output->close();
     progress.end();
     say_what_was_found(progress, summary, scene.general.output_directory);
   }
@@ -305,8 +259,7 @@ namespace PeriDeal
     for (const std::string &note : record->notes)
       progress.note(note);
     const auto summary = summary_now(true);
-    files->add_totals(std::exchange(record->totals, ""));
-    files->complete(summary);
+    output->complete(summary);
     return summary;
   }
 
@@ -325,8 +278,8 @@ namespace PeriDeal
   template <int dim>
   void ElasticSimulation<dim>::write_state(const double t)
   {
-    write_points(t);
-    write_fields(t);
+    output->write_points(t);
+    output->write_fields(t);
     compare_displacements(models, scene.domain, t, record->comparison, record->comparisons);
     end_output(t);
   }
@@ -335,9 +288,8 @@ namespace PeriDeal
   template <int dim>
   void ElasticSimulation<dim>::end_output(const double t)
   {
-    files->add_totals(std::exchange(record->totals, ""));
-    files->after_output([&] { return summary_now(false); },
-                        scene.time.steady ? "the equilibrium" : "until t = " + full_precision(t));
+    output->end_time([&] { return summary_now(false); },
+                     scene.time.steady ? "the equilibrium" : "until t = " + full_precision(t));
   }
 
 
@@ -366,7 +318,7 @@ namespace PeriDeal
         if (!model->stepper)
           model->op().initialize_vector(model->displacement);
         components.push_back(0.);
-        for (const OutputField &field : model->fields())
+        for (const OutputField &field : model->fields(0.))
           components.back() += field.components.size();
         const double own = model->stepper ?
                              time_of_motion(*model) :

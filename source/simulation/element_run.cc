@@ -135,6 +135,11 @@ namespace PeriDeal
           give_heat(lost, t);
       }
 
+      std::string field_name() const override
+      {
+        return names_of(scene.general.physics).field;
+      }
+
       std::vector<OutputField> derived_fields(const Vector &u, const double) const override
       {
         VectorField<dim> flux;

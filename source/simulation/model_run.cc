@@ -19,6 +19,32 @@ namespace PeriDeal
 
 
   template <int dim>
+  std::vector<std::string> ModelRun<dim>::columns() const
+  {
+    return {"value"};
+  }
+
+
+  template <int dim>
+  std::vector<double> ModelRun<dim>::at_points(const PointEvaluator<dim> &reader,
+                                               const std::vector<std::vector<double>> &) const
+  {
+    return reader.evaluate(solution);
+  }
+
+
+  template <int dim>
+  std::vector<OutputField> ModelRun<dim>::fields(const double t) const
+  {
+    std::vector<OutputField> list{{field_name(), {solution}}};
+    list[0].components[0].update_ghost_values();
+    for (OutputField &field : derived_fields(solution, t))
+      list.push_back(std::move(field));
+    return list;
+  }
+
+
+  template <int dim>
   std::unique_ptr<ModelRun<dim>> make_model_run(const ModelKind           model,
                                                 const Triangulation<dim> &mesh,
                                                 const Scene<dim>         &scene)
@@ -33,6 +59,9 @@ namespace PeriDeal
     return run;
   }
 
+  template class ModelRun<1>;
+  template class ModelRun<2>;
+  template class ModelRun<3>;
   template void                         set_start(ModelRun<1> &);
   template void                         set_start(ModelRun<2> &);
   template void                         set_start(ModelRun<3> &);

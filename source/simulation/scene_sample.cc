@@ -220,7 +220,7 @@ namespace PeriDeal
           sample.time_to_build += building.seconds();
           model.time_of_application = time_of_application(op);
           runs.back()->op().initialize_vector(runs.back()->displacement);
-          for (const OutputField &field : runs.back()->fields())
+          for (const OutputField &field : runs.back()->fields(0.))
             model.components += field.components.size();
           if (!scene.elasticity.is_static())
             model.applications = steps_of_motion(scene, op);

@@ -23,8 +23,8 @@
 #include "crack_note.h"
 #include "effective_conductivity.h"
 #include "finite_results.h"
-#include "point_readers.h"
 #include "result_record.h"
+#include "run_output.h"
 #include "summary_parts.h"
 
 namespace PeriDeal
@@ -41,6 +41,7 @@ namespace PeriDeal
     , communicator(communicator)
     , progress(communicator, quiet)
     , record(std::make_unique<ResultRecord>())
+    , output(std::make_unique<RunOutput<dim>>(scene, *record))
   {
     Assert(scene.general.physics != Physics::elasticity, ExcMessage("see ElasticSimulation"));
   }
@@ -136,7 +137,7 @@ namespace PeriDeal
         "needs 'side: 0' there).");
     for (const ModelKind model : scene.general.models)
       {
-        if (files)
+        if (output->is_open())
           progress.doing("building " + to_string(model));
         with_formulas([&] { models.push_back(make_model_run(model, *mesh, scene)); });
         describe(*models.back());
@@ -230,41 +231,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::make_readers()
+  void Simulation<dim>::find_points()
   {
-    probe_readers = make_point_readers<dim>(models, scene.cracks, scene.output.probes, "Probes");
-    line_readers  = make_point_readers<dim>(models, scene.cracks, scene.output.line, "Line");
-    grid_readers  = make_point_readers<dim>(models, scene.cracks, scene.output.grid, "Grid");
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::note_gaps()
-  {
-    for (const std::string &note : gaps_in_line<dim>(line_readers, scene.output.line))
-      record->notes.push_back(note);
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::make_tables()
-  {
-    const auto make = [&](const std::vector<std::vector<double>> &points, const std::string &name) {
-      return points.empty() ? nullptr :
-                              std::make_unique<PointTable>(files->folder, name, points, dim);
-    };
-    probes = make(scene.output.probes, "probes.csv");
-    line   = make(scene.output.line, "line.csv");
-    grid   = make(scene.output.grid, "grid.csv");
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::make_writers()
-  {
+    typename RunOutput<dim>::Problems problems;
     for (const auto &model : models)
-      writers.push_back(
-        std::make_unique<FieldWriter<dim>>(model->dofs(), files->folder, series_of(model->name())));
+      problems.push_back(model.get());
+    output->find_points(problems);
   }
 
 
@@ -272,10 +244,10 @@ namespace PeriDeal
   void Simulation<dim>::run()
   {
     require_memory(scene, communicator);
-    files = std::make_unique<RunFiles>(scene, text, communicator);
+    output->open(text, communicator);
     nlohmann::ordered_json summary;
-    with_orderly_end(*files, progress, [&] { summary = compute(); });
-    files.reset();
+    with_orderly_end(output->files(), progress, [&] { summary = compute(); });
+    output->close();
     progress.end();
     say_what_was_found(progress, summary, scene.general.output_directory);
   }
@@ -287,15 +259,11 @@ namespace PeriDeal
     build();
     {
       Timings::Scope scope(timings, "output");
-      make_readers();
-      note_gaps();
+      find_points();
+      for (const std::string &note : output->gaps_in_line())
+        record->notes.push_back(note);
     }
     make_steppers();
-    {
-      Timings::Scope scope(timings, "output");
-      make_tables();
-      make_writers();
-    }
     const std::vector<double> times = output_times();
     if (scene.time.steady)
       progress.line("steady state");
@@ -309,7 +277,8 @@ namespace PeriDeal
         progress.doing("writing results");
         Timings::Scope scope(timings, "output");
         with_formulas([&] { write_output(t); });
-        end_output(t);
+        output->end_time([&] { return summary_now(); },
+                         scene.time.steady ? "the steady state" : "until t = " + full_precision(t));
       }
     progress.end();
     if (n_adaptations > 0)
@@ -320,7 +289,7 @@ namespace PeriDeal
     for (const std::string &note : record->notes)
       progress.note(note);
     const nlohmann::ordered_json summary = summary_now();
-    files->complete(summary);
+    output->complete(summary);
     return summary;
   }
 
@@ -329,12 +298,16 @@ namespace PeriDeal
   void Simulation<dim>::write_output(const double t)
   {
     if (!readers_fit)
-      make_readers();
+      find_points();
+    readers_fit = true;
     for (auto &model : models) // refuses what is not finite before it is written
       add_totals(t, *model);
     for (auto &model : models)
       model->solution.update_ghost_values();
-    add_points(t);
+    typename RunOutput<dim>::Values known;
+    if (exact)
+      known = [&](const std::vector<double> &p) { return exact->value(p.data(), t); };
+    output->write_points(t, known);
     add_errors(t);
     compare_models(t);
     write_fields(t);
@@ -361,65 +334,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::end_output(const double t)
-  {
-    files->add_totals(std::exchange(record->totals, ""));
-    files->after_output([&] { return summary_now(); },
-                        scene.time.steady ? "the steady state" : "until t = " + full_precision(t));
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::add_points(const double t)
-  {
-    const auto add =
-      [&](const std::vector<std::vector<double>> &points, const auto &readers, PointTable *table) {
-        for (std::size_t m = 0; m < readers.size(); ++m)
-          table->add(t, models[m]->name(), readers[m]->evaluate(models[m]->solution));
-        if (exact && !points.empty())
-          {
-            std::vector<double> values;
-            for (unsigned int k = 0; k < points.size(); ++k)
-              values.push_back(readers[0]->is_gap(k) ? std::nan("") :
-                                                       exact->value(points[k].data(), t));
-            table->add(t, "exact", values);
-          }
-      };
-    add(scene.output.probes, probe_readers, probes.get());
-    add(scene.output.line, line_readers, line.get());
-    add(scene.output.grid, grid_readers, grid.get());
-  }
-
-
-  template <int dim>
   void Simulation<dim>::write_fields(const double t)
   {
-    if (!scene.output.vtu && !scene.output.hdf5)
-      return;
-    nlohmann::ordered_json names = nlohmann::ordered_json::object();
-    for (std::size_t m = 0; m < models.size(); ++m)
+    std::map<std::string, OutputField> more;
+    if (difference.size() > 0)
       {
-        std::vector<OutputField> fields{
-          {names_of(scene.general.physics).field, {models[m]->solution}}};
-        fields[0].components[0].update_ghost_values();
-        for (OutputField &field : models[m]->derived_fields(models[m]->solution, t))
-          fields.push_back(std::move(field));
-        if (models[m]->name() == to_string(ModelKind::peridynamics) && difference.size() > 0)
-          {
-            fields.push_back({"peridynamics_minus_finite_elements", {difference}});
-            fields.back().components[0].update_ghost_values();
-          }
-        const std::string name = writers[m]->write(fields, t, scene.output.vtu, scene.output.hdf5);
-        if (!name.empty())
-          names[models[m]->name()] = name;
+        OutputField field{"peridynamics_minus_finite_elements", {difference}};
+        field.components[0].update_ghost_values();
+        more.emplace(to_string(ModelKind::peridynamics), std::move(field));
       }
-    record->fields.push_back({{"time", t}, {"files", names}});
-    if (scene.cracks.change())
-      record->fields.back()["cracks"] = corners_of(scene.cracks.pieces(t));
-    if (!cracks)
-      cracks = std::make_unique<CrackWriter>(files->folder);
-    if (scene.output.vtu)
-      cracks->write(crack_corners(scene.cracks.pieces(t)), t);
+    output->write_fields(t, more);
   }
 
 
@@ -438,8 +362,7 @@ namespace PeriDeal
       "Numbers beyond 1e308 came up. Check the sizes and units of values, fluxes and sources (sections 'Boundary conditions' and 'Initial and source') and of the "
       "properties in section 'Material'.");
     const auto row = [&](const std::string &quantity, const double value) {
-      record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
-                        full_precision(value) + "\n";
+      output->add_row(model.name(), quantity, value, t);
     };
     row(names.content,
         scene.general.physics == Physics::moisture ? model.weight(model.solution) :
@@ -489,8 +412,7 @@ namespace PeriDeal
   template void Simulation<dim>::build_on(const std::shared_ptr<Triangulation<dim>> &);      \
   template const ModelRun<dim>            &Simulation<dim>::model(const unsigned int) const; \
   template const std::vector<std::string> &Simulation<dim>::notes() const;                   \
-  template void                            Simulation<dim>::make_readers();                  \
-  template void                            Simulation<dim>::note_gaps();                     \
+  template void                            Simulation<dim>::find_points();                   \
   template std::vector<double>             Simulation<dim>::output_times() const;            \
   template void                            Simulation<dim>::run();
   PERIDEAL_INSTANTIATE(1)

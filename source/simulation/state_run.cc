@@ -75,6 +75,16 @@ namespace PeriDeal
         return node_set->volume(node);
       }
 
+      std::vector<std::string> columns() const override
+      {
+        return elastic_columns(scene);
+      }
+
+      typename FieldWriter<dim>::Choice shown() const override
+      {
+        return [this](const Point<dim> &p) { return scene.domain.shows(p); };
+      }
+
       std::vector<double> at_points(const PointEvaluator<dim>              &reader,
                                     const std::vector<std::vector<double>> &points) const override
       {
@@ -111,7 +121,7 @@ namespace PeriDeal
         return rows;
       }
 
-      std::vector<OutputField> fields() const override
+      std::vector<OutputField> fields(const double) const override
       {
         const NodalTensors<dim> tensors = states->tensors(this->displacement);
         std::vector<double>     theta;

@@ -3,17 +3,12 @@
 
 #pragma once
 
-#include <deal.II/dofs/dof_handler.h>
-
 #include <perideal/analysis/elastic_stress.h>
 #include <perideal/analysis/phase_statistics.h>
-#include <perideal/analysis/point_evaluator.h>
 #include <perideal/analysis/stress_intensity.h>
-#include <perideal/base/timing.h>
-#include <perideal/mesh/nodes.h>
 #include <perideal/operators/elastic_operator.h>
-#include <perideal/output/field_writer.h>
 #include <perideal/scene/scene.h>
+#include <perideal/simulation/problem.h>
 #include <perideal/solvers/motion_stepper.h>
 #include <perideal/solvers/slow_loading.h>
 
@@ -24,47 +19,21 @@
 
 namespace PeriDeal
 {
-  struct CouplingCertificate;
-
   /**
-   * One model of an elastic body during a run: its nodes on the shared mesh, its operator, its
-   * displacement. All functions are collective.
+   * A body that deforms, in one model of a scene: dim unknowns at each node, interleaved. Functions
+   * are collective.
    */
   template <int dim>
-  class ElasticRun
+  class ElasticRun : public Problem<dim>
   {
   public:
-    virtual ~ElasticRun() = default;
-
-    /** As in scenes and output files. */
-    virtual std::string name() const = 0;
-
-    /** One for each node; each has dim unknowns, interleaved. */
-    virtual const dealii::DoFHandler<dim> &dofs() const = 0;
-
-    /**
-     * Nodes on a lattice, for reading values at points without a mesh search; nullptr for finite
-     * elements.
-     */
-    virtual const Nodes<dim> *nodes() const = 0;
-
-    virtual ElasticOperator &op() const = 0;
+    ElasticOperator &op() const override = 0;
 
     /** Place of an owned node. Not collective. */
     virtual dealii::Point<dim> position(const unsigned int node) const = 0;
 
     /** What an owned node has of the body's volume. Not collective. */
     virtual double volume(const unsigned int node) const = 0;
-
-    /**
-     * Displacement, stress and a computed temperature at points, in the order of elastic_columns(),
-     * one point after the other.
-     */
-    virtual std::vector<double> at_points(const PointEvaluator<dim>              &reader,
-                                          const std::vector<std::vector<double>> &points) const = 0;
-
-    /** Displacement, stress, strain and what follows from them, with up-to-date ghosts. */
-    virtual std::vector<OutputField> fields() const = 0;
 
     /** The mean stress over the volume of the body: what the body as a whole carries. */
     virtual dealii::SymmetricTensor<2, 3> mean_stress() const = 0;
@@ -78,21 +47,6 @@ namespace PeriDeal
     /** The stress of each own node or cell, with its phase. */
     virtual std::vector<StressSample> stress_samples() const = 0;
 
-    /** What was chosen, for the report: name and value. */
-    virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
-
-    /** What the user should know of this model in this scene. Not collective. */
-    virtual std::vector<std::string> notes() const
-    {
-      return {};
-    }
-
-    /** What is known of the coupling, or nullptr. Not collective. */
-    virtual const CouplingCertificate *examined() const
-    {
-      return nullptr;
-    }
-
     Vector                         displacement;
     Vector                         velocity;          // of a motion
     std::unique_ptr<MotionStepper> stepper;           // null in equilibrium
@@ -100,7 +54,6 @@ namespace PeriDeal
     double                         stable_step  = 0.; // of a motion by verlet, at its start
     double                         force_scale  = 0.; // the largest find_force_scale() so far
     unsigned int                   n_iterations = 0;
-    Timings                        timings;
   };
 
 

@@ -5,11 +5,8 @@
 
 #include <deal.II/grid/tria.h>
 
-#include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/progress.h>
-#include <perideal/output/crack_writer.h>
 #include <perideal/simulation/elastic_run.h>
-#include <perideal/simulation/run_files.h>
 #include <perideal/simulation/simulation.h>
 
 #include <nlohmann/json_fwd.hpp>
@@ -21,6 +18,8 @@
 namespace PeriDeal
 {
   struct ResultRecord;
+  template <int dim>
+  class RunOutput;
 
   /**
    * Owns and wires the members of a run with `Physics = elasticity`: mesh, models, solvers, output,
@@ -52,7 +51,7 @@ namespace PeriDeal
     nlohmann::ordered_json compute(); // the summary at the end
     void                   build();
     void                   build_heat();
-    void                   make_readers();
+    void                   find_points();
     void                   describe_costs_of_run(const double memory_before);
     double                 time_of_motion(ElasticRun<dim> &model); // by its first steps
     void                   warm_until(const double t);
@@ -79,27 +78,21 @@ namespace PeriDeal
     void                   note_torn_sides(const ElasticRun<dim> &model);
     void                   write_output(const double t);
     void                   write_state(const double t);
-    void                   write_points(const double t);
-    void                   write_fields(const double t);
     void                   add_totals(ElasticRun<dim> &model, const double t);
     nlohmann::ordered_json add_energies(const ElasticRun<dim> &model, const double t);
     void                   end_output(const double t);
     nlohmann::ordered_json summary_now(const bool at_the_end);
 
-    const Scene<dim>                                 &scene;
-    const SceneText                                  &text;
-    MPI_Comm                                          communicator;
-    const bool                                        quiet;
-    mutable Progress                                  progress;
-    Timings                                           timings;
-    std::shared_ptr<dealii::Triangulation<dim>>       mesh;
-    std::vector<std::unique_ptr<ElasticRun<dim>>>     models;
-    std::unique_ptr<Simulation<dim>>                  heat;  // null: no temperature is computed
-    std::unique_ptr<RunFiles>                         files; // of run() only
-    std::unique_ptr<PointTable>                       probes, line;
-    std::unique_ptr<CrackWriter>                      cracks; // from the first fields on
-    std::unique_ptr<ResultRecord>                     record;
-    std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers; // of the models
-    std::vector<std::unique_ptr<FieldWriter<dim>>>    writers;
+    const Scene<dim>                             &scene;
+    const SceneText                              &text;
+    MPI_Comm                                      communicator;
+    const bool                                    quiet;
+    mutable Progress                              progress;
+    Timings                                       timings;
+    std::shared_ptr<dealii::Triangulation<dim>>   mesh;
+    std::vector<std::unique_ptr<ElasticRun<dim>>> models;
+    std::unique_ptr<Simulation<dim>>              heat; // null: no temperature is computed
+    std::unique_ptr<ResultRecord>                 record;
+    std::unique_ptr<RunOutput<dim>>               output;
   };
 } // namespace PeriDeal

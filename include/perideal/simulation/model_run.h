@@ -3,16 +3,11 @@
 
 #pragma once
 
-#include <deal.II/dofs/dof_handler.h>
-
 #include <perideal/analysis/comparison.h>
 #include <perideal/analysis/recovery.h>
-#include <perideal/base/timing.h>
-#include <perideal/mesh/nodes.h>
-#include <perideal/operators/operator.h>
-#include <perideal/output/field_writer.h>
 #include <perideal/scene/scene.h>
 #include <perideal/simulation/heat_ledger.h>
+#include <perideal/simulation/problem.h>
 #include <perideal/solvers/stepper.h>
 
 #include <functional>
@@ -23,33 +18,15 @@
 
 namespace PeriDeal
 {
-  struct CouplingCertificate;
-
-  /**
-   * One model of a scene during a run: its unknowns on the shared mesh, its operator, its solution,
-   * and what both have cost so far. All functions are collective.
-   */
+  /** What diffuses, in one model of a scene. Functions are collective. */
   template <int dim>
-  class ModelRun
+  class ModelRun : public Problem<dim>
   {
   public:
-    virtual ~ModelRun() = default;
-
-    /** As in scenes and output files. */
-    virtual std::string name() const = 0;
-
-    virtual const dealii::DoFHandler<dim> &dofs() const = 0;
-
-    /**
-     * Nodes on a lattice, for reading values at points without a mesh search; nullptr for finite
-     * elements.
-     */
-    virtual const Nodes<dim> *nodes() const = 0;
-
     /** Volume of an owned peridynamic node. Not for finite elements alone. */
     virtual double volume_of(const unsigned int node) const = 0;
 
-    virtual DiffusionOperator &op() const = 0;
+    DiffusionOperator &op() const override = 0;
 
     /** As Operator::update(). */
     virtual bool update(const double t) = 0;
@@ -83,7 +60,10 @@ namespace PeriDeal
       Assert(false, dealii::ExcNotImplemented());
     }
 
-    /** Fields for output besides the temperature; u has up-to-date ghosts. */
+    /** The name of the field of the solution. Not collective. */
+    virtual std::string field_name() const = 0;
+
+    /** Fields for output besides the solution; u has up-to-date ghosts. */
     virtual std::vector<OutputField> derived_fields(const Vector &u, const double t) const = 0;
 
     /**
@@ -95,29 +75,15 @@ namespace PeriDeal
       const Vector                                            &u,
       const std::function<double(const dealii::Point<dim> &)> &exact) const = 0;
 
-    /** What was chosen, for the report: name and value. */
-    virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
-
-    /**
-     * What the user should know of the chosen settings: where they are known to fail, and what to
-     * choose instead.
-     */
-    virtual std::vector<std::string> notes() const
-    {
-      return {};
-    }
-
-    /** What is known of a coupling, or nullptr. */
-    virtual const CouplingCertificate *examined() const
-    {
-      return nullptr;
-    }
+    std::vector<std::string> columns() const override;
+    std::vector<double>      at_points(const PointEvaluator<dim>              &reader,
+                                       const std::vector<std::vector<double>> &points) const override;
+    std::vector<OutputField> fields(const double t) const override;
 
     Vector                   solution;
     std::unique_ptr<Stepper> stepper; // null if steady
     HeatLedger               ledger;  // of the run from the start, unless steady
     unsigned int             steady_iterations = 0;
-    Timings                  timings;
   };
 
 

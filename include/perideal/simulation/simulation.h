@@ -6,12 +6,11 @@
 #include <deal.II/grid/tria.h>
 
 #include <perideal/analysis/exact_solution.h>
-#include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/progress.h>
 #include <perideal/mesh/grading.h>
-#include <perideal/output/crack_writer.h>
 #include <perideal/simulation/model_run.h>
-#include <perideal/simulation/run_files.h>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <functional>
 #include <map>
@@ -20,6 +19,8 @@
 namespace PeriDeal
 {
   struct ResultRecord;
+  template <int dim>
+  class RunOutput;
 
   /**
    * Owns and wires the members of a run: mesh, models, steppers, output. All models of the scene
@@ -78,20 +79,15 @@ namespace PeriDeal
     void                   with_formulas(const std::function<void()> &action) const;
     void                   make_steppers();
     void                   make_stepper_of(ModelRun<dim> &model);
-    void                   make_readers();
-    void                   note_gaps();
+    void                   find_points();
     void                   solve_models();
     void                   prepare_adaptation();
     bool                   adapt(const double t);
-    void                   make_tables();
-    void                   make_writers();
     nlohmann::ordered_json compute(); // the summary at the end
     void                   make_reference();
     void advance_through_events(ModelRun<dim> &model, const double t_begin, const double t_end);
     void write_output(const double t);
     void write_start(); // the first frame of a film
-    void end_output(const double t);
-    void add_points(const double t);
     void add_totals(const double t, ModelRun<dim> &model);
     void add_errors(const double t);
     void compare_models(const double t);
@@ -110,20 +106,16 @@ namespace PeriDeal
      */
     double share_done(const unsigned int n, const double t) const;
 
-    const Scene<dim>                                 &scene;
-    const SceneText                                  &text;
-    MPI_Comm                                          communicator;
-    mutable Progress                                  progress;
-    Timings                                           timings;
-    std::shared_ptr<dealii::Triangulation<dim>>       mesh;
-    std::vector<std::unique_ptr<ModelRun<dim>>>       models;
-    std::vector<std::unique_ptr<FieldWriter<dim>>>    writers;
-    std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers, grid_readers;
-    std::unique_ptr<ExactSolution>                    exact;
-    std::unique_ptr<RunFiles>                         files; // of run() only
-    std::unique_ptr<PointTable>                       probes, line, grid;
-    std::unique_ptr<CrackWriter>                      cracks; // from the first fields on
-    std::unique_ptr<ResultRecord>                     record;
+    const Scene<dim>                           &scene;
+    const SceneText                            &text;
+    MPI_Comm                                    communicator;
+    mutable Progress                            progress;
+    Timings                                     timings;
+    std::shared_ptr<dealii::Triangulation<dim>> mesh;
+    std::vector<std::unique_ptr<ModelRun<dim>>> models;
+    std::unique_ptr<ExactSolution>              exact;
+    std::unique_ptr<ResultRecord>               record;
+    std::unique_ptr<RunOutput<dim>>             output;
     Vector                        difference; // peridynamics minus finite elements, at the nodes
     std::unique_ptr<Grading<dim>> grading;    // only where the mesh is adapted
     bool                          readers_fit   = true; // the mesh

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <perideal/analysis/point_evaluator.h>
+#include <perideal/base/timing.h>
+#include <perideal/mesh/nodes.h>
+#include <perideal/operators/operator.h>
+#include <perideal/output/field_writer.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  struct CouplingCertificate;
+
+  /**
+   * One physics of one model of a scene during a run: its unknowns on the shared mesh, its
+   * operator, its results, and what they have cost so far. Functions are collective unless they
+   * say otherwise.
+   */
+  template <int dim>
+  class Problem
+  {
+  public:
+    virtual ~Problem() = default;
+
+    /** Of the model, as in scenes and output files. Not collective. */
+    virtual std::string name() const = 0;
+
+    /** One for each node, whatever number of components it has. Not collective. */
+    virtual const dealii::DoFHandler<dim> &dofs() const = 0;
+
+    /**
+     * Nodes on a lattice, for reading values at points without a mesh search; nullptr for finite
+     * elements. Not collective.
+     */
+    virtual const Nodes<dim> *nodes() const = 0;
+
+    virtual Operator &op() const = 0;
+
+    /** What probes.csv, line.csv and grid.csv have at each point. Not collective. */
+    virtual std::vector<std::string> columns() const = 0;
+
+    /** The values of these columns, of one point after the other; the state has current ghosts. */
+    virtual std::vector<double> at_points(const PointEvaluator<dim>              &reader,
+                                          const std::vector<std::vector<double>> &points) const = 0;
+
+    /** All fields of files at a time, with current ghosts; the state has current ghosts. */
+    virtual std::vector<OutputField> fields(const double t) const = 0;
+
+    /** Which cells of the mesh fields show; all if empty. */
+    virtual typename FieldWriter<dim>::Choice shown() const
+    {
+      return {};
+    }
+
+    /** What was chosen, for the report: name and value. */
+    virtual std::vector<std::pair<std::string, std::string>> settings() const = 0;
+
+    /**
+     * What the user should know of the chosen settings: where they are known to fail, and what to
+     * choose instead. Not collective.
+     */
+    virtual std::vector<std::string> notes() const
+    {
+      return {};
+    }
+
+    /** What is known of a coupling, or nullptr. Not collective. */
+    virtual const CouplingCertificate *examined() const
+    {
+      return nullptr;
+    }
+
+    Timings timings;
+  };
+} // namespace PeriDeal
