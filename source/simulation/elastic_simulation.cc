@@ -358,71 +358,45 @@ namespace PeriDeal
 
 
   template <int dim>
+  nlohmann::ordered_json ElasticSimulation<dim>::describe_solving(
+    const ElasticRun<dim> &model) const
+  {
+    nlohmann::ordered_json entry{{"iterations", model.n_iterations}};
+    if (model.stepper)
+      {
+        entry["stepper"]     = model.stepper->name();
+        entry["steps"]       = model.stepper->cost().steps;
+        entry["iterations"]  = model.stepper->cost().iterations;
+        entry["time step"]   = model.stepper->current_step();
+        entry["stable step"] = {{"sharp", model.stable_step}, {"method", "verlet"}};
+      }
+    if (model.loading && !scene.time.steady)
+      {
+        entry["steps"] = model.loading->n_steps();
+        if (!scene.warms_slowly()) // then equilibria are at times of output
+          entry["time step"] = load_step();
+      }
+    return entry;
+  }
+
+
+  template <int dim>
   nlohmann::ordered_json ElasticSimulation<dim>::summary_now(const bool at_the_end)
   {
-    using json           = nlohmann::ordered_json;
-    json summary         = describe_scene(scene, text, *mesh, communicator);
-    summary["cracks"]    = corners_of(scene.cracks.pieces(scene.cracks.end_time));
-    summary["steady"]    = scene.time.steady;
-    summary["solver"]    = scene.elasticity.solver_name();
-    summary["end time"]  = scene.time.steady ? 0. : scene.time.end_time;
-    summary["sides"]     = describe_elastic_sides(scene);
-    summary["notes"]     = record->notes;
-    summary["fields"]    = record->fields;
-    summary["wall time"] = timings.all();
-    summary["memory of mesh"] =
-      Utilities::MPI::sum(static_cast<double>(mesh->memory_consumption()), communicator);
+    using json   = nlohmann::ordered_json;
+    json summary = describe_scene(scene, text, *mesh, communicator);
+    describe_run(scene, *mesh, *record, timings, summary);
+    summary["solver"] = scene.elasticity.solver_name();
+    summary["sides"]  = describe_elastic_sides(scene);
     for (const auto &model : models)
       {
-        const OperatorSize size = model->op().size();
-        json               entry;
-        entry["unknowns"] = size.unknowns;
-        if (size.bonds > 0)
-          entry["bonds"] = size.bonds;
-        entry["nonzeros"]   = size.nonzeros;
-        entry["iterations"] = model->n_iterations;
-        if (model->stepper)
-          {
-            entry["stepper"]     = model->stepper->name();
-            entry["steps"]       = model->stepper->cost().steps;
-            entry["iterations"]  = model->stepper->cost().iterations;
-            entry["time step"]   = model->stepper->current_step();
-            entry["stable step"] = {{"sharp", model->stable_step}, {"method", "verlet"}};
-          }
-        if (model->loading && !scene.time.steady)
-          {
-            entry["steps"] = model->loading->n_steps();
-            if (!scene.warms_slowly()) // then equilibria are at times of output
-              entry["time step"] = load_step();
-          }
-        entry["operator applications"] = model->op().n_applications();
-        entry["operator form"]         = size.form;
-        entry["settings"]              = json::object();
-        for (const auto &[name, value] : model->settings())
-          entry["settings"][name] = value;
-        if (const CouplingCertificate *certificate = model->examined())
-          entry["certificate"] = describe_certificate(*certificate);
-        entry["wall time"] = model->timings.all();
-        entry["memory"]    = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
-        Utilities::System::MemoryStats stats;
-        Utilities::System::get_memory_stats(stats);
-        entry["peak memory"] =
-          1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
-        if (record->balances.contains(model->name()))
-          entry.update(record->balances.at(model->name()));
-        if (record->extremes.contains(model->name()) &&
-            record->extremes.at(model->name()).is_object()) // null without any force
-          entry.update(record->extremes.at(model->name()));
+        json &entry = summary["models"][model->name()];
+        entry       = describe_problem<dim>(*model, describe_solving(*model), *record);
         if (at_the_end)
           if (const json phases = describe_phases(*model, scene, record->totals, communicator);
               !phases.empty())
             entry["phases"] = phases;
-        summary["models"][model->name()] = entry;
       }
-    if (!record->comparison.empty())
-      summary["comparison"] = record->comparison;
-    if (!record->comparisons.empty())
-      summary["comparisons"] = record->comparisons;
     Point<dim> lower = scene.domain.lower, upper = scene.domain.upper;
     for (unsigned int d = 0; d < dim && !scene.domain.has_extra_layers(); ++d)
       {

@@ -64,57 +64,24 @@ namespace PeriDeal
     }
 
 
+    /** How a model was stepped, or solved. Collective. */
     template <int dim>
-    json describe_model(const ModelRun<dim> &model,
-                        const ResultRecord  &record,
-                        const MPI_Comm       communicator)
+    json describe_stepping(const ModelRun<dim> &model)
     {
-      const OperatorSize size = model.op().size();
-      json               entry;
-      entry["unknowns"] = size.unknowns;
-      if (size.bonds > 0)
-        entry["bonds"] = size.bonds;
-      entry["nonzeros"] = size.nonzeros;
-      if (size.busiest > 0.)
-        entry["work of the busiest process"] = size.busiest;
-      if (model.stepper)
-        {
-          entry["stepper"]        = model.stepper->name();
-          entry["steps"]          = model.stepper->cost().steps;
-          entry["rejected steps"] = model.stepper->cost().rejected;
-          entry["iterations"]     = model.stepper->cost().iterations;
-          if (model.stepper->current_step() > 0.)
-            entry["time step"] = model.stepper->current_step();
-          const Spectrum    spectrum = model.op().spectrum();
-          const std::string method   = model.stepper->name() == "rk4" ? "rk4" : "euler";
-          entry["stable step"]       = {{"sharp", stable_step(method, spectrum.sharp)},
-                                        {"safe", stable_step(method, spectrum.safe)},
-                                        {"method", method}};
-        }
-      else
-        {
-          entry["stepper"]    = "steady";
-          entry["steps"]      = 0;
-          entry["iterations"] = model.steady_iterations;
-        }
-      entry["operator applications"] = model.op().n_applications();
-      entry["operator form"]         = size.form;
-      json settings                  = json::object();
-      for (const auto &[name, value] : model.settings())
-        settings[name] = value;
-      entry["settings"]  = settings;
-      entry["wall time"] = model.timings.all();
-      entry["memory"]    = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
-      Utilities::System::MemoryStats stats;
-      Utilities::System::get_memory_stats(stats);
-      entry["peak memory"] =
-        1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
-      if (const CouplingCertificate *certificate = model.examined())
-        entry["certificate"] = describe_certificate(*certificate);
-      if (record.errors.contains(model.name()))
-        entry["errors"] = record.errors.at(model.name());
-      if (record.balances.contains(model.name()))
-        entry.update(record.balances.at(model.name()));
+      if (!model.stepper)
+        return {{"stepper", "steady"}, {"steps", 0}, {"iterations", model.steady_iterations}};
+      const Stepper &stepper = *model.stepper;
+      json           entry   = {{"stepper", stepper.name()},
+                                {"steps", stepper.cost().steps},
+                                {"rejected steps", stepper.cost().rejected},
+                                {"iterations", stepper.cost().iterations}};
+      if (stepper.current_step() > 0.)
+        entry["time step"] = stepper.current_step();
+      const Spectrum    spectrum = model.op().spectrum();
+      const std::string method   = stepper.name() == "rk4" ? "rk4" : "euler";
+      entry["stable step"]       = {{"sharp", stable_step(method, spectrum.sharp)},
+                                    {"safe", stable_step(method, spectrum.safe)},
+                                    {"method", method}};
       return entry;
     }
   } // namespace
@@ -128,23 +95,13 @@ namespace PeriDeal
       summary["mesh"] = {{"coarsening", scene.domain.coarsening}, {"adaptations", n_adaptations}};
     if (scene.general.physics == Physics::moisture)
       summary["moisture counts"] = counts_wetness(scene.material) ? "wetness" : "mass";
-    summary["cracks"]      = corners_of(scene.cracks.pieces(scene.cracks.end_time));
+    describe_run(scene, *mesh, *record, timings, summary);
     summary["sides"]       = describe_sides(scene);
-    summary["steady"]      = scene.time.steady;
-    summary["end time"]    = scene.time.steady ? 0. : scene.time.end_time;
     summary["write times"] = output_times();
     summary["reference"]   = scene.reference.solution;
-    summary["notes"]       = record->notes;
-    summary["fields"]      = record->fields;
-    summary["wall time"]   = timings.all();
-    summary["memory of mesh"] =
-      Utilities::MPI::sum(static_cast<double>(mesh->memory_consumption()), communicator);
     for (const auto &model : models)
-      summary["models"][model->name()] = describe_model(*model, *record, communicator);
-    if (!record->comparison.empty())
-      summary["comparison"] = record->comparison;
-    if (!record->comparisons.empty())
-      summary["comparisons"] = record->comparisons;
+      summary["models"][model->name()] =
+        describe_problem<dim>(*model, describe_stepping(*model), *record);
     return summary;
   }
 

@@ -4,6 +4,7 @@
 #include "summary_parts.h"
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
 
 #include <algorithm>
 #include <cmath>
@@ -151,6 +152,63 @@ namespace PeriDeal
 
 
   template <int dim>
+  void describe_run(const Scene<dim>         &scene,
+                    const Triangulation<dim> &mesh,
+                    const ResultRecord       &record,
+                    const Timings            &timings,
+                    json                     &summary)
+  {
+    summary["cracks"]    = corners_of(scene.cracks.pieces(scene.cracks.end_time));
+    summary["steady"]    = scene.time.steady;
+    summary["end time"]  = scene.time.steady ? 0. : scene.time.end_time;
+    summary["notes"]     = record.notes;
+    summary["fields"]    = record.fields;
+    summary["wall time"] = timings.all();
+    summary["memory of mesh"] =
+      Utilities::MPI::sum(static_cast<double>(mesh.memory_consumption()), mesh.get_communicator());
+    if (!record.comparison.empty())
+      summary["comparison"] = record.comparison;
+    if (!record.comparisons.empty())
+      summary["comparisons"] = record.comparisons;
+  }
+
+
+  template <int dim>
+  json describe_problem(const Problem<dim> &problem, const json &own, const ResultRecord &record)
+  {
+    const MPI_Comm     communicator = problem.dofs().get_communicator();
+    const OperatorSize size         = problem.op().size();
+    json               entry;
+    entry["unknowns"] = size.unknowns;
+    if (size.bonds > 0)
+      entry["bonds"] = size.bonds;
+    entry["nonzeros"] = size.nonzeros;
+    if (size.busiest > 0.)
+      entry["work of the busiest process"] = size.busiest;
+    entry.update(own);
+    entry["operator applications"] = problem.op().n_applications();
+    entry["operator form"]         = size.form;
+    entry["settings"]              = json::object();
+    for (const auto &[name, value] : problem.settings())
+      entry["settings"][name] = value;
+    if (const CouplingCertificate *certificate = problem.examined())
+      entry["certificate"] = describe_certificate(*certificate);
+    entry["wall time"] = problem.timings.all();
+    entry["memory"]    = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
+    Utilities::System::MemoryStats stats;
+    Utilities::System::get_memory_stats(stats);
+    entry["peak memory"] =
+      1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
+    if (record.errors.contains(problem.name()))
+      entry["errors"] = record.errors.at(problem.name());
+    for (const json *const results : {&record.balances, &record.extremes})
+      if (results->contains(problem.name()) && results->at(problem.name()).is_object())
+        entry.update(results->at(problem.name())); // null without any force
+    return entry;
+  }
+
+
+  template <int dim>
   void write_image_as_read(const Scene<dim> &scene, ResultFolder &folder)
   {
     if (scene.domain.image)
@@ -203,7 +261,13 @@ namespace PeriDeal
                                const Triangulation<dim> &,                             \
                                const MPI_Comm);                                        \
   template json describe_start(const Scene<dim> &, const SceneText &, const MPI_Comm); \
-  template void write_image_as_read(const Scene<dim> &, ResultFolder &);
+  template void write_image_as_read(const Scene<dim> &, ResultFolder &);               \
+  template void describe_run(const Scene<dim> &,                                       \
+                             const Triangulation<dim> &,                               \
+                             const ResultRecord &,                                     \
+                             const Timings &,                                          \
+                             json &);                                                  \
+  template json describe_problem(const Problem<dim> &, const json &, const ResultRecord &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -8,8 +8,11 @@
 #include <perideal/analysis/coupling_certificate.h>
 #include <perideal/output/result_folder.h>
 #include <perideal/scene/scene.h>
+#include <perideal/simulation/problem.h>
 
 #include <nlohmann/json.hpp>
+
+#include "result_record.h"
 
 namespace PeriDeal
 {
@@ -28,6 +31,26 @@ namespace PeriDeal
                                         const SceneText                  &text,
                                         const dealii::Triangulation<dim> &mesh,
                                         const MPI_Comm                    communicator);
+
+  /**
+   * What summary.json says of any run: cracks, end, notes, fields, times, memory of the mesh,
+   * comparisons of its models. Collective.
+   */
+  template <int dim>
+  void describe_run(const Scene<dim>                 &scene,
+                    const dealii::Triangulation<dim> &mesh,
+                    const ResultRecord               &record,
+                    const Timings                    &timings,
+                    nlohmann::ordered_json           &summary);
+
+  /**
+   * What it says of a problem: sizes, costs, settings, certificate, results so far. Collective.
+   * @param own what this physics says besides
+   */
+  template <int dim>
+  nlohmann::ordered_json describe_problem(const Problem<dim>           &problem,
+                                          const nlohmann::ordered_json &own,
+                                          const ResultRecord           &record);
 
   /**
    * With `Shape = image` write image_as_read.png: one pixel per cell in the colours of the phases.

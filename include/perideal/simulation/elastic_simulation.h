@@ -82,6 +82,7 @@ namespace PeriDeal
     nlohmann::ordered_json add_energies(const ElasticRun<dim> &model, const double t);
     void                   end_output(const double t);
     nlohmann::ordered_json summary_now(const bool at_the_end);
+    nlohmann::ordered_json describe_solving(const ElasticRun<dim> &model) const;
 
     const Scene<dim>                             &scene;
     const SceneText                              &text;
