@@ -15,52 +15,11 @@
 
 #include "result_record.h"
 #include "run_output.h"
+#include "with_formulas.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
-
-  namespace
-  {
-    /**
-     * Refuse what a stepper would never finish. @p stiffness is the end time times the largest
-     * eigenvalue.
-     */
-    void check_stepper(const std::string &name, const TimeControl &time, const double stiffness)
-    {
-      constexpr double   longest = 1e12, finest = 1e-11;
-      const bool         implicit = name == "sdirk2" || name == "bdf2" || name == "crank nicolson";
-      std::ostringstream message;
-      if (!implicit && stiffness > longest)
-        message
-          << "'End time' in section 'Time' is " << time.end_time << ", " << stiffness
-          << " times the shortest decay time of this mesh: too long for the explicit stepper '"
-          << name << "'. Choose 'Steady = true' or 'Stepper = sdirk2'.";
-      if (name == "rkc2" && time.time_step < 0. && time.tolerance < finest)
-        message << "'Tolerance' in section 'Time' is " << time.tolerance
-                << ", which round-off does not allow 'rkc2' to reach; it needs " << finest
-                << " or more. 'chebyshev' and a fixed 'Time step' reach more.";
-      AssertThrow(message.str().empty(), UserError(message.str()));
-    }
-  } // namespace
-
-
-  template <int dim>
-  void Simulation<dim>::make_stepper_of(ModelRun<dim> &model)
-  {
-    StepperOptions options;
-    options.time_step        = scene.time.time_step;
-    options.tolerance        = scene.time.tolerance;
-    options.solver_tolerance = scene.solver.tolerance;
-    options.max_iterations   = scene.solver.max_iterations;
-    options.direct_up_to     = scene.solver.direct_up_to;
-    Timings::Scope scope(model.timings, "stepper");
-    with_formulas([&] { model.stepper = make_stepper(scene.time.stepper, model.op(), options); });
-    check_stepper(model.stepper->name(),
-                  scene.time,
-                  model.op().spectrum().sharp * scene.time.end_time);
-  }
-
 
   template <int dim>
   void Simulation<dim>::make_steppers()
@@ -69,9 +28,7 @@ namespace PeriDeal
       return;
     for (auto &model : models)
       {
-        make_stepper_of(*model);
-        with_formulas(
-          [&] { model->ledger.begin(model->op().balance(model->solution, 0., false).content); });
+        model->begin();
         std::ostringstream line;
         line << model->name() << ": stepper " << model->stepper->name();
         if (model->stepper->current_step() > 0.)
@@ -88,39 +45,8 @@ namespace PeriDeal
       {
         if (output->is_open())
           progress.doing("solving " + model->name());
-        Timings::Scope scope(model->timings, "solve");
-        with_formulas([&] {
-          model->steady_iterations += solve_steady(model->op(),
-                                                   model->solution,
-                                                   0.,
-                                                   scene.solver.tolerance,
-                                                   scene.solver.max_iterations,
-                                                   scene.solver.direct_up_to);
-        });
+        model->solve();
       }
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::advance_through_events(ModelRun<dim> &model,
-                                               const double   t_begin,
-                                               const double   t_end)
-  {
-    with_formulas([&] {
-      for (double from = t_begin; from < t_end;)
-        {
-          if (scene.cracks.change())
-            {
-              Timings::Scope scope(model.timings, "changing cracks");
-              if (model.update(from))
-                model.stepper->restart();
-            }
-          Timings::Scope scope(model.timings, "time stepping");
-          const double   to = std::min(t_end, model.op().next_event(from));
-          model.stepper->advance(model.solution, from, to);
-          from = to;
-        }
-    });
   }
 
 
@@ -171,7 +97,7 @@ namespace PeriDeal
                 progress.doing(models[k]->name() + ": time stepping");
                 progress.advancing(now, to, begin, end);
               }
-            advance_through_events(*models[k], now, to);
+            models[k]->advance(now, to);
           }
         now = to;
         if (to == next)
@@ -222,18 +148,15 @@ namespace PeriDeal
         model->before_remesh();
       mesh->execute_coarsening_and_refinement();
     }
-    with_formulas([&] {
+    with_formulas(communicator, [&] {
       for (auto &model : models)
         {
           model->after_remesh(t, scene.time.steady);
-          if (!model->stepper)
-            continue;
-          const StepperCost before  = model->stepper->cost();
-          const double      entered = model->stepper->entered();
-          make_stepper_of(*model);
-          model->stepper->carry_over(before, entered);
         }
     });
+    for (auto &model : models)
+      if (model->stepper)
+        model->renew_stepper();
     readers_fit = false;
     ++n_adaptations;
     return true;

@@ -51,8 +51,10 @@ namespace PeriDeal
     class BondRun : public ModelRun<dim>
     {
     public:
+      using ModelRun<dim>::scene;
+
       BondRun(const Triangulation<dim> &mesh, const Scene<dim> &scene)
-        : scene(scene)
+        : ModelRun<dim>(scene)
         , handler(mesh)
       {
         {
@@ -218,7 +220,6 @@ namespace PeriDeal
     private:
       static constexpr double much = 3.;
 
-      const Scene<dim>                  &scene;
       DoFHandler<dim>                    handler;
       std::unique_ptr<Nodes<dim>>        node_set;
       std::unique_ptr<BondOperator<dim>> bonds;

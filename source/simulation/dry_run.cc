@@ -42,7 +42,7 @@ namespace PeriDeal
             << "\n"
             << "  stepper: " << model->stepper->name();
         progress.line(out.str());
-        const double n    = expected_applications(*model);
+        const double n    = model->expected_applications(output_times());
         const double time = time_of_run(*model);
         computing         = time >= 0. && computing >= 0. ? computing + time : -1.;
         if (n > 0.)
@@ -83,26 +83,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  double Simulation<dim>::expected_applications(const ModelRun<dim> &model) const
-  {
-    double n = 0., t = 0.;
-    for (const double next : output_times())
-      while (t < next)
-        {
-          const double to = std::min(next, model.op().next_event(t));
-          n += model.stepper->expected_applications(to - t);
-          t = to;
-        }
-    return n;
-  }
-
-
-  template <int dim>
   double Simulation<dim>::time_of_run(const ModelRun<dim> &model) const
   {
     // A linear solution takes about 20 iterations, each with its preconditioner 6 applications.
     constexpr double of_solution = 20. * 6.;
-    const double     n           = scene.time.steady ? of_solution : expected_applications(model);
+    const double n = scene.time.steady ? of_solution : model.expected_applications(output_times());
     return n > 0. ? n * time_of_application(model) : -1.;
   }
 

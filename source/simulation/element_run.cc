@@ -26,12 +26,14 @@ namespace PeriDeal
     class FEMRun : public ModelRun<dim>
     {
     public:
+      using ModelRun<dim>::scene;
+
       /**
        * @param model finite elements, coupled, or peridynamics by exchange, which is `coupled` with
        *              the zone everywhere
        */
       FEMRun(const ModelKind model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
-        : scene(scene)
+        : ModelRun<dim>(scene)
         , model(model)
         , element(model == ModelKind::finite_elements ? scene.finite_elements.degree : 1)
         , handler(mesh)
@@ -454,7 +456,6 @@ namespace PeriDeal
             }
       }
 
-      const Scene<dim>                  &scene;
       const ModelKind                    model;
       FE_Q<dim>                          element;
       DoFHandler<dim>                    handler;

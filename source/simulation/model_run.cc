@@ -1,11 +1,47 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/user_error.h>
+#include <perideal/solvers/linear_solver.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "effective_conductivity.h"
+#include "finite_results.h"
 #include "model_runs.h"
+#include "result_record.h"
+#include "run_output.h"
+#include "with_formulas.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Refuse what a stepper would never finish. @p stiffness is the end time times the largest
+     * eigenvalue.
+     */
+    void check_stepper(const std::string &name, const TimeControl &time, const double stiffness)
+    {
+      constexpr double   longest = 1e12, finest = 1e-11;
+      const bool         implicit = name == "sdirk2" || name == "bdf2" || name == "crank nicolson";
+      std::ostringstream message;
+      if (!implicit && stiffness > longest)
+        message
+          << "'End time' in section 'Time' is " << time.end_time << ", " << stiffness
+          << " times the shortest decay time of this mesh: too long for the explicit stepper '"
+          << name << "'. Choose 'Steady = true' or 'Stepper = sdirk2'.";
+      if (name == "rkc2" && time.time_step < 0. && time.tolerance < finest)
+        message << "'Tolerance' in section 'Time' is " << time.tolerance
+                << ", which round-off does not allow 'rkc2' to reach; it needs " << finest
+                << " or more. 'chebyshev' and a fixed 'Time step' reach more.";
+      AssertThrow(message.str().empty(), UserError(message.str()));
+    }
+  } // namespace
+
 
   template <int dim>
   void set_start(ModelRun<dim> &run)
@@ -41,6 +77,152 @@ namespace PeriDeal
     for (OutputField &field : derived_fields(solution, t))
       list.push_back(std::move(field));
     return list;
+  }
+
+
+  template <int dim>
+  ModelRun<dim>::ModelRun(const Scene<dim> &scene)
+    : scene(scene)
+  {}
+
+
+  template <int dim>
+  void ModelRun<dim>::make_stepper()
+  {
+    StepperOptions options;
+    options.time_step        = scene.time.time_step;
+    options.tolerance        = scene.time.tolerance;
+    options.solver_tolerance = scene.solver.tolerance;
+    options.max_iterations   = scene.solver.max_iterations;
+    options.direct_up_to     = scene.solver.direct_up_to;
+    Timings::Scope scope(this->timings, "stepper");
+    with_formulas(this->dofs().get_communicator(),
+                  [&] { stepper = PeriDeal::make_stepper(scene.time.stepper, op(), options); });
+    check_stepper(stepper->name(), scene.time, op().spectrum().sharp * scene.time.end_time);
+  }
+
+
+  template <int dim>
+  void ModelRun<dim>::begin()
+  {
+    make_stepper();
+    with_formulas(this->dofs().get_communicator(),
+                  [&] { ledger.begin(op().balance(solution, 0., false).content); });
+  }
+
+
+  template <int dim>
+  void ModelRun<dim>::renew_stepper()
+  {
+    const StepperCost before  = stepper->cost();
+    const double      entered = stepper->entered();
+    make_stepper();
+    stepper->carry_over(before, entered);
+  }
+
+
+  template <int dim>
+  void ModelRun<dim>::solve()
+  {
+    Timings::Scope scope(this->timings, "solve");
+    with_formulas(this->dofs().get_communicator(), [&] {
+      steady_iterations += solve_steady(op(),
+                                        solution,
+                                        0.,
+                                        scene.solver.tolerance,
+                                        scene.solver.max_iterations,
+                                        scene.solver.direct_up_to);
+    });
+  }
+
+
+  template <int dim>
+  void ModelRun<dim>::advance(const double t_begin, const double t_end)
+  {
+    with_formulas(this->dofs().get_communicator(), [&] {
+      for (double from = t_begin; from < t_end;)
+        {
+          if (scene.cracks.change())
+            {
+              Timings::Scope scope(this->timings, "changing cracks");
+              if (update(from))
+                stepper->restart();
+            }
+          Timings::Scope scope(this->timings, "time stepping");
+          const double   to = std::min(t_end, op().next_event(from));
+          stepper->advance(solution, from, to);
+          from = to;
+        }
+    });
+  }
+
+
+  template <int dim>
+  double ModelRun<dim>::expected_applications(const std::vector<double> &times) const
+  {
+    double n = 0., t = 0.;
+    for (const double next : times)
+      while (t < next)
+        {
+          const double to = std::min(next, op().next_event(t));
+          n += stepper->expected_applications(to - t);
+          t = to;
+        }
+    return n;
+  }
+
+
+  template <int dim>
+  void ModelRun<dim>::add_totals(const double t, RunOutput<dim> &output, ResultRecord &record) const
+  {
+    const Balance       balance = op().balance(solution, t, scene.time.steady);
+    const PhysicsNames &names   = names_of(scene.general.physics);
+    require_finite(
+      {{"largest " + names.field, solution.linfty_norm()},
+       {names.flow, balance.throughput()},
+       {"imbalance", balance.imbalance()},
+       {names.content, balance.content}},
+      this->name(),
+      t,
+      "Numbers beyond 1e308 came up. Check the sizes and units of values, fluxes and sources (sections 'Boundary conditions' and 'Initial and source') and of the "
+      "properties in section 'Material'.");
+    const auto row = [&](const std::string &quantity, const double value) {
+      output.add_row(this->name(), quantity, value, t);
+    };
+    row(names.content,
+        scene.general.physics == Physics::moisture ? weight(solution) : balance.content);
+    for (const auto &[side, value] : balance.sides)
+      row(names.flow + " through " + side, value);
+    row(names.flow + " from sources", balance.sources);
+    nlohmann::ordered_json cumulative; // not if steady
+    row("rate of storage", balance.stored);
+    row("throughput", balance.throughput());
+    row("imbalance", balance.imbalance());
+    if (stepper)
+      {
+        const CumulativeBalance since_start =
+          ledger.balance(stepper->entered(), balance.content, this->dofs().get_communicator());
+        row(names.quantity + " entered since start", since_start.entered);
+        row(names.quantity + " stored since start", since_start.stored);
+        row("cumulative imbalance", since_start.imbalance());
+        cumulative = {{"entered", since_start.entered},
+                      {"stored", since_start.stored},
+                      {"imbalance", since_start.imbalance()}};
+      }
+    for (std::size_t crack = 0; crack < balance.cracks.size(); ++crack)
+      row(names.flow + " through crack " + std::to_string(crack + 1), balance.cracks[crack]);
+    record.balances[this->name()] = {
+      {"boundary flux", balance.sides},
+      {"heat balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}}};
+    if (!cumulative.empty())
+      record.balances[this->name()]["heat balance"]["cumulative"] = cumulative;
+    if (const auto kappa = effective_conductivity(scene, balance))
+      {
+        row("effective conductivity", *kappa);
+        record.balances[this->name()]["effective conductivity"] = *kappa;
+      }
+    if (!balance.cracks.empty())
+      record.balances[this->name()]["crack flux"] = balance.cracks;
   }
 
 

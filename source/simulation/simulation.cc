@@ -21,11 +21,10 @@
 #include "check_sides.h"
 #include "closing.h"
 #include "crack_note.h"
-#include "effective_conductivity.h"
-#include "finite_results.h"
 #include "result_record.h"
 #include "run_output.h"
 #include "summary_parts.h"
+#include "with_formulas.h"
 
 namespace PeriDeal
 {
@@ -129,7 +128,7 @@ namespace PeriDeal
                           std::to_string(Utilities::MPI::n_mpi_processes(communicator)) +
                           " processes without any. Use fewer processes or more 'Cells' (section "
                           "'Domain')."));
-    with_formulas([&] { check_sides(scene, *mesh); });
+    with_formulas(communicator, [&] { check_sides(scene, *mesh); });
     if (scene.peridynamics.flux_treatment != FluxTreatment::natural &&
         scene.boundary_conditions.flux.empty())
       record->notes.push_back(
@@ -139,32 +138,13 @@ namespace PeriDeal
       {
         if (output->is_open())
           progress.doing("building " + to_string(model));
-        with_formulas([&] { models.push_back(make_model_run(model, *mesh, scene)); });
+        with_formulas(communicator, [&] { models.push_back(make_model_run(model, *mesh, scene)); });
         describe(*models.back());
         for (const std::string &note : models.back()->notes())
           record->notes.push_back(models.back()->name() + ": " + note);
       }
     prepare_adaptation();
     make_reference();
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::with_formulas(const std::function<void()> &action) const
-  {
-    const DeferredFormulaErrors errors;
-    try
-      {
-        action();
-      }
-    catch (const UserError &)
-      {
-        // The cause, if it is a formula's value; not of this process alone: others wait elsewhere.
-        if (all_processes_arrive(communicator))
-          errors.throw_if_any(communicator);
-        throw;
-      }
-    errors.throw_if_any(communicator);
   }
 
 
@@ -269,14 +249,14 @@ namespace PeriDeal
       progress.line("steady state");
     progress.begin("time");
     if (scene.output.starts_at_zero())
-      with_formulas([&] { write_start(); });
+      with_formulas(communicator, [&] { write_start(); });
     for (const double t : times)
       {
         advance_to(t);
         progress.update(scene.time.steady ? 1. : t / scene.time.end_time);
         progress.doing("writing results");
         Timings::Scope scope(timings, "output");
-        with_formulas([&] { write_output(t); });
+        with_formulas(communicator, [&] { write_output(t); });
         output->end_time([&] { return summary_now(); },
                          scene.time.steady ? "the steady state" : "until t = " + full_precision(t));
       }
@@ -301,7 +281,7 @@ namespace PeriDeal
       find_points();
     readers_fit = true;
     for (auto &model : models) // refuses what is not finite before it is written
-      add_totals(t, *model);
+      model->add_totals(t, *output, *record);
     for (auto &model : models)
       model->solution.update_ghost_values();
     typename RunOutput<dim>::Values known;
@@ -344,61 +324,6 @@ namespace PeriDeal
         more.emplace(to_string(ModelKind::peridynamics), std::move(field));
       }
     output->write_fields(t, more);
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::add_totals(const double t, ModelRun<dim> &model)
-  {
-    const Balance       balance = model.op().balance(model.solution, t, scene.time.steady);
-    const PhysicsNames &names   = names_of(scene.general.physics);
-    require_finite(
-      {{"largest " + names.field, model.solution.linfty_norm()},
-       {names.flow, balance.throughput()},
-       {"imbalance", balance.imbalance()},
-       {names.content, balance.content}},
-      model.name(),
-      t,
-      "Numbers beyond 1e308 came up. Check the sizes and units of values, fluxes and sources (sections 'Boundary conditions' and 'Initial and source') and of the "
-      "properties in section 'Material'.");
-    const auto row = [&](const std::string &quantity, const double value) {
-      output->add_row(model.name(), quantity, value, t);
-    };
-    row(names.content,
-        scene.general.physics == Physics::moisture ? model.weight(model.solution) :
-                                                     balance.content);
-    for (const auto &[side, value] : balance.sides)
-      row(names.flow + " through " + side, value);
-    row(names.flow + " from sources", balance.sources);
-    nlohmann::ordered_json cumulative; // not if steady
-    row("rate of storage", balance.stored);
-    row("throughput", balance.throughput());
-    row("imbalance", balance.imbalance());
-    if (model.stepper)
-      {
-        const CumulativeBalance since_start =
-          model.ledger.balance(model.stepper->entered(), balance.content, communicator);
-        row(names.quantity + " entered since start", since_start.entered);
-        row(names.quantity + " stored since start", since_start.stored);
-        row("cumulative imbalance", since_start.imbalance());
-        cumulative = {{"entered", since_start.entered},
-                      {"stored", since_start.stored},
-                      {"imbalance", since_start.imbalance()}};
-      }
-    for (std::size_t crack = 0; crack < balance.cracks.size(); ++crack)
-      row(names.flow + " through crack " + std::to_string(crack + 1), balance.cracks[crack]);
-    record->balances[model.name()] = {
-      {"boundary flux", balance.sides},
-      {"heat balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}}};
-    if (!cumulative.empty())
-      record->balances[model.name()]["heat balance"]["cumulative"] = cumulative;
-    if (const auto kappa = effective_conductivity(scene, balance))
-      {
-        row("effective conductivity", *kappa);
-        record->balances[model.name()]["effective conductivity"] = *kappa;
-      }
-    if (!balance.cracks.empty())
-      record->balances[model.name()]["crack flux"] = balance.cracks;
   }
 
 

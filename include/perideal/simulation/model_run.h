@@ -18,11 +18,35 @@
 
 namespace PeriDeal
 {
+  struct ResultRecord;
+  template <int dim>
+  class RunOutput;
+
   /** What diffuses, in one model of a scene. Functions are collective. */
   template <int dim>
   class ModelRun : public Problem<dim>
   {
   public:
+    explicit ModelRun(const Scene<dim> &scene);
+
+    /** Make the stepper and begin the balance of heat, for advance(). Throws UserError. */
+    void begin();
+
+    /** Through the events of the cracks between two times. */
+    void advance(const double t_begin, const double t_end);
+
+    /** The steady state. */
+    void solve();
+
+    /** After the mesh has changed: a stepper of the new operator, with the cost of the old one. */
+    void renew_stepper();
+
+    /** Of the operator, until the last of some ascending times; not known if not positive. */
+    double expected_applications(const std::vector<double> &times) const;
+
+    /** Rows of totals.csv and what the summary says of flows. Throws UserError if not finite. */
+    void add_totals(const double t, RunOutput<dim> &output, ResultRecord &record) const;
+
     /** Volume of an owned peridynamic node. Not for finite elements alone. */
     virtual double volume_of(const unsigned int node) const = 0;
 
@@ -80,10 +104,14 @@ namespace PeriDeal
                                        const std::vector<std::vector<double>> &points) const override;
     std::vector<OutputField> fields(const double t) const override;
 
+    const Scene<dim>        &scene;
     Vector                   solution;
     std::unique_ptr<Stepper> stepper; // null if steady
     HeatLedger               ledger;  // of the run from the start, unless steady
     unsigned int             steady_iterations = 0;
+
+  private:
+    void make_stepper();
   };
 
 

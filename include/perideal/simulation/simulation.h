@@ -76,27 +76,22 @@ namespace PeriDeal
   private:
     void                   build();
     void                   build_mesh_of_run();
-    void                   with_formulas(const std::function<void()> &action) const;
     void                   make_steppers();
-    void                   make_stepper_of(ModelRun<dim> &model);
     void                   find_points();
     void                   solve_models();
     void                   prepare_adaptation();
     bool                   adapt(const double t);
     nlohmann::ordered_json compute(); // the summary at the end
     void                   make_reference();
-    void advance_through_events(ModelRun<dim> &model, const double t_begin, const double t_end);
-    void write_output(const double t);
-    void write_start(); // the first frame of a film
-    void add_totals(const double t, ModelRun<dim> &model);
-    void add_errors(const double t);
-    void compare_models(const double t);
-    void compare_with_others(const double t, const ModelRun<dim> &coupled);
-    void write_fields(const double t);
+    void                   write_output(const double t);
+    void                   write_start(); // the first frame of a film
+    void                   add_errors(const double t);
+    void                   compare_models(const double t);
+    void                   compare_with_others(const double t, const ModelRun<dim> &coupled);
+    void                   write_fields(const double t);
     nlohmann::ordered_json summary_now() const;
     void                   describe(const ModelRun<dim> &model) const;
     std::vector<double>    output_times() const;
-    double                 expected_applications(const ModelRun<dim> &model) const;
     double                 time_of_run(const ModelRun<dim> &model) const;
     double                 time_of_application(const ModelRun<dim> &model) const;
 
