@@ -25,12 +25,14 @@ namespace PeriDeal
     class ElementRun : public ElasticRun<dim>
     {
     public:
+      using ElasticRun<dim>::scene;
+
       /**
        * @param model finite elements, coupled, or peridynamics with fictitious nodes, which has
        *              elements for what is beside bonds: loads, masses, stresses
        */
       ElementRun(const ModelKind model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
-        : scene(scene)
+        : ElasticRun<dim>(scene)
         , model(model)
         , handler(mesh)
       {
@@ -88,16 +90,6 @@ namespace PeriDeal
       double volume(const unsigned int node) const override
       {
         return elements->volume(node);
-      }
-
-      std::vector<std::string> columns() const override
-      {
-        return elastic_columns(scene);
-      }
-
-      typename FieldWriter<dim>::Choice shown() const override
-      {
-        return [this](const Point<dim> &p) { return scene.domain.shows(p); };
       }
 
       std::vector<double> at_points(const PointEvaluator<dim>              &reader,
@@ -390,7 +382,6 @@ namespace PeriDeal
           }
       }
 
-      const Scene<dim>                     &scene;
       const ModelKind                       model;
       DoFHandler<dim>                       handler;
       std::unique_ptr<Nodes<dim>>           node_set; // of the coupled model

@@ -10,32 +10,12 @@
 
 #include <algorithm>
 
-#include "result_record.h"
-#include "run_output.h"
+#include "elastic_notes.h"
 #include "summary_parts.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
-
-  template <int dim>
-  void ElasticSimulation<dim>::begin_loading(ElasticRun<dim> &model)
-  {
-    Timings::Scope scope(model.timings, "solving");
-    StaticOptions  options;
-    options.tolerance      = scene.solver.tolerance;
-    options.max_iterations = scene.solver.most_iterations(scene.elasticity.solver);
-    options.direct_up_to   = scene.solver.direct_up_to;
-    options.multigrid      = scene.elasticity.multigrid;
-    model.loading          = std::make_unique<SlowLoading>(
-      model.op(),
-      make_static_solver(scene.elasticity.solver_name(), model.op(), options),
-      options);
-    model.loading->begin(model.displacement, 0.);
-    model.n_iterations = model.loading->n_iterations();
-    tell_first_break(model, 0.);
-  }
-
 
   template <int dim>
   void ElasticSimulation<dim>::load()
@@ -44,7 +24,7 @@ namespace PeriDeal
     for (const auto &model : models)
       {
         progress.doing("solving " + model->name());
-        begin_loading(*model);
+        model->begin_loading(context());
         if (scene.time.steady)
           progress.line(model->name() + ": " + std::to_string(model->n_iterations) + " iterations");
       }
@@ -53,15 +33,14 @@ namespace PeriDeal
       {
         write_output(0.);
         for (const auto &model : models)
-          {
-            note_inversion(*model);
-            note_torn_sides(*model);
-          }
+          note_end(*model, context());
         return;
       }
     progress.begin("time");
     for (const auto &model : models)
-      add_totals(*model, 0.);
+      model->load_step = load_step();
+    for (const auto &model : models)
+      model->add_totals(0., context());
     if (scene.output.starts_at_zero())
       output->write_fields(0.);
     end_output(0.);
@@ -79,10 +58,7 @@ namespace PeriDeal
     for (const auto &model : models)
       {
         progress.line(model->name() + ": " + std::to_string(model->n_iterations) + " iterations");
-        if (!scene.warms_slowly()) // what warming does to the strain energy is not followed
-          note_energy(*model);
-        note_inversion(*model);
-        note_torn_sides(*model);
+        note_end(*model, context());
       }
   }
 
@@ -142,11 +118,11 @@ namespace PeriDeal
             Timings::Scope scope(model->timings, "solving");
             model->loading->step(model->displacement, to);
             model->n_iterations = model->loading->n_iterations();
-            tell_first_break(*model, to);
+            tell_first_break(*model, to, context());
           }
         Timings::Scope scope(timings, "output");
         for (const auto &model : models)
-          add_totals(*model, to);
+          model->add_totals(to, context());
         end_output(to);
         progress.update(to / scene.time.end_time);
       }

@@ -2,8 +2,18 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/user_error.h>
+#include <perideal/scene/lists.h>
+#include <perideal/solvers/static_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
 
 #include "elastic_fields.h"
+#include "elastic_notes.h"
+#include "elastic_sides.h"
+#include "elastic_summary.h"
+#include "finite_results.h"
 
 namespace PeriDeal
 {
@@ -46,6 +56,223 @@ namespace PeriDeal
 
 
   template <int dim>
+  ElasticRun<dim>::ElasticRun(const Scene<dim> &scene)
+    : scene(scene)
+  {}
+
+
+  template <int dim>
+  std::vector<std::string> ElasticRun<dim>::columns() const
+  {
+    return elastic_columns(scene);
+  }
+
+
+  template <int dim>
+  typename FieldWriter<dim>::Choice ElasticRun<dim>::shown() const
+  {
+    return [this](const Point<dim> &p) { return scene.domain.shows(p); };
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::set_start()
+  {
+    const InitialAndSource &given = scene.initial_and_source;
+    const auto              fill  = [&](Vector &vector, const std::vector<Expression> &formulas) {
+      op().initialize_vector(vector);
+      for (unsigned int i = 0; i < vector.locally_owned_size() && !formulas.empty(); ++i)
+        vector.local_element(i) = formulas[i % dim].value(position(i / dim));
+    };
+    fill(displacement, given.initial_displacement);
+    fill(velocity, given.initial_velocity);
+    op().distribute(displacement, 0.);
+    // Supports have the velocity of their first step.
+    op().clear_constrained(velocity);
+    AssertThrow(
+      std::isfinite(displacement.l1_norm()) && std::isfinite(velocity.l1_norm()),
+      UserError(
+        "'Initial displacement' or 'Initial velocity' in section 'Initial and source' is not finite everywhere."));
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::begin_motion(const RunContext<dim> &context)
+  {
+    StepperOptions options;
+    options.time_step        = scene.time.time_step;
+    options.solver_tolerance = scene.solver.tolerance;
+    options.max_iterations   = scene.solver.max_iterations;
+    options.direct_up_to     = scene.solver.direct_up_to;
+    Timings::Scope scope(this->timings, "stepper");
+    set_start();
+    op().linearize(displacement);
+    stepper     = make_motion_stepper(scene.time.stepper, op(), options);
+    stable_step = stable_motion_step(op());
+    std::ostringstream line;
+    line << this->name() << ": stepper " << stepper->name() << ", step " << stepper->current_step()
+         << ", "
+         << readable_count(static_cast<unsigned long long>(
+              std::ceil(scene.time.end_time / stepper->current_step() * (1. - 1e-10))))
+         << " steps or a few more";
+    context.progress.line(line.str());
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::begin_loading(const RunContext<dim> &context)
+  {
+    Timings::Scope scope(this->timings, "solving");
+    StaticOptions  options;
+    options.tolerance      = scene.solver.tolerance;
+    options.max_iterations = scene.solver.most_iterations(scene.elasticity.solver);
+    options.direct_up_to   = scene.solver.direct_up_to;
+    options.multigrid      = scene.elasticity.multigrid;
+    loading                = std::make_unique<SlowLoading>(
+      op(),
+      make_static_solver(scene.elasticity.solver_name(), op(), options),
+      options);
+    loading->begin(displacement, 0.);
+    n_iterations = loading->n_iterations();
+    tell_first_break(*this, 0., context);
+  }
+
+
+  template <int dim>
+  nlohmann::ordered_json ElasticRun<dim>::describe_solving() const
+  {
+    nlohmann::ordered_json entry{{"iterations", n_iterations}};
+    if (stepper)
+      {
+        entry["stepper"]     = stepper->name();
+        entry["steps"]       = stepper->cost().steps;
+        entry["iterations"]  = stepper->cost().iterations;
+        entry["time step"]   = stepper->current_step();
+        entry["stable step"] = {{"sharp", stable_step}, {"method", "verlet"}};
+      }
+    if (loading && !scene.time.steady)
+      {
+        entry["steps"] = loading->n_steps();
+        if (!scene.warms_slowly()) // then equilibria are at times of output
+          entry["time step"] = load_step;
+      }
+    return entry;
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::add_totals(const double t, const RunContext<dim> &context)
+  {
+    const auto row = [&](const std::string &quantity, const double value) {
+      context.output.add_row(this->name(), quantity, value, t);
+    };
+    const ForceBalance          balance = op().forces(displacement, t);
+    const double                energy  = op().energy(displacement);
+    const SymmetricTensor<2, 3> mean    = mean_stress();
+    require_finite(
+      {{"largest displacement", displacement.linfty_norm()},
+       {"strain energy", energy},
+       {"sum of the forces", balance.throughput()},
+       {"mean stress", von_mises(mean)}},
+      this->name(),
+      t,
+      "Numbers beyond 1e308 came up. Check the sizes and units of loads and displacements (sections 'Boundary conditions' and 'Initial and source') and of the "
+      "moduli (section 'Material').");
+    row("strain energy", energy);
+    for (const auto &[side, force] : balance.sides)
+      for (unsigned int d = 0; d < dim; ++d)
+        row("force on " + side + " in " + "xyz"[d], force[d]);
+    if (!scene.time.steady)
+      for (const auto &[side, moved] : displacements_of_sides(*this, scene))
+        for (unsigned int d = 0; d < dim; ++d)
+          row("displacement of " + side + " in " + "xyz"[d], moved[d]);
+    keep_largest_force(balance, t, context.record.extremes[this->name()]);
+    context.progress.state(text_of_largest_force(balance));
+    for (unsigned int d = 0; d < dim; ++d)
+      row(std::string("body force in ") + "xyz"[d], balance.body[d]);
+    row("throughput", balance.throughput());
+    if (!stepper) // of a motion it is the rate of its momentum
+      row("imbalance", balance.imbalance());
+    nlohmann::ordered_json stress = nlohmann::ordered_json::object();
+    for (unsigned int a = 0; a < 3; ++a)
+      for (unsigned int b = a; b < 3; ++b)
+        if (b < dim || (dim == 2 && a == 2))
+          {
+            const std::string name = std::string(1, "xyz"[a]) + "xyz"[b];
+            row("mean stress " + name, mean[a][b]);
+            stress[name] = mean[a][b];
+          }
+    stress["von mises"]         = von_mises(mean);
+    nlohmann::ordered_json ends = nlohmann::ordered_json::object();
+    for (const StressIntensity &end : stress_intensities(t))
+      {
+        row("J-integral at " + end.name, end.j);
+        row("stress intensity I at " + end.name, end.mode_1);
+        row("stress intensity II at " + end.name, end.mode_2);
+        ends[end.name] = {{"J-integral", end.j}, {"I", end.mode_1}, {"II", end.mode_2}};
+      }
+    context.record.balances[this->name()] = {{"boundary force", balance.sides},
+                                             {"strain energy", energy},
+                                             {"mean stress", stress}};
+    if (stepper || op().brittle() || (scene.is_loaded_slowly() && !scene.warms_slowly()))
+      context.record.balances[this->name()]["energy balance"] = add_energies(t, context);
+    if (!stepper)
+      {
+        force_scale = std::max(force_scale, find_force_scale(*this, scene, balance.throughput()));
+        context.record.balances[this->name()]["force balance"] = {
+          {"throughput", balance.throughput()},
+          {"imbalance", balance.imbalance()},
+          {"scale", force_scale}};
+      }
+    if (!ends.empty())
+      context.record.balances[this->name()]["stress intensity"] = ends;
+  }
+
+
+  template <int dim>
+  nlohmann::ordered_json ElasticRun<dim>::add_energies(const double           t,
+                                                       const RunContext<dim> &context)
+  {
+    using json = nlohmann::ordered_json;
+    json       balance;
+    const auto add = [&](const std::string &key, const std::string &quantity, const double value) {
+      balance[key] = value;
+      context.output.add_row(this->name(), quantity, value, t);
+    };
+    const auto add_all = [&](const auto &energy, const double lost) {
+      balance["strain"] = energy.strain;
+      balance["start"]  = energy.start;
+      add("work", "work of loads and supports", energy.work);
+      if (op().brittle())
+        {
+          add("released", "energy released by broken bonds", op().released_energy());
+          add("dissipated", "energy dissipated", lost);
+          const auto n_broken = op().n_broken_bonds();
+          add("broken bonds", "broken bonds", static_cast<double>(n_broken));
+          if (json &kept = context.record.extremes[this->name()];
+              n_broken > 0 && !kept.contains("first broken bonds"))
+            kept["first broken bonds"] = t;
+        }
+      if (!scene.warms_slowly()) // what warming does to the strain energy is not followed
+        add("imbalance", "energy imbalance", energy.imbalance());
+    };
+    if (stepper)
+      {
+        const MotionEnergy energy = stepper->energy(displacement, velocity);
+        add("kinetic", "kinetic energy", energy.kinetic);
+        add_all(energy, energy.released);
+        add("drift", "energy drift", energy.drift);
+      }
+    else
+      {
+        const LoadingEnergy energy = loading->energy(displacement);
+        add_all(energy, energy.dissipated);
+      }
+    return balance;
+  }
+
+
+  template <int dim>
   std::unique_ptr<ElasticRun<dim>> make_elastic_run(const ModelKind           model,
                                                     const Triangulation<dim> &mesh,
                                                     const Scene<dim>         &scene)
@@ -58,6 +285,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                        \
+  template class ElasticRun<dim>;                                                        \
   template std::vector<std::string>         elastic_columns(const Scene<dim> &);         \
   template std::unique_ptr<ElasticRun<dim>> make_elastic_run(const ModelKind,            \
                                                              const Triangulation<dim> &, \

@@ -20,11 +20,8 @@
 #include "check_sides.h"
 #include "closing.h"
 #include "elastic_phases.h"
-#include "elastic_sides.h"
 #include "elastic_summary.h"
-#include "finite_results.h"
-#include "result_record.h"
-#include "run_output.h"
+#include "run_context.h"
 #include "scene_sample.h"
 #include "summary_parts.h"
 
@@ -149,6 +146,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  RunContext<dim> ElasticSimulation<dim>::context()
+  {
+    return {progress, *record, *output};
+  }
+
+
+  template <int dim>
   void ElasticSimulation<dim>::find_points()
   {
     Timings::Scope                    scope(timings, "output");
@@ -158,76 +162,6 @@ namespace PeriDeal
     output->find_points(problems);
     for (const std::string &note : output->gaps_in_line())
       record->notes.push_back(note);
-  }
-
-
-  template <int dim>
-  void ElasticSimulation<dim>::add_totals(ElasticRun<dim> &model, const double t)
-  {
-    const auto row = [&](const std::string &quantity, const double value) {
-      output->add_row(model.name(), quantity, value, t);
-    };
-    const ForceBalance          balance = model.op().forces(model.displacement, t);
-    const double                energy  = model.op().energy(model.displacement);
-    const SymmetricTensor<2, 3> mean    = model.mean_stress();
-    require_finite(
-      {{"largest displacement", model.displacement.linfty_norm()},
-       {"strain energy", energy},
-       {"sum of the forces", balance.throughput()},
-       {"mean stress", von_mises(mean)}},
-      model.name(),
-      t,
-      "Numbers beyond 1e308 came up. Check the sizes and units of loads and displacements (sections 'Boundary conditions' and 'Initial and source') and of the "
-      "moduli (section 'Material').");
-    row("strain energy", energy);
-    for (const auto &[side, force] : balance.sides)
-      for (unsigned int d = 0; d < dim; ++d)
-        row("force on " + side + " in " + "xyz"[d], force[d]);
-    if (!scene.time.steady)
-      for (const auto &[side, moved] : displacements_of_sides(model, scene))
-        for (unsigned int d = 0; d < dim; ++d)
-          row("displacement of " + side + " in " + "xyz"[d], moved[d]);
-    keep_largest_force(balance, t, record->extremes[model.name()]);
-    progress.state(text_of_largest_force(balance));
-    for (unsigned int d = 0; d < dim; ++d)
-      row(std::string("body force in ") + "xyz"[d], balance.body[d]);
-    row("throughput", balance.throughput());
-    if (!model.stepper) // of a motion it is the rate of its momentum
-      row("imbalance", balance.imbalance());
-    nlohmann::ordered_json stress = nlohmann::ordered_json::object();
-    for (unsigned int a = 0; a < 3; ++a)
-      for (unsigned int b = a; b < 3; ++b)
-        if (b < dim || (dim == 2 && a == 2))
-          {
-            const std::string name = std::string(1, "xyz"[a]) + "xyz"[b];
-            row("mean stress " + name, mean[a][b]);
-            stress[name] = mean[a][b];
-          }
-    stress["von mises"]         = von_mises(mean);
-    nlohmann::ordered_json ends = nlohmann::ordered_json::object();
-    for (const StressIntensity &end : model.stress_intensities(t))
-      {
-        row("J-integral at " + end.name, end.j);
-        row("stress intensity I at " + end.name, end.mode_1);
-        row("stress intensity II at " + end.name, end.mode_2);
-        ends[end.name] = {{"J-integral", end.j}, {"I", end.mode_1}, {"II", end.mode_2}};
-      }
-    record->balances[model.name()] = {{"boundary force", balance.sides},
-                                      {"strain energy", energy},
-                                      {"mean stress", stress}};
-    if (model.stepper || model.op().brittle() ||
-        (scene.is_loaded_slowly() && !scene.warms_slowly()))
-      record->balances[model.name()]["energy balance"] = add_energies(model, t);
-    if (!model.stepper)
-      {
-        model.force_scale =
-          std::max(model.force_scale, find_force_scale(model, scene, balance.throughput()));
-        record->balances[model.name()]["force balance"] = {{"throughput", balance.throughput()},
-                                                           {"imbalance", balance.imbalance()},
-                                                           {"scale", model.force_scale}};
-      }
-    if (!ends.empty())
-      record->balances[model.name()]["stress intensity"] = ends;
   }
 
 
@@ -270,7 +204,7 @@ namespace PeriDeal
     progress.doing("writing results");
     Timings::Scope scope(timings, "output");
     for (const auto &model : models)
-      add_totals(*model, t);
+      model->add_totals(t, context());
     write_state(t);
   }
 
@@ -358,29 +292,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  nlohmann::ordered_json ElasticSimulation<dim>::describe_solving(
-    const ElasticRun<dim> &model) const
-  {
-    nlohmann::ordered_json entry{{"iterations", model.n_iterations}};
-    if (model.stepper)
-      {
-        entry["stepper"]     = model.stepper->name();
-        entry["steps"]       = model.stepper->cost().steps;
-        entry["iterations"]  = model.stepper->cost().iterations;
-        entry["time step"]   = model.stepper->current_step();
-        entry["stable step"] = {{"sharp", model.stable_step}, {"method", "verlet"}};
-      }
-    if (model.loading && !scene.time.steady)
-      {
-        entry["steps"] = model.loading->n_steps();
-        if (!scene.warms_slowly()) // then equilibria are at times of output
-          entry["time step"] = load_step();
-      }
-    return entry;
-  }
-
-
-  template <int dim>
   nlohmann::ordered_json ElasticSimulation<dim>::summary_now(const bool at_the_end)
   {
     using json   = nlohmann::ordered_json;
@@ -391,7 +302,7 @@ namespace PeriDeal
     for (const auto &model : models)
       {
         json &entry = summary["models"][model->name()];
-        entry       = describe_problem<dim>(*model, describe_solving(*model), *record);
+        entry       = describe_problem<dim>(*model, model->describe_solving(), *record);
         if (at_the_end)
           if (const json phases = describe_phases(*model, scene, record->totals, communicator);
               !phases.empty())

@@ -24,8 +24,10 @@ namespace PeriDeal
     class StateRun : public ElasticRun<dim>
     {
     public:
+      using ElasticRun<dim>::scene;
+
       StateRun(const Triangulation<dim> &mesh, const Scene<dim> &scene)
-        : scene(scene)
+        : ElasticRun<dim>(scene)
         , handler(mesh)
       {
         {
@@ -73,16 +75,6 @@ namespace PeriDeal
       double volume(const unsigned int node) const override
       {
         return node_set->volume(node);
-      }
-
-      std::vector<std::string> columns() const override
-      {
-        return elastic_columns(scene);
-      }
-
-      typename FieldWriter<dim>::Choice shown() const override
-      {
-        return [this](const Point<dim> &p) { return scene.domain.shows(p); };
       }
 
       std::vector<double> at_points(const PointEvaluator<dim>              &reader,
@@ -257,7 +249,6 @@ namespace PeriDeal
         return reader.evaluate(change);
       }
 
-      const Scene<dim>                   &scene;
       DoFHandler<dim>                     handler;
       std::unique_ptr<Nodes<dim>>         node_set;
       std::unique_ptr<StateOperator<dim>> states;

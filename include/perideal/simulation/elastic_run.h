@@ -12,6 +12,8 @@
 #include <perideal/solvers/motion_stepper.h>
 #include <perideal/solvers/slow_loading.h>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <memory>
 #include <string>
 #include <utility>
@@ -19,6 +21,9 @@
 
 namespace PeriDeal
 {
+  template <int dim>
+  struct RunContext;
+
   /**
    * A body that deforms, in one model of a scene: dim unknowns at each node, interleaved. Functions
    * are collective.
@@ -27,6 +32,26 @@ namespace PeriDeal
   class ElasticRun : public Problem<dim>
   {
   public:
+    explicit ElasticRun(const Scene<dim> &scene);
+
+    std::vector<std::string>          columns() const override;
+    typename FieldWriter<dim>::Choice shown() const override;
+
+    /** The first equilibrium, for later ones. Throws UserError. */
+    void begin_loading(const RunContext<dim> &context);
+
+    /** The initial state and the stepper of a motion. Throws UserError. */
+    void begin_motion(const RunContext<dim> &context);
+
+    /**
+     * Rows of totals.csv and what the summary says of forces and energies. Throws UserError if not
+     * finite.
+     */
+    void add_totals(const double t, const RunContext<dim> &context);
+
+    /** Iterations or steps, for the summary. Not collective. */
+    nlohmann::ordered_json describe_solving() const;
+
     ElasticOperator &op() const override = 0;
 
     /** Place of an owned node. Not collective. */
@@ -47,13 +72,19 @@ namespace PeriDeal
     /** The stress of each own node or cell, with its phase. */
     virtual std::vector<StressSample> stress_samples() const = 0;
 
+    const Scene<dim>              &scene;
     Vector                         displacement;
     Vector                         velocity;          // of a motion
     std::unique_ptr<MotionStepper> stepper;           // null in equilibrium
     std::unique_ptr<SlowLoading>   loading;           // null in motion
     double                         stable_step  = 0.; // of a motion by verlet, at its start
     double                         force_scale  = 0.; // the largest find_force_scale() so far
+    double                         load_step    = 0.; // of slow loading
     unsigned int                   n_iterations = 0;
+
+  private:
+    void                   set_start();
+    nlohmann::ordered_json add_energies(const double t, const RunContext<dim> &context);
   };
 
 

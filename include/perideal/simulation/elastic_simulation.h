@@ -52,17 +52,16 @@ namespace PeriDeal
     void                   build();
     void                   build_heat();
     void                   find_points();
+    RunContext<dim>        context();
     void                   describe_costs_of_run(const double memory_before);
     double                 time_of_motion(ElasticRun<dim> &model); // by its first steps
     void                   warm_until(const double t);
     void                   load();
-    void                   begin_loading(ElasticRun<dim> &model);
     void                   note_sudden_heat();
     void                   load_until(const double now, const double t);
     double                 load_step() const;
     std::vector<double>    times_of_output() const;
     void                   make_steppers();
-    void                   set_start(ElasticRun<dim> &model) const;
     void                   move();
 
     /**
@@ -71,18 +70,10 @@ namespace PeriDeal
      */
     double share_of_models(const unsigned int n, const double span) const;
 
-    void                   note_steps(const ElasticRun<dim> &model);
-    void                   note_energy(const ElasticRun<dim> &model);
-    void                   note_inversion(const ElasticRun<dim> &model);
-    void                   tell_first_break(const ElasticRun<dim> &model, const double t);
-    void                   note_torn_sides(const ElasticRun<dim> &model);
     void                   write_output(const double t);
     void                   write_state(const double t);
-    void                   add_totals(ElasticRun<dim> &model, const double t);
-    nlohmann::ordered_json add_energies(const ElasticRun<dim> &model, const double t);
     void                   end_output(const double t);
     nlohmann::ordered_json summary_now(const bool at_the_end);
-    nlohmann::ordered_json describe_solving(const ElasticRun<dim> &model) const;
 
     const Scene<dim>                             &scene;
     const SceneText                              &text;
