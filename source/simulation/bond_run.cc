@@ -89,7 +89,12 @@ namespace PeriDeal
         return node_set.get();
       }
 
-      double volume_of(const unsigned int node) const override
+      Point<dim> position(const unsigned int node) const override
+      {
+        return node_set->position(node);
+      }
+
+      double volume(const unsigned int node) const override
       {
         return node_set->volume(node);
       }
@@ -129,18 +134,18 @@ namespace PeriDeal
           }
         bonds->fictitious_values(u, t, outside);
         bond_heat_flux<dim>(bonds->diffusion_bonds(), u, outside, two_sided, one_sided);
-        if (volume.size() == 0)
+        if (node_volumes.size() == 0)
           {
-            bonds->initialize_vector(volume);
+            bonds->initialize_vector(node_volumes);
             for (unsigned int i = 0; i < node_set->n_owned(); ++i)
-              volume.local_element(i) = node_set->volume(i);
+              node_volumes.local_element(i) = node_set->volume(i);
           }
         if (cut.size() == 0)
           {
             bonds->initialize_vector(cut);
             cut_fraction(bonds->diffusion_bonds(), cut);
           }
-        std::array<Vector, 1>    volumes{volume}, cuts{cut};
+        std::array<Vector, 1>    volumes{node_volumes}, cuts{cut};
         std::vector<OutputField> fields;
         const std::string        name = names_of(scene.general.physics).flux;
         fields.push_back(vector_field<dim>(name, two_sided));
@@ -223,7 +228,7 @@ namespace PeriDeal
       DoFHandler<dim>                    handler;
       std::unique_ptr<Nodes<dim>>        node_set;
       std::unique_ptr<BondOperator<dim>> bonds;
-      mutable Vector                     volume,
+      mutable Vector                     node_volumes,
         cut; // for output; empty until needed, and when the cracks have changed
     };
   } // namespace

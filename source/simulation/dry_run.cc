@@ -16,7 +16,7 @@ namespace PeriDeal
   void Simulation<dim>::dry_run()
   {
     build();
-    find_points();
+    output->find_points(problems());
     for (const std::string &note : output->gaps_in_line())
       record->notes.push_back(note);
     make_steppers();

@@ -62,6 +62,20 @@ namespace PeriDeal
 
 
   template <int dim>
+  const Vector &ElasticRun<dim>::state() const
+  {
+    return displacement;
+  }
+
+
+  template <int dim>
+  unsigned int ElasticRun<dim>::n_components() const
+  {
+    return dim;
+  }
+
+
+  template <int dim>
   std::vector<std::string> ElasticRun<dim>::columns() const
   {
     return elastic_columns(scene);

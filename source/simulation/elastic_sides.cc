@@ -10,7 +10,7 @@
 #include <map>
 #include <sstream>
 
-#include "elastic_summary.h"
+#include "model_comparison.h"
 
 namespace PeriDeal
 {
@@ -30,7 +30,7 @@ namespace PeriDeal
       const bool             at_vertices = dofs.get_fe().n_dofs_per_vertex() > 0;
       std::vector<Vector>    u;
       for (unsigned int d = 0; d < dim; ++d)
-        u.push_back(component_of(dofs, model.displacement, d));
+        u.push_back(component_of(dofs, model.displacement, dim, d));
       std::map<types::boundary_id, std::pair<double, Tensor<1, dim>>> sides;
       for (const auto &cell : dofs.active_cell_iterators())
         if (cell->is_locally_owned() && cell->at_boundary())
@@ -136,7 +136,8 @@ namespace PeriDeal
       return "";
     std::ostringstream text;
     text << "force " << std::setprecision(4) << balance.sides.at(side)[direction] << " on " << side
-         << " in " << "xyz"[direction];
+         << " in "
+         << "xyz"[direction];
     return text.str();
   }
 

@@ -21,6 +21,7 @@
 #include "closing.h"
 #include "elastic_phases.h"
 #include "elastic_summary.h"
+#include "model_comparison.h"
 #include "run_context.h"
 #include "scene_sample.h"
 #include "summary_parts.h"
@@ -141,7 +142,10 @@ namespace PeriDeal
           progress.line(certificate_line(*certificate));
       }
     build_heat();
-    find_points();
+    Timings::Scope scope(timings, "output");
+    output->find_points(problems());
+    for (const std::string &note : output->gaps_in_line())
+      record->notes.push_back(note);
   }
 
 
@@ -153,15 +157,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticSimulation<dim>::find_points()
+  std::vector<const Problem<dim> *> ElasticSimulation<dim>::problems() const
   {
-    Timings::Scope                    scope(timings, "output");
-    typename RunOutput<dim>::Problems problems;
+    std::vector<const Problem<dim> *> list;
     for (const auto &model : models)
-      problems.push_back(model.get());
-    output->find_points(problems);
-    for (const std::string &note : output->gaps_in_line())
-      record->notes.push_back(note);
+      list.push_back(model.get());
+    return list;
   }
 
 
@@ -214,7 +215,7 @@ namespace PeriDeal
   {
     output->write_points(t);
     output->write_fields(t);
-    compare_displacements(models, scene.domain, t, record->comparison, record->comparisons);
+    compare_models(problems(), scene.domain, t, *record);
     end_output(t);
   }
 

@@ -4,9 +4,7 @@
 #include "elastic_summary.h"
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
 
-#include <perideal/analysis/comparison.h>
 #include <perideal/base/user_error.h>
 
 #include <cmath>
@@ -73,19 +71,6 @@ namespace PeriDeal
       return values;
     }
   } // namespace
-
-
-  template <int dim>
-  Vector component_of(const DoFHandler<dim> &dofs, const Vector &u, const unsigned int d)
-  {
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
-    Vector component(dofs.locally_owned_dofs(), relevant, dofs.get_communicator());
-    for (unsigned int i = 0; i < component.locally_owned_size(); ++i)
-      component.local_element(i) = u.local_element(dim * i + d);
-    component.update_ghost_values();
-    return component;
-  }
 
 
   template <int dim>
@@ -233,90 +218,15 @@ namespace PeriDeal
   }
 
 
-  namespace
-  {
-    /** What compare_displacements() appends of one pair of models. */
-    template <int dim>
-    void compare_two(const ElasticRun<dim> &one,
-                     const ElasticRun<dim> &other,
-                     const Domain<dim>     &domain,
-                     const double           t,
-                     json                  &entries)
-    {
-      const unsigned int  n = one.displacement.locally_owned_size() / dim;
-      std::vector<double> squares(n);
-      double              square = 0., reference = 0., largest = 0.;
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          const Vector of_other = component_of(other.dofs(), other.displacement, d),
-                       of_one   = component_of(one.dofs(), one.displacement, d);
-          Vector interpolant(of_one.get_partitioner());
-          interpolate_to(other.dofs(), of_other, one.dofs(), interpolant);
-          for (unsigned int i = 0; i < n; ++i)
-            {
-              if (!domain.shows(one.position(i)))
-                continue;
-              const double value      = interpolant.local_element(i),
-                           difference = of_one.local_element(i) - value, v = one.volume(i);
-              squares[i] += difference * difference;
-              square += v * difference * difference;
-              reference += v * value * value;
-            }
-        }
-      for (const double s : squares)
-        largest = std::max(largest, std::sqrt(s));
-      const MPI_Comm communicator = one.dofs().get_communicator();
-      square                      = Utilities::MPI::sum(square, communicator);
-      reference                   = Utilities::MPI::sum(reference, communicator);
-      entries["relative l2"].push_back(
-        {t, std::sqrt(reference > 0. ? square / reference : square)});
-      entries["maximum"].push_back({t, Utilities::MPI::max(largest, communicator)});
-    }
-  } // namespace
-
-
-  template <int dim>
-  void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &models,
-                             const Domain<dim>                                   &domain,
-                             const double                                         t,
-                             json                                                &comparison,
-                             json                                                &comparisons)
-  {
-    const auto find = [&](const ModelKind kind) -> const ElasticRun<dim> * {
-      for (const auto &model : models)
-        if (model->name() == to_string(kind))
-          return model.get();
-      return nullptr;
-    };
-    const ElasticRun<dim> *fem = find(ModelKind::finite_elements),
-                          *pd = find(ModelKind::peridynamics), *coupled = find(ModelKind::coupled);
-    if (fem != nullptr && pd != nullptr)
-      compare_two(*pd, *fem, domain, t, comparison);
-    for (const ElasticRun<dim> *other : {fem, pd})
-      if (coupled != nullptr && other != nullptr)
-        compare_two(*coupled,
-                    *other,
-                    domain,
-                    t,
-                    comparisons[coupled->name() + " minus " + other->name()]);
-  }
-
-
-#define PERIDEAL_INSTANTIATE(dim)                                                                   \
-  template Vector      component_of(const DoFHandler<dim> &, const Vector &, const unsigned int);   \
-  template json        describe_elastic_sides(const Scene<dim> &);                                  \
-  template json        values_on_sides(const Scene<dim> &,                                          \
-                                       const Point<dim> &,                                          \
-                                       const Point<dim> &,                                          \
-                                       const double,                                                \
-                                       const json &);                                               \
-  template std::string no_stress_intensity(const Scene<dim> &, const json &);                       \
-  template double      find_force_scale(const ElasticRun<dim> &, const Scene<dim> &, const double); \
-  template void        compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &, \
-                                             const Domain<dim> &,                                   \
-                                             const double,                                          \
-                                             json &,                                                \
-                                             json &);
+#define PERIDEAL_INSTANTIATE(dim)                                             \
+  template json        describe_elastic_sides(const Scene<dim> &);            \
+  template json        values_on_sides(const Scene<dim> &,                    \
+                                       const Point<dim> &,                    \
+                                       const Point<dim> &,                    \
+                                       const double,                          \
+                                       const json &);                         \
+  template std::string no_stress_intensity(const Scene<dim> &, const json &); \
+  template double      find_force_scale(const ElasticRun<dim> &, const Scene<dim> &, const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

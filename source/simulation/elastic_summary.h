@@ -13,13 +13,6 @@
 namespace PeriDeal
 {
   /**
-   * One component of a vector with dim of them at each node, as a vector of the nodes with the
-   * ghosts of their cells.
-   */
-  template <int dim>
-  Vector component_of(const dealii::DoFHandler<dim> &dofs, const Vector &u, const unsigned int d);
-
-  /**
    * Side -> what holds there in words: `displacement 0, free`, `traction 1, 0`, `symmetry`, several
    * separated by `; `, else `free`.
    */
@@ -57,18 +50,4 @@ namespace PeriDeal
   double find_force_scale(const ElasticRun<dim> &model,
                           const Scene<dim>      &scene,
                           const double           throughput);
-
-  /**
-   * Append to `relative l2` and `maximum` of @p comparison the pair [t, value]: peridynamics minus
-   * the interpolant of finite elements at its nodes. The norm of the displacement vectors, weighted
-   * by nodal volumes, over that of the finite elements; and the largest length of a difference.
-   * Nothing where one of the models is absent. Likewise the coupled model minus each of the others,
-   * as `coupled minus ...` of @p comparisons. Collective.
-   */
-  template <int dim>
-  void compare_displacements(const std::vector<std::unique_ptr<ElasticRun<dim>>> &models,
-                             const Domain<dim>                                   &domain,
-                             const double                                         t,
-                             nlohmann::ordered_json                              &comparison,
-                             nlohmann::ordered_json                              &comparisons);
 } // namespace PeriDeal

@@ -59,7 +59,13 @@ namespace PeriDeal
         return model == ModelKind::peridynamics ? node_set.get() : nullptr;
       }
 
-      double volume_of(const unsigned int node) const override
+      Point<dim> position(const unsigned int node) const override
+      {
+        Assert(node_set, ExcMessage("Finite elements alone have no peridynamic nodes."));
+        return node_set->position(node);
+      }
+
+      double volume(const unsigned int node) const override
       {
         Assert(node_set, ExcMessage("Finite elements alone have no peridynamic nodes."));
         return node_set->volume(node);

@@ -55,6 +55,20 @@ namespace PeriDeal
 
 
   template <int dim>
+  const Vector &ModelRun<dim>::state() const
+  {
+    return solution;
+  }
+
+
+  template <int dim>
+  unsigned int ModelRun<dim>::n_components() const
+  {
+    return 1;
+  }
+
+
+  template <int dim>
   std::vector<std::string> ModelRun<dim>::columns() const
   {
     return {"value"};

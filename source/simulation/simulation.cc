@@ -21,6 +21,7 @@
 #include "check_sides.h"
 #include "closing.h"
 #include "crack_note.h"
+#include "model_comparison.h"
 #include "result_record.h"
 #include "run_output.h"
 #include "summary_parts.h"
@@ -211,12 +212,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::find_points()
+  std::vector<const Problem<dim> *> Simulation<dim>::problems() const
   {
-    typename RunOutput<dim>::Problems problems;
+    std::vector<const Problem<dim> *> list;
     for (const auto &model : models)
-      problems.push_back(model.get());
-    output->find_points(problems);
+      list.push_back(model.get());
+    return list;
   }
 
 
@@ -239,7 +240,7 @@ namespace PeriDeal
     build();
     {
       Timings::Scope scope(timings, "output");
-      find_points();
+      output->find_points(problems());
       for (const std::string &note : output->gaps_in_line())
         record->notes.push_back(note);
     }
@@ -275,10 +276,29 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Simulation<dim>::add_errors(const double t)
+  {
+    if (!exact)
+      return;
+    for (const auto &model : models)
+      {
+        const Difference error = model->error(model->solution, [&](const Point<dim> &p) {
+          double x[dim];
+          for (unsigned int d = 0; d < dim; ++d)
+            x[d] = p[d];
+          return exact->value(x, t);
+        });
+        record->errors[model->name()]["relative l2"].push_back({t, error.relative_l2});
+        record->errors[model->name()]["maximum"].push_back({t, error.maximum});
+      }
+  }
+
+
+  template <int dim>
   void Simulation<dim>::write_output(const double t)
   {
     if (!readers_fit)
-      find_points();
+      output->find_points(problems());
     readers_fit = true;
     for (auto &model : models) // refuses what is not finite before it is written
       model->add_totals(t, *output, *record);
@@ -289,7 +309,7 @@ namespace PeriDeal
       known = [&](const std::vector<double> &p) { return exact->value(p.data(), t); };
     output->write_points(t, known);
     add_errors(t);
-    compare_models(t);
+    compare_models(problems(), scene.domain, t, *record);
     write_fields(t);
     for (auto &model : models)
       model->solution.set_ghost_state(false);
@@ -302,11 +322,6 @@ namespace PeriDeal
     Timings::Scope scope(timings, "output");
     for (auto &model : models)
       model->solution.update_ghost_values();
-    // All times have the same fields; the table of differences begins with the first results.
-    const auto comparison = record->comparison, comparisons = record->comparisons;
-    compare_models(0.);
-    record->comparison  = comparison;
-    record->comparisons = comparisons;
     write_fields(0.);
     for (auto &model : models)
       model->solution.set_ghost_state(false);
@@ -317,29 +332,26 @@ namespace PeriDeal
   void Simulation<dim>::write_fields(const double t)
   {
     std::map<std::string, OutputField> more;
-    if (difference.size() > 0)
-      {
-        OutputField field{"peridynamics_minus_finite_elements", {difference}};
-        field.components[0].update_ghost_values();
-        more.emplace(to_string(ModelKind::peridynamics), std::move(field));
-      }
+    for (Vector &difference : difference_of_models(problems()))
+      more.emplace(to_string(ModelKind::peridynamics),
+                   OutputField{"peridynamics_minus_finite_elements", {std::move(difference)}});
     output->write_fields(t, more);
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                            \
-  template Simulation<dim>::Simulation(const Scene<dim> &,                                   \
-                                       const SceneText &,                                    \
-                                       const MPI_Comm,                                       \
-                                       const bool);                                          \
-  template Simulation<dim>::~Simulation();                                                   \
-  template void Simulation<dim>::build();                                                    \
-  template void Simulation<dim>::build_on(const std::shared_ptr<Triangulation<dim>> &);      \
-  template const ModelRun<dim>            &Simulation<dim>::model(const unsigned int) const; \
-  template const std::vector<std::string> &Simulation<dim>::notes() const;                   \
-  template void                            Simulation<dim>::find_points();                   \
-  template std::vector<double>             Simulation<dim>::output_times() const;            \
-  template void                            Simulation<dim>::run();
+#define PERIDEAL_INSTANTIATE(dim)                                                              \
+  template Simulation<dim>::Simulation(const Scene<dim> &,                                     \
+                                       const SceneText &,                                      \
+                                       const MPI_Comm,                                         \
+                                       const bool);                                            \
+  template Simulation<dim>::~Simulation();                                                     \
+  template void Simulation<dim>::build();                                                      \
+  template void Simulation<dim>::build_on(const std::shared_ptr<Triangulation<dim>> &);        \
+  template const ModelRun<dim>              &Simulation<dim>::model(const unsigned int) const; \
+  template const std::vector<std::string>   &Simulation<dim>::notes() const;                   \
+  template std::vector<const Problem<dim> *> Simulation<dim>::problems() const;                \
+  template std::vector<double>               Simulation<dim>::output_times() const;            \
+  template void                              Simulation<dim>::run();
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

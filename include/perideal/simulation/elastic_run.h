@@ -34,6 +34,8 @@ namespace PeriDeal
   public:
     explicit ElasticRun(const Scene<dim> &scene);
 
+    const Vector                     &state() const override;
+    unsigned int                      n_components() const override;
     std::vector<std::string>          columns() const override;
     typename FieldWriter<dim>::Choice shown() const override;
 
@@ -53,12 +55,6 @@ namespace PeriDeal
     nlohmann::ordered_json describe_solving() const;
 
     ElasticOperator &op() const override = 0;
-
-    /** Place of an owned node. Not collective. */
-    virtual dealii::Point<dim> position(const unsigned int node) const = 0;
-
-    /** What an owned node has of the body's volume. Not collective. */
-    virtual double volume(const unsigned int node) const = 0;
 
     /** The mean stress over the volume of the body: what the body as a whole carries. */
     virtual dealii::SymmetricTensor<2, 3> mean_stress() const = 0;

@@ -48,21 +48,21 @@ namespace PeriDeal
     void dry_run();
 
   private:
-    nlohmann::ordered_json compute(); // the summary at the end
-    void                   build();
-    void                   build_heat();
-    void                   find_points();
-    RunContext<dim>        context();
-    void                   describe_costs_of_run(const double memory_before);
-    double                 time_of_motion(ElasticRun<dim> &model); // by its first steps
-    void                   warm_until(const double t);
-    void                   load();
-    void                   note_sudden_heat();
-    void                   load_until(const double now, const double t);
-    double                 load_step() const;
-    std::vector<double>    times_of_output() const;
-    void                   make_steppers();
-    void                   move();
+    nlohmann::ordered_json            compute(); // the summary at the end
+    void                              build();
+    void                              build_heat();
+    std::vector<const Problem<dim> *> problems() const;
+    RunContext<dim>                   context();
+    void                              describe_costs_of_run(const double memory_before);
+    double                            time_of_motion(ElasticRun<dim> &model); // by its first steps
+    void                              warm_until(const double t);
+    void                              load();
+    void                              note_sudden_heat();
+    void                              load_until(const double now, const double t);
+    double                            load_step() const;
+    std::vector<double>               times_of_output() const;
+    void                              make_steppers();
+    void                              move();
 
     /**
      * The share of the work of moving all models on by a time span that the first n have, as far as

@@ -47,9 +47,6 @@ namespace PeriDeal
     /** Rows of totals.csv and what the summary says of flows. Throws UserError if not finite. */
     void add_totals(const double t, RunOutput<dim> &output, ResultRecord &record) const;
 
-    /** Volume of an owned peridynamic node. Not for finite elements alone. */
-    virtual double volume_of(const unsigned int node) const = 0;
-
     DiffusionOperator &op() const override = 0;
 
     /** As Operator::update(). */
@@ -99,6 +96,8 @@ namespace PeriDeal
       const Vector                                            &u,
       const std::function<double(const dealii::Point<dim> &)> &exact) const = 0;
 
+    const Vector            &state() const override;
+    unsigned int             n_components() const override;
     std::vector<std::string> columns() const override;
     std::vector<double>      at_points(const PointEvaluator<dim>              &reader,
                                        const std::vector<std::vector<double>> &points) const override;

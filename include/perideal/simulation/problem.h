@@ -44,6 +44,19 @@ namespace PeriDeal
 
     virtual Operator &op() const = 0;
 
+    /** The solution, interleaved: so many numbers at each node. Not collective. */
+    virtual const Vector &state() const        = 0;
+    virtual unsigned int  n_components() const = 0;
+
+    /** Place of an owned node. Not collective. */
+    virtual dealii::Point<dim> position(const unsigned int node) const = 0;
+
+    /**
+     * What an owned node has of the body's volume; not of finite elements alone for what diffuses.
+     * Not collective.
+     */
+    virtual double volume(const unsigned int node) const = 0;
+
     /** What probes.csv, line.csv and grid.csv have at each point. Not collective. */
     virtual std::vector<std::string> columns() const = 0;
 

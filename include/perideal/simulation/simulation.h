@@ -74,26 +74,24 @@ namespace PeriDeal
     const std::vector<std::string> &notes() const;
 
   private:
-    void                   build();
-    void                   build_mesh_of_run();
-    void                   make_steppers();
-    void                   find_points();
-    void                   solve_models();
-    void                   prepare_adaptation();
-    bool                   adapt(const double t);
-    nlohmann::ordered_json compute(); // the summary at the end
-    void                   make_reference();
-    void                   write_output(const double t);
-    void                   write_start(); // the first frame of a film
-    void                   add_errors(const double t);
-    void                   compare_models(const double t);
-    void                   compare_with_others(const double t, const ModelRun<dim> &coupled);
-    void                   write_fields(const double t);
-    nlohmann::ordered_json summary_now() const;
-    void                   describe(const ModelRun<dim> &model) const;
-    std::vector<double>    output_times() const;
-    double                 time_of_run(const ModelRun<dim> &model) const;
-    double                 time_of_application(const ModelRun<dim> &model) const;
+    void                              build();
+    void                              build_mesh_of_run();
+    void                              make_steppers();
+    std::vector<const Problem<dim> *> problems() const;
+    void                              solve_models();
+    void                              prepare_adaptation();
+    bool                              adapt(const double t);
+    nlohmann::ordered_json            compute(); // the summary at the end
+    void                              make_reference();
+    void                              write_output(const double t);
+    void                              write_start(); // the first frame of a film
+    void                              add_errors(const double t);
+    void                              write_fields(const double t);
+    nlohmann::ordered_json            summary_now() const;
+    void                              describe(const ModelRun<dim> &model) const;
+    std::vector<double>               output_times() const;
+    double                            time_of_run(const ModelRun<dim> &model) const;
+    double                            time_of_application(const ModelRun<dim> &model) const;
 
     /**
      * The share of the run that is done when the first n models have got to @p t and the others are
@@ -111,10 +109,9 @@ namespace PeriDeal
     std::unique_ptr<ExactSolution>              exact;
     std::unique_ptr<ResultRecord>               record;
     std::unique_ptr<RunOutput<dim>>             output;
-    Vector                        difference; // peridynamics minus finite elements, at the nodes
-    std::unique_ptr<Grading<dim>> grading;    // only where the mesh is adapted
-    bool                          readers_fit   = true; // the mesh
-    unsigned int                  n_adaptations = 0;
-    double                        now           = 0.;
+    std::unique_ptr<Grading<dim>>               grading; // only where the mesh is adapted
+    bool                                        readers_fit   = true; // the mesh
+    unsigned int                                n_adaptations = 0;
+    double                                      now           = 0.;
   };
 } // namespace PeriDeal
