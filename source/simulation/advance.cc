@@ -14,7 +14,7 @@
 #include <sstream>
 
 #include "result_record.h"
-#include "run_output.h"
+#include "run_context.h"
 #include "with_formulas.h"
 
 namespace PeriDeal
@@ -24,17 +24,8 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::make_steppers()
   {
-    if (scene.time.steady)
-      return;
     for (auto &model : models)
-      {
-        model->begin();
-        std::ostringstream line;
-        line << model->name() << ": stepper " << model->stepper->name();
-        if (model->stepper->current_step() > 0.)
-          line << ", step " << model->stepper->current_step();
-        progress.line(line.str());
-      }
+      model->begin({progress, *record, *output});
   }
 
 
@@ -56,12 +47,10 @@ namespace PeriDeal
     double some = 0., all = 0.;
     for (unsigned int k = 0; k < models.size(); ++k)
       {
-        const OperatorSize size = models[k]->op().size();
-        const double       cost = std::max(1., models[k]->stepper->expected_applications(t - now)) *
-                            static_cast<double>(size.unknowns + size.nonzeros + size.bonds);
-        all += cost;
+        const double work = models[k]->work_of(t - now);
+        all += work;
         if (k < n)
-          some += cost;
+          some += work;
       }
     return (now + some / all * (t - now)) / scene.time.end_time;
   }
@@ -97,7 +86,7 @@ namespace PeriDeal
                 progress.doing(models[k]->name() + ": time stepping");
                 progress.advancing(now, to, begin, end);
               }
-            models[k]->advance(now, to);
+            models[k]->advance(now, to, {}, {progress, *record, *output});
           }
         now = to;
         if (to == next)

@@ -4,6 +4,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
 #include <perideal/solvers/static_solver.h>
+#include <perideal/solvers/step_tools.h>
 
 #include <algorithm>
 #include <cmath>
@@ -134,6 +135,142 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ElasticRun<dim>::begin(const RunContext<dim> &context)
+  {
+    if (!scene.elasticity.is_static())
+      begin_motion(context);
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::settle(const RunContext<dim> &context)
+  {
+    if (!scene.elasticity.is_static())
+      return;
+    context.progress.doing("solving " + this->name());
+    begin_loading(context);
+    if (scene.time.steady)
+      context.progress.line(this->name() + ": " + std::to_string(n_iterations) + " iterations");
+  }
+
+
+  template <int dim>
+  double ElasticRun<dim>::load_step() const
+  {
+    constexpr double share = 0.01; // of the end time, if no step is given
+    if (scene.warms_slowly())      // `Time step` is that of the heat problem
+      return (op().brittle() || op().nonlinear() ? share : 1.) * scene.time.end_time;
+    return scene.time.time_step > 0. ? scene.time.time_step : share * scene.time.end_time;
+  }
+
+
+  template <int dim>
+  std::vector<double> ElasticRun<dim>::stops(const double from, const double to) const
+  {
+    if (!loading)
+      return {to};
+    const unsigned long long n = n_equal_steps(to - from, load_step());
+    std::vector<double>      times;
+    for (unsigned long long k = 1; k < n; ++k)
+      times.push_back(from + k * (to - from) / n);
+    times.push_back(to);
+    return times;
+  }
+
+
+  template <int dim>
+  bool ElasticRun<dim>::tells_at_stops() const
+  {
+    return loading && !scene.time.steady;
+  }
+
+
+  template <int dim>
+  std::string ElasticRun<dim>::doing(const unsigned int k,
+                                     const unsigned int n,
+                                     const double       t) const
+  {
+    if (!loading)
+      return Problem<dim>::doing(k, n, t);
+    return "solving " + this->name() + ", load step " + std::to_string(k) + " of " +
+           std::to_string(n) + " until t = " + number_text(t);
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::advance(const double                             from,
+                                const double                             to,
+                                const std::function<void(const double)> &report,
+                                const RunContext<dim>                   &context)
+  {
+    if (!loading)
+      return move(from, to, report, context);
+    Timings::Scope scope(this->timings, "solving");
+    loading->step(displacement, to);
+    n_iterations = loading->n_iterations();
+    tell_first_break(*this, to, context);
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::move(const double                             from,
+                             const double                             to,
+                             const std::function<void(const double)> &report,
+                             const RunContext<dim>                   &context)
+  {
+    constexpr unsigned int n_reports = 50; // of the progress
+    Timings::Scope         scope(this->timings, "time stepping");
+    // Whole steps between two reports, so that these change no step.
+    const double       span = to - from, step = stepper->current_step();
+    const double       n_steps = std::max(1., std::ceil(span / step * (1. - 1e-10)));
+    const unsigned int n_parts = std::min(n_steps, static_cast<double>(n_reports));
+    double             now     = from;
+    for (unsigned int part = 1; part <= n_parts; ++part)
+      {
+        const double next =
+          part == n_parts ? to : from + span * std::floor(n_steps * part / n_parts) / n_steps;
+        stepper->advance(displacement, velocity, now, next);
+        now = next;
+        if (op().brittle())
+          {
+            tell_broken_bonds(op().n_broken_bonds());
+            tell_first_break(*this, next, context);
+          }
+        report(static_cast<double>(part) / n_parts);
+      }
+  }
+
+
+  template <int dim>
+  double ElasticRun<dim>::work_of(const double span) const
+  {
+    if (!stepper)
+      return 1.;
+    const OperatorSize size = op().size();
+    // A step costs about as much as the product with what is stored.
+    return std::max(1., span / stepper->current_step()) *
+           static_cast<double>(size.unknowns + size.nonzeros + size.bonds);
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::examine(const double t)
+  {
+    if (stepper)
+      stepper->examine(displacement, velocity, t);
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::note_end(const RunContext<dim> &context) const
+  {
+    if (loading && !scene.time.steady)
+      context.progress.line(this->name() + ": " + std::to_string(n_iterations) + " iterations");
+    PeriDeal::note_end(*this, context);
+  }
+
+
+  template <int dim>
   void ElasticRun<dim>::begin_loading(const RunContext<dim> &context)
   {
     Timings::Scope scope(this->timings, "solving");
@@ -168,7 +305,7 @@ namespace PeriDeal
       {
         entry["steps"] = loading->n_steps();
         if (!scene.warms_slowly()) // then equilibria are at times of output
-          entry["time step"] = load_step;
+          entry["time step"] = load_step();
       }
     return entry;
   }

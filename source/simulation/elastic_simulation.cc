@@ -184,13 +184,33 @@ namespace PeriDeal
   nlohmann::ordered_json ElasticSimulation<dim>::compute()
   {
     build();
-    if (scene.elasticity.is_static())
-      load();
-    else
+    for (const auto &model : models)
+      model->begin(context());
+    if (!scene.time.steady)
+      progress.begin("time");
+    warm_until(0.);
+    for (const auto &model : models)
+      model->settle(context());
+    note_sudden_heat();
+    const bool at_stops = std::any_of(models.begin(), models.end(), [](const auto &model) {
+      return model->tells_at_stops();
+    });
+    if (at_stops)
+      add_totals(0.);
+    if (scene.output.starts_at_zero() && !scene.time.steady)
+      output->write_fields(0.);
+    if (at_stops)
+      end_output(0.);
+    double now = 0.;
+    for (const double t : times_of_output())
       {
-        make_steppers();
-        move();
+        advance(now, t, at_stops);
+        now = t;
+        write_output(t, !at_stops);
       }
+    progress.end();
+    for (const auto &model : models)
+      model->note_end(context());
     for (const std::string &note : record->notes)
       progress.note(note);
     const auto summary = summary_now(true);
@@ -200,19 +220,105 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticSimulation<dim>::write_output(const double t)
+  void ElasticSimulation<dim>::advance(const double now, const double t, const bool at_stops)
   {
-    progress.doing("writing results");
-    Timings::Scope scope(timings, "output");
+    if (!(t > now))
+      return;
+    std::vector<double> stops;
     for (const auto &model : models)
-      model->add_totals(t, context());
-    write_state(t);
+      for (const double stop : model->stops(now, t))
+        stops.push_back(stop);
+    std::sort(stops.begin(), stops.end());
+    stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+    double from = now;
+    for (unsigned int n = 0; n < stops.size(); ++n)
+      {
+        const double to = stops[n];
+        if (scene.warms_slowly())
+          warm_until(to);
+        for (unsigned int k = 0; k < models.size(); ++k)
+          {
+            const double before = share_done(k, from, to), after = share_done(k + 1, from, to);
+            progress.doing(models[k]->doing(n + 1, stops.size(), t));
+            if (!at_stops)
+              progress.advancing(from, to, before, after);
+            models[k]->advance(
+              from,
+              to,
+              [&](const double share) { progress.update(before + share * (after - before)); },
+              context());
+          }
+        from = to;
+        if (!at_stops)
+          continue;
+        Timings::Scope scope(timings, "output");
+        add_totals(to);
+        end_output(to);
+        progress.update(to / scene.time.end_time);
+      }
   }
 
 
   template <int dim>
-  void ElasticSimulation<dim>::write_state(const double t)
+  double ElasticSimulation<dim>::share_done(const unsigned int n,
+                                            const double       from,
+                                            const double       to) const
   {
+    double some = 0., all = 0.;
+    for (unsigned int k = 0; k < models.size(); ++k)
+      {
+        const double work = models[k]->work_of(to - from);
+        all += work;
+        if (k < n)
+          some += work;
+      }
+    return (from + some / all * (to - from)) / scene.time.end_time;
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::add_totals(const double t)
+  {
+    for (const auto &model : models)
+      model->add_totals(t, context());
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::note_sudden_heat()
+  {
+    if (!heat || scene.boundary_conditions.dirichlet.empty())
+      return;
+    for (const auto &model : models)
+      if (model->op().brittle() && model->op().n_broken_bonds() > 0)
+        record->notes.push_back(
+          model->name() + ": " + readable_count(model->op().n_broken_bonds()) +
+          " bonds broke at t = 0 already. 'Dirichlet' in section 'Boundary conditions' gives its sides their temperature at once, so that the outermost nodes "
+          "are stretched against the next ones by all of the jump, however fine the lattice. 'Convection', or a 'Dirichlet' value that begins at the initial one, lets the heat in gradually.");
+  }
+
+
+  template <int dim>
+  std::vector<double> ElasticSimulation<dim>::times_of_output() const
+  {
+    if (scene.time.steady)
+      return {0.};
+    std::vector<double> times = scene.output.write_times;
+    if (times.empty() || times.back() < scene.time.end_time)
+      times.push_back(scene.time.end_time);
+    return times;
+  }
+
+
+  template <int dim>
+  void ElasticSimulation<dim>::write_output(const double t, const bool with_totals)
+  {
+    for (const auto &model : models)
+      model->examine(t);
+    progress.doing("writing results");
+    Timings::Scope scope(timings, "output");
+    if (with_totals)
+      add_totals(t);
     output->write_points(t);
     output->write_fields(t);
     compare_models(problems(), scene.domain, t, *record);
@@ -234,8 +340,8 @@ namespace PeriDeal
     refuse_what_is_not_computed(scene);
     const double before = Utilities::MPI::sum(resident_memory(), communicator);
     build();
-    if (!scene.elasticity.is_static())
-      make_steppers();
+    for (const auto &model : models)
+      model->begin(context());
     for (const std::string &note : record->notes)
       progress.note(note);
     describe_costs_of_run(before);
@@ -262,7 +368,7 @@ namespace PeriDeal
                                                 components.size() - 1,
                                                 scene.time.steady ?
                                                   1. :
-                                                  std::max(scene.time.end_time / load_step(),
+                                                  std::max(scene.time.end_time / model->load_step(),
                                                            1. * times_of_output().size()),
                                                 communicator,
                                                 memory);

@@ -10,8 +10,7 @@
 #include "effective_conductivity.h"
 #include "finite_results.h"
 #include "model_runs.h"
-#include "result_record.h"
-#include "run_output.h"
+#include "run_context.h"
 #include "with_formulas.h"
 
 namespace PeriDeal
@@ -117,7 +116,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ModelRun<dim>::begin()
+  void ModelRun<dim>::begin_stepping()
   {
     make_stepper();
     with_formulas(this->dofs().get_communicator(),
@@ -132,6 +131,47 @@ namespace PeriDeal
     const double      entered = stepper->entered();
     make_stepper();
     stepper->carry_over(before, entered);
+  }
+
+
+  template <int dim>
+  void ModelRun<dim>::begin(const RunContext<dim> &context)
+  {
+    if (scene.time.steady)
+      return;
+    begin_stepping();
+    std::ostringstream line;
+    line << this->name() << ": stepper " << stepper->name();
+    if (stepper->current_step() > 0.)
+      line << ", step " << stepper->current_step();
+    context.progress.line(line.str());
+  }
+
+
+  template <int dim>
+  void ModelRun<dim>::settle(const RunContext<dim> &)
+  {
+    if (scene.time.steady)
+      solve();
+  }
+
+
+  template <int dim>
+  void ModelRun<dim>::advance(const double from,
+                              const double to,
+                              const std::function<void(const double)> &,
+                              const RunContext<dim> &)
+  {
+    advance_through_events(from, to);
+  }
+
+
+  template <int dim>
+  double ModelRun<dim>::work_of(const double span) const
+  {
+    const OperatorSize size = op().size();
+    return std::max(1., stepper->expected_applications(span)) *
+           static_cast<double>(size.unknowns + size.nonzeros + size.bonds);
   }
 
 
@@ -151,7 +191,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ModelRun<dim>::advance(const double t_begin, const double t_end)
+  void ModelRun<dim>::advance_through_events(const double t_begin, const double t_end)
   {
     with_formulas(this->dofs().get_communicator(), [&] {
       for (double from = t_begin; from < t_end;)
@@ -172,6 +212,27 @@ namespace PeriDeal
 
 
   template <int dim>
+  nlohmann::ordered_json ModelRun<dim>::describe_solving() const
+  {
+    if (!this->stepper)
+      return {{"stepper", "steady"}, {"steps", 0}, {"iterations", steady_iterations}};
+    const Stepper         &stepping = *this->stepper;
+    nlohmann::ordered_json entry    = {{"stepper", stepping.name()},
+                                       {"steps", stepping.cost().steps},
+                                       {"rejected steps", stepping.cost().rejected},
+                                       {"iterations", stepping.cost().iterations}};
+    if (stepping.current_step() > 0.)
+      entry["time step"] = stepping.current_step();
+    const Spectrum    spectrum = op().spectrum();
+    const std::string method   = stepping.name() == "rk4" ? "rk4" : "euler";
+    entry["stable step"]       = {{"sharp", stable_step(method, spectrum.sharp)},
+                                  {"safe", stable_step(method, spectrum.safe)},
+                                  {"method", method}};
+    return entry;
+  }
+
+
+  template <int dim>
   double ModelRun<dim>::expected_applications(const std::vector<double> &times) const
   {
     double n = 0., t = 0.;
@@ -187,8 +248,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ModelRun<dim>::add_totals(const double t, RunOutput<dim> &output, ResultRecord &record) const
+  void ModelRun<dim>::add_totals(const double t, const RunContext<dim> &context)
   {
+    RunOutput<dim>     &output  = context.output;
+    ResultRecord       &record  = context.record;
     const Balance       balance = op().balance(solution, t, scene.time.steady);
     const PhysicsNames &names   = names_of(scene.general.physics);
     require_finite(

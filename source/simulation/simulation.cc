@@ -23,7 +23,7 @@
 #include "crack_note.h"
 #include "model_comparison.h"
 #include "result_record.h"
-#include "run_output.h"
+#include "run_context.h"
 #include "summary_parts.h"
 #include "with_formulas.h"
 
@@ -301,7 +301,7 @@ namespace PeriDeal
       output->find_points(problems());
     readers_fit = true;
     for (auto &model : models) // refuses what is not finite before it is written
-      model->add_totals(t, *output, *record);
+      model->add_totals(t, {progress, *record, *output});
     for (auto &model : models)
       model->solution.update_ghost_values();
     typename RunOutput<dim>::Values known;

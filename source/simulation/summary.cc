@@ -62,28 +62,6 @@ namespace PeriDeal
       };
       return is_one(material.density) && is_one(material.heat_capacity);
     }
-
-
-    /** How a model was stepped, or solved. Collective. */
-    template <int dim>
-    json describe_stepping(const ModelRun<dim> &model)
-    {
-      if (!model.stepper)
-        return {{"stepper", "steady"}, {"steps", 0}, {"iterations", model.steady_iterations}};
-      const Stepper &stepper = *model.stepper;
-      json           entry   = {{"stepper", stepper.name()},
-                                {"steps", stepper.cost().steps},
-                                {"rejected steps", stepper.cost().rejected},
-                                {"iterations", stepper.cost().iterations}};
-      if (stepper.current_step() > 0.)
-        entry["time step"] = stepper.current_step();
-      const Spectrum    spectrum = model.op().spectrum();
-      const std::string method   = stepper.name() == "rk4" ? "rk4" : "euler";
-      entry["stable step"]       = {{"sharp", stable_step(method, spectrum.sharp)},
-                                    {"safe", stable_step(method, spectrum.safe)},
-                                    {"method", method}};
-      return entry;
-    }
   } // namespace
 
 
@@ -101,7 +79,7 @@ namespace PeriDeal
     summary["reference"]   = scene.reference.solution;
     for (const auto &model : models)
       summary["models"][model->name()] =
-        describe_problem<dim>(*model, describe_stepping(*model), *record);
+        describe_problem<dim>(*model, model->describe_solving(), *record);
     return summary;
   }
 

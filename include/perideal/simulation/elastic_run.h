@@ -39,20 +39,26 @@ namespace PeriDeal
     std::vector<std::string>          columns() const override;
     typename FieldWriter<dim>::Choice shown() const override;
 
-    /** The first equilibrium, for later ones. Throws UserError. */
-    void begin_loading(const RunContext<dim> &context);
+    void                begin(const RunContext<dim> &context) override;
+    void                settle(const RunContext<dim> &context) override;
+    std::vector<double> stops(const double from, const double to) const override;
+    bool                tells_at_stops() const override;
+    std::string doing(const unsigned int k, const unsigned int n, const double t) const override;
+    void        advance(const double                             from,
+                        const double                             to,
+                        const std::function<void(const double)> &report,
+                        const RunContext<dim>                   &context) override;
+    double      work_of(const double span) const override;
+    void        examine(const double t) override;
+    void        add_totals(const double t, const RunContext<dim> &context) override;
+    void        note_end(const RunContext<dim> &context) const override;
+    nlohmann::ordered_json describe_solving() const override;
+
+    /** Of slow loading: the time between two equilibria. Not collective. */
+    double load_step() const;
 
     /** The initial state and the stepper of a motion. Throws UserError. */
     void begin_motion(const RunContext<dim> &context);
-
-    /**
-     * Rows of totals.csv and what the summary says of forces and energies. Throws UserError if not
-     * finite.
-     */
-    void add_totals(const double t, const RunContext<dim> &context);
-
-    /** Iterations or steps, for the summary. Not collective. */
-    nlohmann::ordered_json describe_solving() const;
 
     ElasticOperator &op() const override = 0;
 
@@ -75,11 +81,15 @@ namespace PeriDeal
     std::unique_ptr<SlowLoading>   loading;           // null in motion
     double                         stable_step  = 0.; // of a motion by verlet, at its start
     double                         force_scale  = 0.; // the largest find_force_scale() so far
-    double                         load_step    = 0.; // of slow loading
     unsigned int                   n_iterations = 0;
 
   private:
     void                   set_start();
+    void                   begin_loading(const RunContext<dim> &context);
+    void                   move(const double                             from,
+                                const double                             to,
+                                const std::function<void(const double)> &report,
+                                const RunContext<dim>                   &context);
     nlohmann::ordered_json add_energies(const double t, const RunContext<dim> &context);
   };
 

@@ -56,22 +56,20 @@ namespace PeriDeal
     void                              describe_costs_of_run(const double memory_before);
     double                            time_of_motion(ElasticRun<dim> &model); // by its first steps
     void                              warm_until(const double t);
-    void                              load();
     void                              note_sudden_heat();
-    void                              load_until(const double now, const double t);
-    double                            load_step() const;
     std::vector<double>               times_of_output() const;
-    void                              make_steppers();
-    void                              move();
+
+    /** From one time of output to the next. */
+    void advance(const double now, const double t, const bool at_stops);
 
     /**
-     * The share of the work of moving all models on by a time span that the first n have, as far as
-     * sizes tell it. Collective.
+     * The share of the run that is done when the first n models have got from one time to the next
+     * and the others are where they are now, as far as sizes tell it. Collective.
      */
-    double share_of_models(const unsigned int n, const double span) const;
+    double share_done(const unsigned int n, const double from, const double to) const;
+    void   add_totals(const double t);
 
-    void                   write_output(const double t);
-    void                   write_state(const double t);
+    void                   write_output(const double t, const bool with_totals);
     void                   end_output(const double t);
     nlohmann::ordered_json summary_now(const bool at_the_end);
 

@@ -18,10 +18,6 @@
 
 namespace PeriDeal
 {
-  struct ResultRecord;
-  template <int dim>
-  class RunOutput;
-
   /** What diffuses, in one model of a scene. Functions are collective. */
   template <int dim>
   class ModelRun : public Problem<dim>
@@ -29,23 +25,30 @@ namespace PeriDeal
   public:
     explicit ModelRun(const Scene<dim> &scene);
 
-    /** Make the stepper and begin the balance of heat, for advance(). Throws UserError. */
-    void begin();
-
-    /** Through the events of the cracks between two times. */
-    void advance(const double t_begin, const double t_end);
+    void                   begin(const RunContext<dim> &context) override;
+    void                   settle(const RunContext<dim> &context) override;
+    void                   advance(const double                             from,
+                                   const double                             to,
+                                   const std::function<void(const double)> &report,
+                                   const RunContext<dim>                   &context) override;
+    double                 work_of(const double span) const override;
+    void                   add_totals(const double t, const RunContext<dim> &context) override;
+    nlohmann::ordered_json describe_solving() const override;
 
     /** The steady state. */
     void solve();
+
+    /** Through the events of the cracks between two times. */
+    void advance_through_events(const double t_begin, const double t_end);
+
+    /** Make the stepper and begin the balance of heat. Throws UserError. */
+    void begin_stepping();
 
     /** After the mesh has changed: a stepper of the new operator, with the cost of the old one. */
     void renew_stepper();
 
     /** Of the operator, until the last of some ascending times; not known if not positive. */
     double expected_applications(const std::vector<double> &times) const;
-
-    /** Rows of totals.csv and what the summary says of flows. Throws UserError if not finite. */
-    void add_totals(const double t, RunOutput<dim> &output, ResultRecord &record) const;
 
     DiffusionOperator &op() const override = 0;
 

@@ -11,6 +11,9 @@
 #include <perideal/operators/operator.h>
 #include <perideal/output/field_writer.h>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +21,8 @@
 namespace PeriDeal
 {
   struct CouplingCertificate;
+  template <int dim>
+  struct RunContext;
 
   /**
    * One physics of one model of a scene during a run: its unknowns on the shared mesh, its
@@ -56,6 +61,44 @@ namespace PeriDeal
      * Not collective.
      */
     virtual double volume(const unsigned int node) const = 0;
+
+    /** Make what advances the problem: its start, a stepper. Throws UserError. */
+    virtual void begin(const RunContext<dim> &context) = 0;
+
+    /** The steady state, or the equilibrium from which slow loading begins, at time 0. */
+    virtual void settle(const RunContext<dim> &context) = 0;
+
+    /**
+     * The times after @p from until @p to, which is the last, at which all problems of a run meet.
+     */
+    virtual std::vector<double> stops(const double from, const double to) const;
+
+    /** Totals are told at each of these, not only where results are written. Not collective. */
+    virtual bool tells_at_stops() const;
+
+    /** What is done on the way to the k-th of n stops, the last at t. Not collective. */
+    virtual std::string doing(const unsigned int k, const unsigned int n, const double t) const;
+
+    /** @param report how far this has got, from 0 to 1 */
+    virtual void advance(const double                             from,
+                         const double                             to,
+                         const std::function<void(const double)> &report,
+                         const RunContext<dim>                   &context) = 0;
+
+    /** How much work it is to advance by a time span, to be compared with that of others. */
+    virtual double work_of(const double span) const = 0;
+
+    /** Before results of a time are written. Throws UserError where the state is no result. */
+    virtual void examine(const double t);
+
+    /** Rows of totals.csv, and what the summary says of a time. Throws UserError if not finite. */
+    virtual void add_totals(const double t, const RunContext<dim> &context) = 0;
+
+    /** What the user should know at the end. */
+    virtual void note_end(const RunContext<dim> &context) const;
+
+    /** Steps, iterations: for the summary. */
+    virtual nlohmann::ordered_json describe_solving() const = 0;
 
     /** What probes.csv, line.csv and grid.csv have at each point. Not collective. */
     virtual std::vector<std::string> columns() const = 0;

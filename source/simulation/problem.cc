@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/simulation/problem.h>
+
+namespace PeriDeal
+{
+  template <int dim>
+  std::vector<double> Problem<dim>::stops(const double, const double to) const
+  {
+    return {to};
+  }
+
+
+  template <int dim>
+  bool Problem<dim>::tells_at_stops() const
+  {
+    return false;
+  }
+
+
+  template <int dim>
+  std::string Problem<dim>::doing(const unsigned int, const unsigned int, const double) const
+  {
+    return name() + ": time stepping";
+  }
+
+
+  template <int dim>
+  void Problem<dim>::examine(const double)
+  {}
+
+
+  template <int dim>
+  void Problem<dim>::note_end(const RunContext<dim> &) const
+  {}
+
+
+  template class Problem<1>;
+  template class Problem<2>;
+  template class Problem<3>;
+} // namespace PeriDeal
