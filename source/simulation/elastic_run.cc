@@ -97,7 +97,7 @@ namespace PeriDeal
     const auto              fill  = [&](Vector &vector, const std::vector<Expression> &formulas) {
       op().initialize_vector(vector);
       for (unsigned int i = 0; i < vector.locally_owned_size() && !formulas.empty(); ++i)
-        vector.local_element(i) = formulas[i % dim].value(position(i / dim));
+        vector.local_element(i) = formulas[i % dim].value(this->position(i / dim));
     };
     fill(displacement, given.initial_displacement);
     fill(velocity, given.initial_velocity);
