@@ -173,7 +173,7 @@ namespace PeriDeal
         return Utilities::MPI::sum(sum, handler.get_communicator());
       }
 
-      Difference error(const Vector                                    &u,
+      Difference difference_to(const Vector                                    &u,
                        const std::function<double(const Point<dim> &)> &exact) const override
       {
         Vector expected;
@@ -194,7 +194,7 @@ namespace PeriDeal
         return list;
       }
 
-      std::vector<std::string> notes() const override
+      std::vector<std::string> own_notes() const override
       {
         const Peridynamics      &p = scene.peridynamics;
         std::vector<std::string> list;

@@ -3,6 +3,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
+#include <perideal/simulation/model_run.h>
 #include <perideal/solvers/static_solver.h>
 #include <perideal/solvers/step_tools.h>
 
@@ -15,6 +16,7 @@
 #include "elastic_sides.h"
 #include "elastic_summary.h"
 #include "finite_results.h"
+#include "scene_sample.h"
 
 namespace PeriDeal
 {
@@ -90,6 +92,53 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /**
+     * The temperature above the reference at the nodes of the elastic model. Both models have the
+     * same element on the same mesh, but may number its nodes differently; each node has the same
+     * owner in both.
+     */
+    template <int dim>
+    void find_temperature_change(const ModelRun<dim>   &heat,
+                                 const ElasticRun<dim> &elastic,
+                                 const double           reference,
+                                 Vector                &change)
+    {
+      const DoFHandler<dim> &from = heat.dofs(), &to = elastic.dofs();
+      AssertDimension(from.get_fe().n_dofs_per_cell(), to.get_fe().n_dofs_per_cell());
+      std::vector<types::global_dof_index> source(from.get_fe().n_dofs_per_cell()), target(source);
+      const auto                          &owned = *change.get_partitioner();
+      auto                                 cell  = to.begin_active();
+      for (const auto &of_heat : from.active_cell_iterators())
+        {
+          if (cell->is_locally_owned())
+            {
+              of_heat->get_dof_indices(source);
+              cell->get_dof_indices(target);
+              for (unsigned int i = 0; i < source.size(); ++i)
+                if (owned.in_local_range(target[i]))
+                  change(target[i]) = heat.solution(source[i]) - reference;
+            }
+          ++cell;
+        }
+    }
+  } // namespace
+
+
+  template <int dim>
+  void ElasticRun<dim>::take_temperature()
+  {
+    if (heat == nullptr)
+      return;
+    Timings::Scope scope(this->timings, "thermal loads");
+    Vector         change;
+    op().initialize_nodal_vector(change);
+    find_temperature_change(*heat, *this, scene.elasticity.reference_temperature, change);
+    op().set_temperature_change(change);
+  }
+
+
   template <int dim>
   void ElasticRun<dim>::set_start()
   {
@@ -147,8 +196,15 @@ namespace PeriDeal
   {
     if (!scene.elasticity.is_static())
       return;
+    take_temperature();
     context.progress.doing("solving " + this->name());
     begin_loading(context);
+    if (heat != nullptr && !scene.boundary_conditions.dirichlet.empty() && op().brittle() &&
+        op().n_broken_bonds() > 0)
+      context.record.notes.push_back(
+        this->name() + ": " + readable_count(op().n_broken_bonds()) +
+          " bonds broke at t = 0 already. 'Dirichlet' in section 'Boundary conditions' gives its sides their temperature at once, so that the outermost nodes "
+          "are stretched against the next ones by all of the jump, however fine the lattice. 'Convection', or a 'Dirichlet' value that begins at the initial one, lets the heat in gradually.");
     if (scene.time.steady)
       context.progress.line(this->name() + ": " + std::to_string(n_iterations) + " iterations");
   }
@@ -205,6 +261,8 @@ namespace PeriDeal
   {
     if (!loading)
       return move(from, to, report, context);
+    if (scene.warms_slowly())
+      take_temperature();
     Timings::Scope scope(this->timings, "solving");
     loading->step(displacement, to);
     n_iterations = loading->n_iterations();
@@ -250,6 +308,39 @@ namespace PeriDeal
     // A step costs about as much as the product with what is stored.
     return std::max(1., span / stepper->current_step()) *
            static_cast<double>(size.unknowns + size.nonzeros + size.bonds);
+  }
+
+
+  template <int dim>
+  double ElasticRun<dim>::time_of_run(const std::vector<double> &times,
+                                      const bool,
+                                      const RunContext<dim> &context,
+                                      double                &memory)
+  {
+    if (!stepper)
+      {
+        const auto &models = scene.general.models;
+        const auto  number = std::find_if(models.begin(), models.end(), [this](const auto kind) {
+          return to_string(kind) == this->name();
+        });
+        return time_of_equilibria(scene,
+                                  op(),
+                                  number - models.begin(),
+                                  scene.time.steady ? 1. :
+                                                      std::max(scene.time.end_time / load_step(),
+                                                               1. * times.size()),
+                                  this->dofs().get_communicator(),
+                                  memory);
+      }
+    // By its first steps.
+    const double step = stepper->current_step(), end = scene.time.end_time;
+    const double from = std::min(step, end), to = std::min(4. * step, end);
+    stepper->advance(displacement, velocity, 0., from);
+    if (!(to > from))
+      return 0.;
+    const double before = context.progress.elapsed();
+    stepper->advance(displacement, velocity, from, to);
+    return (context.progress.elapsed() - before) * end / (to - from);
   }
 
 

@@ -110,9 +110,13 @@ namespace PeriDeal
             [&](const unsigned int i, const Point<dim> &p) { u.local_element(i) = initial(p); });
       }
 
-      RecoveryIndicators indicators(const Vector &u) const override
+      RecoveryIndicators indicators() const override
       {
-        return recovery_indicators<dim>(handler, scene.material, fem->cut_cells(), u);
+        this->solution.update_ghost_values();
+        const RecoveryIndicators found =
+          recovery_indicators<dim>(handler, scene.material, fem->cut_cells(), this->solution);
+        this->solution.set_ghost_state(false);
+        return found;
       }
 
       void before_remesh() override
@@ -201,7 +205,7 @@ namespace PeriDeal
         return Utilities::MPI::sum(sum, handler.get_communicator());
       }
 
-      Difference error(const Vector                                    &u,
+      Difference difference_to(const Vector                                    &u,
                        const std::function<double(const Point<dim> &)> &exact) const override
       {
         if (scene.cracks.cracks.empty() || scene.cracks.mesh == CrackMesh::faces ||
@@ -218,7 +222,7 @@ namespace PeriDeal
         });
       }
 
-      std::vector<std::string> notes() const override
+      std::vector<std::string> own_notes() const override
       {
         if (!certificate || certificate->fault().empty())
           return {};

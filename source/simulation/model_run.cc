@@ -78,7 +78,10 @@ namespace PeriDeal
   std::vector<double> ModelRun<dim>::at_points(const PointEvaluator<dim> &reader,
                                                const std::vector<std::vector<double>> &) const
   {
-    return reader.evaluate(solution);
+    solution.update_ghost_values();
+    std::vector<double> values = reader.evaluate(solution);
+    solution.set_ghost_state(false);
+    return values;
   }
 
 
@@ -87,8 +90,12 @@ namespace PeriDeal
   {
     std::vector<OutputField> list{{field_name(), {solution}}};
     list[0].components[0].update_ghost_values();
-    for (OutputField &field : derived_fields(solution, t))
-      list.push_back(std::move(field));
+    solution.update_ghost_values();
+    with_formulas(this->dofs().get_communicator(), [&] {
+      for (OutputField &field : derived_fields(solution, t))
+        list.push_back(std::move(field));
+    });
+    solution.set_ghost_state(false);
     return list;
   }
 
@@ -162,7 +169,8 @@ namespace PeriDeal
                               const std::function<void(const double)> &,
                               const RunContext<dim> &)
   {
-    advance_through_events(from, to);
+    if (!scene.time.steady)
+      advance_through_events(from, to);
   }
 
 
@@ -172,6 +180,68 @@ namespace PeriDeal
     const OperatorSize size = op().size();
     return std::max(1., stepper->expected_applications(span)) *
            static_cast<double>(size.unknowns + size.nonzeros + size.bonds);
+  }
+
+
+  template <int dim>
+  void ModelRun<dim>::start_anew()
+  {
+    set_start(*this);
+  }
+
+
+  template <int dim>
+  std::vector<std::string> ModelRun<dim>::notes() const
+  {
+    std::vector<std::string> list;
+    for (const std::string &note : own_notes())
+      list.push_back(this->name() + ": " + note);
+    return list;
+  }
+
+
+  template <int dim>
+  Difference ModelRun<dim>::error(const ExactValue<dim> &exact) const
+  {
+    solution.update_ghost_values();
+    const Difference result = difference_to(solution, exact);
+    solution.set_ghost_state(false);
+    return result;
+  }
+
+
+  template <int dim>
+  double ModelRun<dim>::time_of_run(const std::vector<double> &times,
+                                    const bool                 says,
+                                    const RunContext<dim>     &context,
+                                    double &)
+  {
+    if (says)
+      context.progress.line(this->name() + ":");
+    if (scene.time.steady)
+      {
+        if (says)
+          context.progress.line("  steady: one linear solve, about 20 iterations");
+        // Each iteration with its preconditioner takes some 6 applications.
+        return 20. * 6. * time_of_application(op());
+      }
+    const double n = expected_applications(times), time = n > 0. ? n * time_of_application(op()) : -1.;
+    if (!says)
+      return time;
+    const Spectrum     spectrum = op().spectrum();
+    std::ostringstream out;
+    out << "  largest eigenvalue: sharp bound " << spectrum.sharp << ", safe bound " << spectrum.safe
+        << "\n"
+        << "  stable steps (sharp / safe): euler " << stable_step("euler", spectrum.sharp) << " / "
+        << stable_step("euler", spectrum.safe) << ", rk4 " << stable_step("rk4", spectrum.sharp)
+        << " / " << stable_step("rk4", spectrum.safe) << "\n"
+        << "  stepper: " << stepper->name();
+    context.progress.line(out.str());
+    if (n > 0.)
+      context.progress.line("  estimated: " +
+                            readable_count(static_cast<unsigned long long>(n)) +
+                            " operator applications, " + readable_duration(time));
+    return time;
   }
 
 
@@ -252,7 +322,12 @@ namespace PeriDeal
   {
     RunOutput<dim>     &output  = context.output;
     ResultRecord       &record  = context.record;
-    const Balance       balance = op().balance(solution, t, scene.time.steady);
+    Balance balance;
+    double  content = 0.;
+    with_formulas(this->dofs().get_communicator(), [&] {
+      balance = op().balance(solution, t, scene.time.steady);
+      content = scene.general.physics == Physics::moisture ? weight(solution) : balance.content;
+    });
     const PhysicsNames &names   = names_of(scene.general.physics);
     require_finite(
       {{"largest " + names.field, solution.linfty_norm()},
@@ -266,8 +341,7 @@ namespace PeriDeal
     const auto row = [&](const std::string &quantity, const double value) {
       output.add_row(this->name(), quantity, value, t);
     };
-    row(names.content,
-        scene.general.physics == Physics::moisture ? weight(solution) : balance.content);
+    row(names.content, content);
     for (const auto &[side, value] : balance.sides)
       row(names.flow + " through " + side, value);
     row(names.flow + " from sources", balance.sources);

@@ -32,6 +32,50 @@ namespace PeriDeal
 
 
   template <int dim>
+  Difference Problem<dim>::error(const ExactValue<dim> &) const
+  {
+    Assert(false, dealii::ExcNotImplemented());
+    return {};
+  }
+
+
+  template <int dim>
+  RecoveryIndicators Problem<dim>::indicators() const
+  {
+    Assert(false, dealii::ExcNotImplemented());
+    return {};
+  }
+
+
+  template <int dim>
+  void Problem<dim>::start_anew()
+  {
+    Assert(false, dealii::ExcNotImplemented());
+  }
+
+
+  template <int dim>
+  void Problem<dim>::before_remesh()
+  {
+    Assert(false, dealii::ExcNotImplemented());
+  }
+
+
+  template <int dim>
+  void Problem<dim>::after_remesh(const double, const bool)
+  {
+    Assert(false, dealii::ExcNotImplemented());
+  }
+
+
+  template <int dim>
+  void Problem<dim>::renew_stepper()
+  {
+    Assert(false, dealii::ExcNotImplemented());
+  }
+
+
+  template <int dim>
   void Problem<dim>::note_end(const RunContext<dim> &) const
   {}
 

@@ -22,7 +22,7 @@
 namespace PeriDeal
 {
   template <int dim>
-  struct RunContext;
+  class ModelRun;
 
   /**
    * A body that deforms, in one model of a scene: dim unknowns at each node, interleaved. Functions
@@ -53,6 +53,10 @@ namespace PeriDeal
     void        add_totals(const double t, const RunContext<dim> &context) override;
     void        note_end(const RunContext<dim> &context) const override;
     nlohmann::ordered_json describe_solving() const override;
+    double                 time_of_run(const std::vector<double> &times,
+                                       const bool                 says,
+                                       const RunContext<dim>     &context,
+                                       double                    &memory) override;
 
     /** Of slow loading: the time between two equilibria. Not collective. */
     double load_step() const;
@@ -75,6 +79,7 @@ namespace PeriDeal
     virtual std::vector<StressSample> stress_samples() const = 0;
 
     const Scene<dim>              &scene;
+    const ModelRun<dim>           *heat = nullptr; // what computes the temperature, if anything
     Vector                         displacement;
     Vector                         velocity;          // of a motion
     std::unique_ptr<MotionStepper> stepper;           // null in equilibrium
@@ -85,6 +90,7 @@ namespace PeriDeal
 
   private:
     void                   set_start();
+    void                   take_temperature();
     void                   begin_loading(const RunContext<dim> &context);
     void                   move(const double                             from,
                                 const double                             to,

@@ -34,6 +34,18 @@ namespace PeriDeal
     double                 work_of(const double span) const override;
     void                   add_totals(const double t, const RunContext<dim> &context) override;
     nlohmann::ordered_json describe_solving() const override;
+    Difference             error(const ExactValue<dim> &exact) const override;
+    std::vector<std::string> notes() const override;
+    double                 time_of_run(const std::vector<double> &times,
+                                       const bool                 says,
+                                       const RunContext<dim>     &context,
+                                       double                    &memory) override;
+
+    /** notes(), which begin with the name of the model. */
+    virtual std::vector<std::string> own_notes() const
+    {
+      return {};
+    }
 
     /** The steady state. */
     void solve();
@@ -44,8 +56,8 @@ namespace PeriDeal
     /** Make the stepper and begin the balance of heat. Throws UserError. */
     void begin_stepping();
 
-    /** After the mesh has changed: a stepper of the new operator, with the cost of the old one. */
-    void renew_stepper();
+    void start_anew() override;
+    void renew_stepper() override;
 
     /** Of the operator, until the last of some ascending times; not known if not positive. */
     double expected_applications(const std::vector<double> &times) const;
@@ -58,32 +70,6 @@ namespace PeriDeal
     /** Initial value on the unknowns. */
     virtual void set_initial_value(Vector &u) const = 0;
 
-    /**
-     * Square of the error that the recovered flux shows in each cell (recovery_indicators()); u has
-     * up-to-date ghosts.
-     */
-    virtual RecoveryIndicators indicators(const Vector &) const
-    {
-      Assert(false, dealii::ExcNotImplemented());
-      return {};
-    }
-
-    /** The mesh is about to be adapted: what the solution needs to move on. */
-    virtual void before_remesh()
-    {
-      Assert(false, dealii::ExcNotImplemented());
-    }
-
-    /**
-     * Unknowns, operator and solution on the mesh as it is now, with the cracks of time t. The heat
-     * in the body stays what it was, unless steady. Steppers of the old operator must not be used
-     * any more.
-     */
-    virtual void after_remesh(const double, const bool)
-    {
-      Assert(false, dealii::ExcNotImplemented());
-    }
-
     /** The name of the field of the solution. Not collective. */
     virtual std::string field_name() const = 0;
 
@@ -95,7 +81,7 @@ namespace PeriDeal
      */
     virtual double weight(const Vector &u) const = 0;
 
-    virtual Difference error(
+    virtual Difference difference_to(
       const Vector                                            &u,
       const std::function<double(const dealii::Point<dim> &)> &exact) const = 0;
 

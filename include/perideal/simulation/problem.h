@@ -5,7 +5,9 @@
 
 #include <deal.II/dofs/dof_handler.h>
 
+#include <perideal/analysis/comparison.h>
 #include <perideal/analysis/point_evaluator.h>
+#include <perideal/analysis/recovery.h>
 #include <perideal/base/timing.h>
 #include <perideal/mesh/nodes.h>
 #include <perideal/operators/operator.h>
@@ -23,6 +25,11 @@ namespace PeriDeal
   struct CouplingCertificate;
   template <int dim>
   struct RunContext;
+
+  /** The value of the exact solution at a place. */
+  template <int dim>
+  using ExactValue = std::function<double(const dealii::Point<dim> &)>;
+
 
   /**
    * One physics of one model of a scene during a run: its unknowns on the shared mesh, its
@@ -93,6 +100,40 @@ namespace PeriDeal
 
     /** Rows of totals.csv, and what the summary says of a time. Throws UserError if not finite. */
     virtual void add_totals(const double t, const RunContext<dim> &context) = 0;
+
+    /** Against what is known of the solution. Only where Reference/Solution may be given. */
+    virtual Difference error(const ExactValue<dim> &exact) const;
+
+    /**
+     * Square of the error that the recovered flux shows in each cell, which guides the mesh. Only
+     * where meshes are adapted, as the next three.
+     */
+    virtual RecoveryIndicators indicators() const;
+
+    /** The initial state on the mesh as it is now. */
+    virtual void start_anew();
+
+    /** The mesh is about to be adapted: what the solution needs to move on. */
+    virtual void before_remesh();
+
+    /**
+     * Unknowns, operator and solution on the mesh as it is now, with the cracks of time t. The heat
+     * in the body stays what it was, unless steady.
+     */
+    virtual void after_remesh(const double t, const bool steady);
+
+    /** After that: a stepper of the new operator, with the cost of the old one. */
+    virtual void renew_stepper();
+
+    /**
+     * Seconds of processor time that the run until the last of some ascending times will take;
+     * negative if not known. After begin(). @param says more of it in lines @param memory raised to
+     * what that takes
+     */
+    virtual double time_of_run(const std::vector<double> &times,
+                               const bool                 says,
+                               const RunContext<dim>     &context,
+                               double                    &memory) = 0;
 
     /** What the user should know at the end. */
     virtual void note_end(const RunContext<dim> &context) const;
