@@ -3,6 +3,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
+#include <perideal/simulation/estimate.h>
 #include <perideal/simulation/model_run.h>
 #include <perideal/solvers/static_solver.h>
 #include <perideal/solvers/step_tools.h>
@@ -13,6 +14,7 @@
 
 #include "elastic_fields.h"
 #include "elastic_notes.h"
+#include "elastic_phases.h"
 #include "elastic_sides.h"
 #include "elastic_summary.h"
 #include "finite_results.h"
@@ -161,17 +163,24 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticRun<dim>::begin_motion(const RunContext<dim> &context)
+  StepperOptions ElasticRun<dim>::stepper_options() const
   {
     StepperOptions options;
     options.time_step        = scene.time.time_step;
     options.solver_tolerance = scene.solver.tolerance;
     options.max_iterations   = scene.solver.max_iterations;
     options.direct_up_to     = scene.solver.direct_up_to;
+    return options;
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::begin_motion(const RunContext<dim> &context)
+  {
     Timings::Scope scope(this->timings, "stepper");
     set_start();
     op().linearize(displacement);
-    stepper     = make_motion_stepper(scene.time.stepper, op(), options);
+    stepper     = make_motion_stepper(scene.time.stepper, op(), stepper_options());
     stable_step = stable_motion_step(op());
     std::ostringstream line;
     line << this->name() << ": stepper " << stepper->name() << ", step " << stepper->current_step()
@@ -203,8 +212,8 @@ namespace PeriDeal
         op().n_broken_bonds() > 0)
       context.record.notes.push_back(
         this->name() + ": " + readable_count(op().n_broken_bonds()) +
-          " bonds broke at t = 0 already. 'Dirichlet' in section 'Boundary conditions' gives its sides their temperature at once, so that the outermost nodes "
-          "are stretched against the next ones by all of the jump, however fine the lattice. 'Convection', or a 'Dirichlet' value that begins at the initial one, lets the heat in gradually.");
+        " bonds broke at t = 0 already. 'Dirichlet' in section 'Boundary conditions' gives its sides their temperature at once, so that the outermost nodes "
+        "are stretched against the next ones by all of the jump, however fine the lattice. 'Convection', or a 'Dirichlet' value that begins at the initial one, lets the heat in gradually.");
     if (scene.time.steady)
       context.progress.line(this->name() + ": " + std::to_string(n_iterations) + " iterations");
   }
@@ -312,6 +321,27 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ElasticRun<dim>::take_sample(const RunContext<dim> &, ModelEstimate &estimate)
+  {
+    op().initialize_vector(displacement);
+    if (scene.elasticity.is_static())
+      {
+        if (scene.elasticity.solver == ElasticSolver::linear)
+          estimate.time_of_solution =
+            time_of_linear_equilibrium(scene.solver,
+                                       op(),
+                                       scene.time.steady ? 0. : scene.time.end_time,
+                                       false);
+        return;
+      }
+    // About as many steps as a run takes, whose first step is this one.
+    const double step =
+      make_motion_stepper(scene.time.stepper, op(), stepper_options())->current_step();
+    estimate.applications = step > 0. ? scene.time.end_time / step : 0.;
+  }
+
+
+  template <int dim>
   double ElasticRun<dim>::time_of_run(const std::vector<double> &times,
                                       const bool,
                                       const RunContext<dim> &context,
@@ -323,14 +353,13 @@ namespace PeriDeal
         const auto  number = std::find_if(models.begin(), models.end(), [this](const auto kind) {
           return to_string(kind) == this->name();
         });
-        return time_of_equilibria(scene,
-                                  op(),
-                                  number - models.begin(),
-                                  scene.time.steady ? 1. :
-                                                      std::max(scene.time.end_time / load_step(),
-                                                               1. * times.size()),
-                                  this->dofs().get_communicator(),
-                                  memory);
+        return time_of_equilibria(
+          scene,
+          op(),
+          number - models.begin(),
+          scene.time.steady ? 1. : std::max(scene.time.end_time / load_step(), 1. * times.size()),
+          this->dofs().get_communicator(),
+          memory);
       }
     // By its first steps.
     const double step = stepper->current_step(), end = scene.time.end_time;
@@ -511,6 +540,39 @@ namespace PeriDeal
         add_all(energy, energy.dissipated);
       }
     return balance;
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::describe_end(nlohmann::ordered_json &entry, ResultRecord &record) const
+  {
+    if (const auto phases =
+          describe_phases(*this, scene, record.totals, this->dofs().get_communicator());
+        !phases.empty())
+      entry["phases"] = phases;
+  }
+
+
+  template <int dim>
+  void ElasticRun<dim>::describe_scene(nlohmann::ordered_json &summary, const bool at_the_end) const
+  {
+    using json        = nlohmann::ordered_json;
+    summary["solver"] = scene.elasticity.solver_name();
+    summary["sides"]  = describe_elastic_sides(scene);
+    Point<dim> lower = scene.domain.lower, upper = scene.domain.upper;
+    for (unsigned int d = 0; d < dim && !scene.domain.has_extra_layers(); ++d)
+      {
+        lower[d] = summary["domain"]["lower"][d];
+        upper[d] = summary["domain"]["upper"][d];
+      }
+    summary["values on sides"] = values_on_sides(scene,
+                                                 lower,
+                                                 upper,
+                                                 scene.time.steady ? 0. : scene.time.end_time,
+                                                 summary.value("places", json::object()));
+    if (const std::string reason = no_stress_intensity(scene, summary["models"]);
+        at_the_end && !reason.empty())
+      summary["no stress intensity"] = reason;
   }
 
 

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/user_error.h>
+#include <perideal/simulation/estimate.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "finite_results.h"
 #include "model_runs.h"
 #include "run_context.h"
+#include "scene_sample.h"
 #include "with_formulas.h"
 
 namespace PeriDeal
@@ -211,6 +213,19 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ModelRun<dim>::take_sample(const RunContext<dim> &context, ModelEstimate &estimate)
+  {
+    begin(context);
+    const double start = processor_seconds();
+    settle(context);
+    if (scene.time.steady)
+      estimate.time_of_solution = processor_seconds() - start;
+    else
+      estimate.applications = stepper->expected_applications(scene.time.end_time);
+  }
+
+
+  template <int dim>
   double ModelRun<dim>::time_of_run(const std::vector<double> &times,
                                     const bool                 says,
                                     const RunContext<dim>     &context,
@@ -225,21 +240,21 @@ namespace PeriDeal
         // Each iteration with its preconditioner takes some 6 applications.
         return 20. * 6. * time_of_application(op());
       }
-    const double n = expected_applications(times), time = n > 0. ? n * time_of_application(op()) : -1.;
+    const double n    = expected_applications(times),
+                 time = n > 0. ? n * time_of_application(op()) : -1.;
     if (!says)
       return time;
     const Spectrum     spectrum = op().spectrum();
     std::ostringstream out;
-    out << "  largest eigenvalue: sharp bound " << spectrum.sharp << ", safe bound " << spectrum.safe
-        << "\n"
+    out << "  largest eigenvalue: sharp bound " << spectrum.sharp << ", safe bound "
+        << spectrum.safe << "\n"
         << "  stable steps (sharp / safe): euler " << stable_step("euler", spectrum.sharp) << " / "
         << stable_step("euler", spectrum.safe) << ", rk4 " << stable_step("rk4", spectrum.sharp)
         << " / " << stable_step("rk4", spectrum.safe) << "\n"
         << "  stepper: " << stepper->name();
     context.progress.line(out.str());
     if (n > 0.)
-      context.progress.line("  estimated: " +
-                            readable_count(static_cast<unsigned long long>(n)) +
+      context.progress.line("  estimated: " + readable_count(static_cast<unsigned long long>(n)) +
                             " operator applications, " + readable_duration(time));
     return time;
   }
@@ -320,15 +335,15 @@ namespace PeriDeal
   template <int dim>
   void ModelRun<dim>::add_totals(const double t, const RunContext<dim> &context)
   {
-    RunOutput<dim>     &output  = context.output;
-    ResultRecord       &record  = context.record;
-    Balance balance;
-    double  content = 0.;
+    RunOutput<dim> &output = context.output;
+    ResultRecord   &record = context.record;
+    Balance         balance;
+    double          content = 0.;
     with_formulas(this->dofs().get_communicator(), [&] {
       balance = op().balance(solution, t, scene.time.steady);
       content = scene.general.physics == Physics::moisture ? weight(solution) : balance.content;
     });
-    const PhysicsNames &names   = names_of(scene.general.physics);
+    const PhysicsNames &names = names_of(scene.general.physics);
     require_finite(
       {{"largest " + names.field, solution.linfty_norm()},
        {names.flow, balance.throughput()},

@@ -3,6 +3,8 @@
 
 #include <perideal/simulation/problem.h>
 
+#include <nlohmann/json.hpp>
+
 namespace PeriDeal
 {
   template <int dim>
@@ -73,6 +75,11 @@ namespace PeriDeal
   {
     Assert(false, dealii::ExcNotImplemented());
   }
+
+
+  template <int dim>
+  void Problem<dim>::describe_end(nlohmann::ordered_json &, ResultRecord &) const
+  {}
 
 
   template <int dim>

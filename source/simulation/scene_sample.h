@@ -46,6 +46,21 @@ namespace PeriDeal
   template <int dim>
   Sample take_sample(const Scene<dim> &scene, const MPI_Comm communicator);
 
+  /** Of this process, so that other programs on the machine do not count. */
+  double processor_seconds();
+
+  /** In such seconds. Collective. */
+  double time_of_application(const Operator &op);
+
+  /**
+   * Of one equilibrium; -1 where the solver does not get there: the run will say why. Throws
+   * UserError, where it must be held, for a body with a part that nothing holds. Collective.
+   */
+  double time_of_linear_equilibrium(const SolverControlParameters &control,
+                                    ElasticOperator               &op,
+                                    const double                   t,
+                                    const bool                     must_be_held);
+
   /**
    * Seconds that the equilibria of an elastic body take, negative if that is not known: a linear
    * one is solved, of a large body on a coarser lattice. Bonds that break take more. @param model

@@ -7,7 +7,6 @@
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
-#include <perideal/operators/bond_operator.h>
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
@@ -15,13 +14,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <utility>
 
 #include "check_sides.h"
 #include "closing.h"
-#include "crack_note.h"
 #include "model_comparison.h"
+#include "problem_factory.h"
 #include "result_record.h"
 #include "run_context.h"
 #include "summary_parts.h"
@@ -42,14 +42,11 @@ namespace PeriDeal
     , progress(communicator, quiet)
     , record(std::make_unique<ResultRecord>())
     , output(std::make_unique<RunOutput<dim>>(scene, *record))
-  {
-    Assert(scene.general.physics != Physics::elasticity, ExcMessage("see ElasticSimulation"));
-  }
+  {}
 
 
   template <int dim>
-  Simulation<dim>::~Simulation()
-  {}
+  Simulation<dim>::~Simulation() = default;
 
 
   template <int dim>
@@ -65,30 +62,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::build_on(const std::shared_ptr<Triangulation<dim>> &given_mesh)
+  RunContext<dim> Simulation<dim>::context() const
   {
-    mesh = given_mesh;
-    build();
-    make_steppers();
+    return {progress, *record, *output};
   }
 
 
   template <int dim>
-  const ModelRun<dim> &Simulation<dim>::model(const unsigned int number) const
-  {
-    return *models[number];
-  }
-
-
-  template <int dim>
-  const std::vector<std::string> &Simulation<dim>::notes() const
-  {
-    return record->notes;
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::build_mesh_of_run()
+  void Simulation<dim>::build()
   {
     const unsigned int n_proc = Utilities::MPI::n_mpi_processes(communicator);
     progress.line(scene.general.title + "  (" + text.file_name + ", " + std::to_string(n_proc) +
@@ -99,27 +80,29 @@ namespace PeriDeal
       mesh = build_mesh(scene, communicator, record->notes);
       set_material_ids(*mesh, scene.material.phases.all());
     }
-    check_points_of_parts(scene, *mesh, record->notes);
-    note_missing_crack_scaling(scene, record->notes);
+    check_mesh();
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
+    for (const ModelKind model : scene.general.models)
+      {
+        progress.doing("building " + to_string(model));
+        problems.push_back(make_problem(model, *mesh, scene));
+        describe(*problems.back());
+        for (const std::string &note : problems.back()->notes())
+          record->notes.push_back(note);
+      }
+    companions = make_companions(problems, *mesh, scene, record->notes);
+    prepare_adaptation();
+    make_reference();
+    Timings::Scope scope(timings, "output");
+    output->find_points(reported());
+    for (const std::string &note : output->gaps_in_line())
+      record->notes.push_back(note);
   }
 
 
   template <int dim>
-  void Simulation<dim>::build()
+  void Simulation<dim>::check_mesh()
   {
-    if (!mesh)
-      build_mesh_of_run();
-    if (!scene.cracks.tips.empty())
-      {
-        const CrackHistory<dim> history = scene.crack_history();
-        record->notes.push_back(
-          "the cracks grow in " + std::to_string(history.events().size()) +
-          " events, between which no tip advances more than " +
-          number_text(history.longest_advance()) +
-          "; bonds are cut too early or too late by at most the time that it needs for half of that ('Growth step' in section "
-          "'Cracks').");
-      }
     unsigned int n_own_cells = 0;
     for (const auto &cell : mesh->active_cell_iterators())
       n_own_cells += cell->is_locally_owned() ? 1 : 0;
@@ -130,27 +113,13 @@ namespace PeriDeal
                           " processes without any. Use fewer processes or more 'Cells' (section "
                           "'Domain')."));
     with_formulas(communicator, [&] { check_sides(scene, *mesh); });
-    if (scene.peridynamics.flux_treatment != FluxTreatment::natural &&
-        scene.boundary_conditions.flux.empty())
-      record->notes.push_back(
-        "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' (an insulated side "
-        "needs 'side: 0' there).");
-    for (const ModelKind model : scene.general.models)
-      {
-        if (output->is_open())
-          progress.doing("building " + to_string(model));
-        with_formulas(communicator, [&] { models.push_back(make_model_run(model, *mesh, scene)); });
-        describe(*models.back());
-        for (const std::string &note : models.back()->notes())
-          record->notes.push_back(models.back()->name() + ": " + note);
-      }
-    prepare_adaptation();
-    make_reference();
+    check_points_of_parts(scene, *mesh, record->notes);
+    note_scene(scene, *mesh, record->notes);
   }
 
 
   template <int dim>
-  void Simulation<dim>::describe(const ModelRun<dim> &model) const
+  void Simulation<dim>::describe(const Problem<dim> &model) const
   {
     const OperatorSize size = model.op().size();
     std::string        line = model.name() + ": " + readable_count(size.unknowns) + " unknowns";
@@ -158,7 +127,8 @@ namespace PeriDeal
       line += ", " + readable_count(size.bonds) + " bonds";
     if (size.nonzeros > 0)
       line += ", " + readable_count(size.nonzeros) +
-              (size.form == "lattice" ? " stored corrections" : " stored numbers");
+              (size.form == "lattice" && model.n_components() == 1 ? " stored corrections" :
+                                                                     " stored numbers");
     const double memory = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
     progress.line(line + ", " + readable_bytes(memory));
     for (const auto &[name, value] : model.settings())
@@ -212,11 +182,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<const Problem<dim> *> Simulation<dim>::problems() const
+  std::vector<const Problem<dim> *> Simulation<dim>::reported() const
   {
     std::vector<const Problem<dim> *> list;
-    for (const auto &model : models)
-      list.push_back(model.get());
+    for (const auto &problem : problems)
+      list.push_back(problem.get());
     return list;
   }
 
@@ -224,6 +194,7 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::run()
   {
+    require_computable(scene);
     require_memory(scene, communicator);
     output->open(text, communicator);
     nlohmann::ordered_json summary;
@@ -238,28 +209,22 @@ namespace PeriDeal
   nlohmann::ordered_json Simulation<dim>::compute()
   {
     build();
-    {
-      Timings::Scope scope(timings, "output");
-      output->find_points(problems());
-      for (const std::string &note : output->gaps_in_line())
-        record->notes.push_back(note);
-    }
-    make_steppers();
-    const std::vector<double> times = output_times();
-    if (scene.time.steady)
-      progress.line("steady state");
+    begin();
     progress.begin("time");
-    if (scene.output.starts_at_zero())
-      with_formulas(communicator, [&] { write_start(); });
-    for (const double t : times)
+    if (!scene.time.steady)
+      settle();
+    const bool at_stops = tells_at_stops();
+    if (at_stops)
+      add_totals(0.);
+    if (scene.output.starts_at_zero() && !scene.time.steady)
+      write_fields(0.);
+    if (at_stops)
+      end_output(0.);
+    for (const double t : output_times())
       {
         advance_to(t);
         progress.update(scene.time.steady ? 1. : t / scene.time.end_time);
-        progress.doing("writing results");
-        Timings::Scope scope(timings, "output");
-        with_formulas(communicator, [&] { write_output(t); });
-        output->end_time([&] { return summary_now(); },
-                         scene.time.steady ? "the steady state" : "until t = " + full_precision(t));
+        write_output(t);
       }
     progress.end();
     if (n_adaptations > 0)
@@ -267,11 +232,63 @@ namespace PeriDeal
                               (n_adaptations == 1 ? " time" : " times") + "; it has " +
                               readable_count(mesh->n_global_active_cells()) +
                               " cells at the end ('Zone = adaptive' in section 'Coupling').");
+    for (const auto &problem : problems)
+      problem->note_end(context());
     for (const std::string &note : record->notes)
       progress.note(note);
-    const nlohmann::ordered_json summary = summary_now();
+    const nlohmann::ordered_json summary = summary_now(true);
     output->complete(summary);
     return summary;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::begin()
+  {
+    for (const auto *list : {&companions, &problems})
+      for (const auto &problem : *list)
+        problem->begin(context());
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::settle()
+  {
+    for (const auto &companion : companions)
+      {
+        Timings::Scope scope(timings, "heat problem");
+        companion->settle(context());
+      }
+    for (const auto &problem : problems)
+      {
+        progress.doing("solving " + problem->name());
+        problem->settle(context());
+      }
+  }
+
+
+  template <int dim>
+  bool Simulation<dim>::tells_at_stops() const
+  {
+    return std::any_of(problems.begin(), problems.end(), [](const auto &problem) {
+      return problem->tells_at_stops();
+    });
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::add_totals(const double t)
+  {
+    for (const auto &problem : problems)
+      problem->add_totals(t, context());
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::end_output(const double t)
+  {
+    output->end_time([&] { return summary_now(false); },
+                     scene.time.steady ? "the steady state" : "until t = " + full_precision(t));
   }
 
 
@@ -280,51 +297,40 @@ namespace PeriDeal
   {
     if (!exact)
       return;
-    for (const auto &model : models)
-      {
-        const Difference error = model->error(model->solution, [&](const Point<dim> &p) {
+    for (const auto &problem : problems)
+      with_formulas(communicator, [&] {
+        const Difference error = problem->error([&](const Point<dim> &p) {
           double x[dim];
           for (unsigned int d = 0; d < dim; ++d)
             x[d] = p[d];
           return exact->value(x, t);
         });
-        record->errors[model->name()]["relative l2"].push_back({t, error.relative_l2});
-        record->errors[model->name()]["maximum"].push_back({t, error.maximum});
-      }
+        record->errors[problem->name()]["relative l2"].push_back({t, error.relative_l2});
+        record->errors[problem->name()]["maximum"].push_back({t, error.maximum});
+      });
   }
 
 
   template <int dim>
   void Simulation<dim>::write_output(const double t)
   {
+    for (const auto &problem : problems)
+      problem->examine(t);
+    progress.doing("writing results");
+    Timings::Scope scope(timings, "output");
     if (!readers_fit)
-      output->find_points(problems());
+      output->find_points(reported());
     readers_fit = true;
-    for (auto &model : models) // refuses what is not finite before it is written
-      model->add_totals(t, {progress, *record, *output});
-    for (auto &model : models)
-      model->solution.update_ghost_values();
+    if (!tells_at_stops()) // refuses what is not finite before it is written
+      add_totals(t);
     typename RunOutput<dim>::Values known;
     if (exact)
       known = [&](const std::vector<double> &p) { return exact->value(p.data(), t); };
-    output->write_points(t, known);
+    with_formulas(communicator, [&] { output->write_points(t, known); });
     add_errors(t);
-    compare_models(problems(), scene.domain, t, *record);
+    compare_models(reported(), scene.domain, t, *record);
     write_fields(t);
-    for (auto &model : models)
-      model->solution.set_ghost_state(false);
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::write_start()
-  {
-    Timings::Scope scope(timings, "output");
-    for (auto &model : models)
-      model->solution.update_ghost_values();
-    write_fields(0.);
-    for (auto &model : models)
-      model->solution.set_ghost_state(false);
+    end_output(t);
   }
 
 
@@ -332,28 +338,234 @@ namespace PeriDeal
   void Simulation<dim>::write_fields(const double t)
   {
     std::map<std::string, OutputField> more;
-    for (Vector &difference : difference_of_models(problems()))
-      more.emplace(to_string(ModelKind::peridynamics),
-                   OutputField{"peridynamics_minus_finite_elements", {std::move(difference)}});
+    if (problems[0]->n_components() == 1)
+      for (Vector &difference : difference_of_models(reported()))
+        more.emplace(to_string(ModelKind::peridynamics),
+                     OutputField{"peridynamics_minus_finite_elements", {std::move(difference)}});
     output->write_fields(t, more);
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                              \
-  template Simulation<dim>::Simulation(const Scene<dim> &,                                     \
-                                       const SceneText &,                                      \
-                                       const MPI_Comm,                                         \
-                                       const bool);                                            \
-  template Simulation<dim>::~Simulation();                                                     \
-  template void Simulation<dim>::build();                                                      \
-  template void Simulation<dim>::build_on(const std::shared_ptr<Triangulation<dim>> &);        \
-  template const ModelRun<dim>              &Simulation<dim>::model(const unsigned int) const; \
-  template const std::vector<std::string>   &Simulation<dim>::notes() const;                   \
-  template std::vector<const Problem<dim> *> Simulation<dim>::problems() const;                \
-  template std::vector<double>               Simulation<dim>::output_times() const;            \
-  template void                              Simulation<dim>::run();
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  template <int dim>
+  nlohmann::ordered_json Simulation<dim>::summary_now(const bool at_the_end) const
+  {
+    nlohmann::ordered_json summary = PeriDeal::describe_scene(scene, text, *mesh, communicator);
+    if (scene.domain.coarsening > 0)
+      summary["mesh"] = {{"coarsening", scene.domain.coarsening}, {"adaptations", n_adaptations}};
+    describe_run(scene, *mesh, *record, timings, summary);
+    summary["write times"] = output_times();
+    for (const auto &problem : problems)
+      {
+        auto &entry = summary["models"][problem->name()];
+        entry       = describe_problem<dim>(*problem, problem->describe_solving(), *record);
+        if (at_the_end)
+          problem->describe_end(entry, *record);
+      }
+    problems[0]->describe_scene(summary, at_the_end);
+    return summary;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::dry_run()
+  {
+    require_computable(scene);
+    const double before = Utilities::MPI::sum(resident_memory(), communicator);
+    build();
+    begin();
+    double computing = 0., memory = 0.; // negative if it is not known
+    for (const auto *list : {&companions, &problems})
+      for (const auto &problem : *list)
+        {
+          const double own =
+            problem->time_of_run(output_times(), list == &problems, context(), memory);
+          computing = own >= 0. && computing >= 0. ? computing + own : -1.;
+        }
+    if (grading)
+      progress.line("With 'Zone = adaptive' all figures are those of the mesh at the start.");
+    for (const std::string &note : record->notes)
+      progress.note(note);
+    std::vector<double> components;
+    for (const auto &problem : problems)
+      {
+        components.push_back(problem->n_components() == 1 && problems.size() > 1 &&
+                                 problem->name() == to_string(ModelKind::peridynamics) ?
+                               1. :
+                               0.);
+        for (const OutputField &field : problem->fields(0.))
+          components.back() += field.components.size();
+      }
+    for (const std::string &line : describe_costs(scene,
+                                                  computing,
+                                                  before + memory,
+                                                  mesh->n_global_active_cells(),
+                                                  components,
+                                                  communicator))
+      progress.line(line);
+    progress.line("The scene is valid. Nothing was computed.");
+  }
+
+
+  template <int dim>
+  double Simulation<dim>::share_done(const unsigned int n, const double to) const
+  {
+    double some = 0., all = 0.;
+    for (unsigned int k = 0; k < problems.size(); ++k)
+      {
+        const double work = problems[k]->work_of(to - now);
+        all += work;
+        if (k < n)
+          some += work;
+      }
+    return (now + some / all * (to - now)) / scene.time.end_time;
+  }
+
+
+  template <int dim>
+  std::vector<double> Simulation<dim>::stops_until(const double t) const
+  {
+    std::vector<double> stops;
+    for (const auto &problem : problems)
+      for (const double stop : problem->stops(now, t))
+        stops.push_back(stop);
+    std::sort(stops.begin(), stops.end());
+    stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+    return stops;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::advance_to(const double t)
+  {
+    if (scene.time.steady)
+      return find_steady_state();
+    if (!(t > now))
+      return;
+    const std::vector<double> stops = stops_until(t);
+    for (unsigned int n = 0; n < stops.size(); ++n)
+      {
+        while (now < stops[n])
+          {
+            const double next = grading ? grading->next_adaptation(now) :
+                                          std::numeric_limits<double>::infinity();
+            const double to   = std::min(stops[n], next);
+            advance_all(to, n + 1, stops.size(), t);
+            if (to == next)
+              adapt(to);
+          }
+        if (!tells_at_stops())
+          continue;
+        Timings::Scope scope(timings, "output");
+        add_totals(now);
+        end_output(now);
+        progress.update(now / scene.time.end_time);
+      }
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::advance_all(const double       to,
+                                    const unsigned int stop,
+                                    const unsigned int n_stops,
+                                    const double       t)
+  {
+    for (const auto &companion : companions)
+      {
+        Timings::Scope scope(timings, "heat problem");
+        companion->advance(
+          now,
+          to,
+          [](const double) {},
+          context());
+      }
+    for (unsigned int k = 0; k < problems.size(); ++k)
+      {
+        const double before = share_done(k, to), after = share_done(k + 1, to);
+        progress.doing(problems[k]->doing(stop, n_stops, t));
+        if (!problems[k]->tells_at_stops())
+          progress.advancing(now, to, before, after);
+        problems[k]->advance(
+          now,
+          to,
+          [&](const double share) { progress.update(before + share * (after - before)); },
+          context());
+      }
+    now = to;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::find_steady_state()
+  {
+    progress.line("steady state");
+    settle();
+    constexpr double settled = 0.05; // share of cells more or fewer
+    for (unsigned int round = 0; round < 2 * scene.domain.coarsening; ++round)
+      {
+        const double n_before = mesh->n_global_active_cells();
+        if (!adapt(0.))
+          break;
+        settle();
+        if (std::abs(mesh->n_global_active_cells() - n_before) < settled * n_before)
+          break;
+      }
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::prepare_adaptation()
+  {
+    if (scene.coupling.zone != ZoneKind::adaptive)
+      return;
+    grading = std::make_unique<Grading<dim>>(scene, *mesh);
+    if (scene.time.steady)
+      return;
+    for (unsigned int round = 0; round < scene.domain.coarsening && adapt(0.); ++round)
+      for (auto &problem : problems)
+        problem->start_anew();
+  }
+
+
+  template <int dim>
+  bool Simulation<dim>::adapt(const double t)
+  {
+    if (!grading)
+      return false;
+    grading->set_time(t);
+    const auto guide = std::find_if(problems.begin(), problems.end(), [](const auto &problem) {
+      return problem->name() == to_string(ModelKind::coupled);
+    });
+    const RecoveryIndicators found = (*guide)->indicators();
+    // A uniform field has fluxes of round-off only.
+    constexpr double round_off = 1e-20;
+    const double     least     = round_off * found.size / scene.domain.spacing().norm_square();
+    const double     goal      = scene.coupling.adaptive_tolerance;
+    const double     target =
+      goal * goal * std::max(found.energy, least) / mesh->n_global_active_cells();
+    {
+      Timings::Scope scope(timings, "mesh adaptation");
+      if (!grading->mark(*mesh, found.squares, target))
+        return false;
+      for (auto &problem : problems)
+        problem->before_remesh();
+      mesh->execute_coarsening_and_refinement();
+    }
+    with_formulas(communicator, [&] {
+      for (auto &problem : problems)
+        {
+          problem->after_remesh(t, scene.time.steady);
+        }
+    });
+    for (auto &problem : problems)
+      if (!scene.time.steady)
+        problem->renew_stepper();
+    readers_fit = false;
+    ++n_adaptations;
+    return true;
+  }
+
+
+  template class Simulation<1>;
+  template class Simulation<2>;
+  template class Simulation<3>;
 } // namespace PeriDeal

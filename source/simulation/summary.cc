@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/base/mpi.h>
-#include <deal.II/base/utilities.h>
+// What the summary says of a scene in which something diffuses.
 
-#include <perideal/base/user_error.h>
-#include <perideal/simulation/simulation.h>
-
-#include <cmath>
-#include <limits>
-#include <sstream>
+#include <perideal/simulation/model_run.h>
 
 #include "result_record.h"
-#include "summary_parts.h"
 
 namespace PeriDeal
 {
@@ -66,24 +59,18 @@ namespace PeriDeal
 
 
   template <int dim>
-  json Simulation<dim>::summary_now() const
+  void ModelRun<dim>::describe_scene(nlohmann::ordered_json &summary, const bool) const
   {
-    json summary = describe_scene(scene, text, *mesh, communicator);
-    if (scene.domain.coarsening > 0)
-      summary["mesh"] = {{"coarsening", scene.domain.coarsening}, {"adaptations", n_adaptations}};
     if (scene.general.physics == Physics::moisture)
       summary["moisture counts"] = counts_wetness(scene.material) ? "wetness" : "mass";
-    describe_run(scene, *mesh, *record, timings, summary);
-    summary["sides"]       = describe_sides(scene);
-    summary["write times"] = output_times();
-    summary["reference"]   = scene.reference.solution;
-    for (const auto &model : models)
-      summary["models"][model->name()] =
-        describe_problem<dim>(*model, model->describe_solving(), *record);
-    return summary;
+    summary["sides"]     = describe_sides(scene);
+    summary["reference"] = scene.reference.solution;
   }
 
-  template json Simulation<1>::summary_now() const;
-  template json Simulation<2>::summary_now() const;
-  template json Simulation<3>::summary_now() const;
+#define PERIDEAL_INSTANTIATE(dim) \
+  template void ModelRun<dim>::describe_scene(nlohmann::ordered_json &, const bool) const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

@@ -53,10 +53,13 @@ namespace PeriDeal
     void        add_totals(const double t, const RunContext<dim> &context) override;
     void        note_end(const RunContext<dim> &context) const override;
     nlohmann::ordered_json describe_solving() const override;
-    double                 time_of_run(const std::vector<double> &times,
-                                       const bool                 says,
-                                       const RunContext<dim>     &context,
-                                       double                    &memory) override;
+    void   describe_end(nlohmann::ordered_json &entry, ResultRecord &record) const override;
+    void   describe_scene(nlohmann::ordered_json &summary, const bool at_the_end) const override;
+    void   take_sample(const RunContext<dim> &context, ModelEstimate &estimate) override;
+    double time_of_run(const std::vector<double> &times,
+                       const bool                 says,
+                       const RunContext<dim>     &context,
+                       double                    &memory) override;
 
     /** Of slow loading: the time between two equilibria. Not collective. */
     double load_step() const;
@@ -91,6 +94,7 @@ namespace PeriDeal
   private:
     void                   set_start();
     void                   take_temperature();
+    StepperOptions         stepper_options() const;
     void                   begin_loading(const RunContext<dim> &context);
     void                   move(const double                             from,
                                 const double                             to,

@@ -34,12 +34,14 @@ namespace PeriDeal
     double                 work_of(const double span) const override;
     void                   add_totals(const double t, const RunContext<dim> &context) override;
     nlohmann::ordered_json describe_solving() const override;
-    Difference             error(const ExactValue<dim> &exact) const override;
+    void describe_scene(nlohmann::ordered_json &summary, const bool at_the_end) const override;
+    Difference               error(const ExactValue<dim> &exact) const override;
     std::vector<std::string> notes() const override;
-    double                 time_of_run(const std::vector<double> &times,
-                                       const bool                 says,
-                                       const RunContext<dim>     &context,
-                                       double                    &memory) override;
+    void   take_sample(const RunContext<dim> &context, ModelEstimate &estimate) override;
+    double time_of_run(const std::vector<double> &times,
+                       const bool                 says,
+                       const RunContext<dim>     &context,
+                       double                    &memory) override;
 
     /** notes(), which begin with the name of the model. */
     virtual std::vector<std::string> own_notes() const

@@ -23,6 +23,8 @@
 namespace PeriDeal
 {
   struct CouplingCertificate;
+  struct ModelEstimate;
+  struct ResultRecord;
   template <int dim>
   struct RunContext;
 
@@ -125,6 +127,9 @@ namespace PeriDeal
     /** After that: a stepper of the new operator, with the cost of the old one. */
     virtual void renew_stepper();
 
+    /** Of a coarse lattice, before begin(): what steps or solutions take. */
+    virtual void take_sample(const RunContext<dim> &context, ModelEstimate &estimate) = 0;
+
     /**
      * Seconds of processor time that the run until the last of some ascending times will take;
      * negative if not known. After begin(). @param says more of it in lines @param memory raised to
@@ -140,6 +145,12 @@ namespace PeriDeal
 
     /** Steps, iterations: for the summary. */
     virtual nlohmann::ordered_json describe_solving() const = 0;
+
+    /** What the summary says of this problem at the end of the run alone. */
+    virtual void describe_end(nlohmann::ordered_json &entry, ResultRecord &record) const;
+
+    /** What it says of the scene as this physics sees it: sides, loads. */
+    virtual void describe_scene(nlohmann::ordered_json &summary, const bool at_the_end) const = 0;
 
     /** What probes.csv, line.csv and grid.csv have at each point. Not collective. */
     virtual std::vector<std::string> columns() const = 0;

@@ -8,13 +8,14 @@
 #include <perideal/analysis/exact_solution.h>
 #include <perideal/base/progress.h>
 #include <perideal/mesh/grading.h>
-#include <perideal/simulation/model_run.h>
+#include <perideal/scene/scene.h>
+#include <perideal/simulation/problem.h>
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <functional>
-#include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace PeriDeal
 {
@@ -23,9 +24,10 @@ namespace PeriDeal
   class RunOutput;
 
   /**
-   * Owns and wires the members of a run: mesh, models, steppers, output. All models of the scene
-   * advance together from one output time to the next, so that they can be compared. No
-   * discretisation and no time stepping here. All functions are collective and throw UserError.
+   * Owns and wires the members of a run, whatever it computes: mesh, problems, output. All problems
+   * of the scene advance together from one output time to the next, so that they can be compared.
+   * No physics, no discretisation and no time stepping here. All functions are collective and throw
+   * UserError.
    */
   template <int dim>
   class Simulation
@@ -46,58 +48,46 @@ namespace PeriDeal
     /** Build everything, say what a run would need, compute and write nothing. */
     void dry_run();
 
-    /**
-     * Build everything on a mesh of the same scene, which others use too, for advance_to(). Nothing
-     * is written then.
-     */
-    void build_on(const std::shared_ptr<dealii::Triangulation<dim>> &given_mesh);
-
-    /**
-     * From the time reached so far, at first 0, to time t; where the scene is steady the steady
-     * state, whatever t.
-     */
-    void advance_to(const double t);
-
-    /** In the order of `Models`. Not collective. */
-    const ModelRun<dim> &model(const unsigned int number) const;
-
-    /** Of the fields of a model, as many as it writes at a time. Collective. */
-    unsigned int components_written(const unsigned int number) const;
-
-    /**
-     * Seconds that the models of a run take once they are built, as far as that can be told before;
-     * negative if not. Collective.
-     */
-    double time_of_run() const;
-
-    /** What the user should know. Not collective. */
-    const std::vector<std::string> &notes() const;
-
   private:
-    void                              build();
-    void                              build_mesh_of_run();
-    void                              make_steppers();
-    std::vector<const Problem<dim> *> problems() const;
-    void                              solve_models();
-    void                              prepare_adaptation();
-    bool                              adapt(const double t);
-    nlohmann::ordered_json            compute(); // the summary at the end
-    void                              make_reference();
-    void                              write_output(const double t);
-    void                              write_start(); // the first frame of a film
-    void                              add_errors(const double t);
-    void                              write_fields(const double t);
-    nlohmann::ordered_json            summary_now() const;
-    void                              describe(const ModelRun<dim> &model) const;
+    using List = std::vector<std::unique_ptr<Problem<dim>>>;
+
+    RunContext<dim>                   context() const;
+    std::vector<const Problem<dim> *> reported() const;
     std::vector<double>               output_times() const;
-    double                            time_of_run(const ModelRun<dim> &model) const;
-    double                            time_of_application(const ModelRun<dim> &model) const;
+
+    void build();
+    void check_mesh();
+    void describe(const Problem<dim> &problem) const;
+    void make_reference();
+    void prepare_adaptation();
+
+    nlohmann::ordered_json compute(); // the summary at the end
+    void                   begin();
+    void                   settle();
+    bool                   tells_at_stops() const;
+    void                   advance_to(const double t);
+    void                   find_steady_state();
+    std::vector<double>    stops_until(const double t) const;
+
+    /** To a time on the way to t, the given one of some stops. */
+    void advance_all(const double       to,
+                     const unsigned int stop,
+                     const unsigned int n_stops,
+                     const double       t);
 
     /**
-     * The share of the run that is done when the first n models have got to @p t and the others are
-     * where they are now, as far as sizes tell it. Collective.
+     * The share of the run that is done when the first n problems have got to @p t and the others
+     * are where they are now, as far as sizes tell it. Collective.
      */
     double share_done(const unsigned int n, const double t) const;
+    bool   adapt(const double t);
+
+    void                   write_output(const double t);
+    void                   write_fields(const double t);
+    void                   add_totals(const double t);
+    void                   add_errors(const double t);
+    void                   end_output(const double t);
+    nlohmann::ordered_json summary_now(const bool at_the_end) const;
 
     const Scene<dim>                           &scene;
     const SceneText                            &text;
@@ -105,7 +95,7 @@ namespace PeriDeal
     mutable Progress                            progress;
     Timings                                     timings;
     std::shared_ptr<dealii::Triangulation<dim>> mesh;
-    std::vector<std::unique_ptr<ModelRun<dim>>> models;
+    List                                        companions, problems; // advanced in this order
     std::unique_ptr<ExactSolution>              exact;
     std::unique_ptr<ResultRecord>               record;
     std::unique_ptr<RunOutput<dim>>             output;
