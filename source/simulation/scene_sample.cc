@@ -167,7 +167,7 @@ namespace PeriDeal
           for (const OutputField &field : problems[k]->fields(0.))
             sample.models[k].components += field.components.size();
           // The difference of the models.
-          if (problems.size() > 1 && problems[k]->n_components() == 1 &&
+          if (problems.size() > 1 && problems[k]->columns().size() == 1 &&
               scene.general.models[k] == ModelKind::peridynamics)
             sample.models[k].components += 1.;
         }

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/analysis/coupling_certificate.h>
+#include <perideal/base/memory.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
@@ -338,7 +339,7 @@ namespace PeriDeal
   void Simulation<dim>::write_fields(const double t)
   {
     std::map<std::string, OutputField> more;
-    if (problems[0]->n_components() == 1)
+    if (problems[0]->columns().size() == 1) // a single number at each node
       for (Vector &difference : difference_of_models(reported()))
         more.emplace(to_string(ModelKind::peridynamics),
                      OutputField{"peridynamics_minus_finite_elements", {std::move(difference)}});
@@ -388,7 +389,7 @@ namespace PeriDeal
     std::vector<double> components;
     for (const auto &problem : problems)
       {
-        components.push_back(problem->n_components() == 1 && problems.size() > 1 &&
+        components.push_back(problem->columns().size() == 1 && problems.size() > 1 &&
                                  problem->name() == to_string(ModelKind::peridynamics) ?
                                1. :
                                0.);
