@@ -136,6 +136,8 @@ namespace PeriDeal
   template <int dim>
   void ModelRun<dim>::renew_stepper()
   {
+    if (!stepper) // before begin(), or steady
+      return;
     const StepperCost before  = stepper->cost();
     const double      entered = stepper->entered();
     make_stepper();

@@ -558,8 +558,7 @@ namespace PeriDeal
         }
     });
     for (auto &problem : problems)
-      if (!scene.time.steady)
-        problem->renew_stepper();
+      problem->renew_stepper();
     readers_fit = false;
     ++n_adaptations;
     return true;
