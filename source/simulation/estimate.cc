@@ -274,8 +274,9 @@ namespace PeriDeal
         model.bonds               = growth(a.bonds, b.bonds);
         model.applications        = growth.power(a.applications, b.applications);
         model.time_of_application = growth(a.time_of_application, b.time_of_application);
-        model.time_of_solution    = growth(a.time_of_solution, b.time_of_solution);
-        model.components          = b.components;
+        if (a.time_of_solution > 0. && b.time_of_solution > 0.) // else not known
+          model.time_of_solution = growth(a.time_of_solution, b.time_of_solution);
+        model.components = b.components;
         components.push_back(b.components);
       }
     const OutputEstimate output = estimate_output(scene,
