@@ -15,7 +15,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # From the bottom up. A room may include itself and the rooms of lower storeys; rooms of one storey
 # do not know each other.
 STOREYS = [["base"], ["scene"], ["mesh", "laws"], ["bonds"], ["operators"], ["solvers", "analysis"], ["output"],
-           ["simulation"], ["study"]]
+           ["problems"], ["simulation"], ["study"]]
 STOREY = {room: number for number, rooms in enumerate(STOREYS) for room in rooms}
 
 MAX_HEADER, MAX_SOURCE = 300, 500

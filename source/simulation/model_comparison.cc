@@ -16,22 +16,6 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  template <int dim>
-  Vector component_of(const DoFHandler<dim> &dofs,
-                      const Vector          &u,
-                      const unsigned int     n,
-                      const unsigned int     c)
-  {
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
-    Vector component(dofs.locally_owned_dofs(), relevant, dofs.get_communicator());
-    for (unsigned int i = 0; i < component.locally_owned_size(); ++i)
-      component.local_element(i) = u.local_element(n * i + c);
-    component.update_ghost_values();
-    return component;
-  }
-
-
   namespace
   {
     template <int dim>
@@ -135,16 +119,34 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                        \
-  template Vector              component_of(const DoFHandler<dim> &,                     \
-                                            const Vector &,                              \
-                                            const unsigned int,                          \
-                                            const unsigned int);                         \
-  template void                compare_models(const std::vector<const Problem<dim> *> &, \
-                                              const Domain<dim> &,                       \
-                                              const double,                              \
-                                              ResultRecord &);                           \
-  template std::vector<Vector> difference_of_models(const std::vector<const Problem<dim> *> &);
+  template <int dim>
+  bool shows_difference(const Problem<dim> &problem)
+  {
+    return problem.columns().size() == 1;
+  }
+
+
+  template <int dim>
+  double components_written(const Problem<dim> &problem, const std::size_t n_problems)
+  {
+    double n = shows_difference(problem) && n_problems > 1 &&
+                   problem.name() == to_string(ModelKind::peridynamics) ?
+                 1. :
+                 0.;
+    for (const OutputField &field : problem.fields(0.))
+      n += field.components.size();
+    return n;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                               \
+  template void                compare_models(const std::vector<const Problem<dim> *> &,        \
+                                              const Domain<dim> &,                              \
+                                              const double,                                     \
+                                              ResultRecord &);                                  \
+  template std::vector<Vector> difference_of_models(const std::vector<const Problem<dim> *> &); \
+  template bool                shows_difference(const Problem<dim> &);                          \
+  template double              components_written(const Problem<dim> &, const std::size_t);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

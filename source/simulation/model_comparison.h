@@ -3,25 +3,14 @@
 
 #pragma once
 
+#include <perideal/problems/problem.h>
+#include <perideal/problems/result_record.h>
 #include <perideal/scene/domain.h>
-#include <perideal/simulation/problem.h>
 
 #include <vector>
 
-#include "result_record.h"
-
 namespace PeriDeal
 {
-  /**
-   * One component of a vector with @p n of them at each node, as a vector of the nodes with the
-   * ghosts of their cells. Collective.
-   */
-  template <int dim>
-  Vector component_of(const dealii::DoFHandler<dim> &dofs,
-                      const Vector                  &u,
-                      const unsigned int             n,
-                      const unsigned int             component);
-
   /**
    * Append to `relative l2` and `maximum` of the record's comparison the pair [t, value]:
    * peridynamics minus the interpolant of finite elements at its nodes. The norm of the difference,
@@ -41,4 +30,15 @@ namespace PeriDeal
    */
   template <int dim>
   std::vector<Vector> difference_of_models(const std::vector<const Problem<dim> *> &problems);
+
+  /**
+   * Of the fields that a problem writes at a time, with the difference of two models if it is one
+   * of so many. Collective.
+   */
+  template <int dim>
+  double components_written(const Problem<dim> &problem, const std::size_t n_problems);
+
+  /** Whether fields show the difference of models: of a single number at each node. */
+  template <int dim>
+  bool shows_difference(const Problem<dim> &problem);
 } // namespace PeriDeal

@@ -138,17 +138,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void RunOutput<dim>::add_row(const std::string &model,
-                               const std::string &quantity,
-                               const double       value,
-                               const double       t)
-  {
-    record.totals +=
-      full_precision(t) + "," + model + "," + quantity + "," + full_precision(value) + "\n";
-  }
-
-
-  template <int dim>
   void RunOutput<dim>::end_time(const std::function<RunFiles::Json()> &summary,
                                 const std::string                     &reached)
   {

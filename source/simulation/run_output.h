@@ -4,7 +4,8 @@
 #pragma once
 
 #include <perideal/output/crack_writer.h>
-#include <perideal/simulation/problem.h>
+#include <perideal/problems/problem.h>
+#include <perideal/problems/result_record.h>
 #include <perideal/simulation/run_files.h>
 
 #include <functional>
@@ -14,7 +15,6 @@
 #include <vector>
 
 #include "point_readers.h"
-#include "result_record.h"
 
 namespace PeriDeal
 {
@@ -52,12 +52,6 @@ namespace PeriDeal
 
     /** @param more fields, by the name of the model */
     void write_fields(const double t, const std::map<std::string, OutputField> &more = {});
-
-    /** A row of totals.csv. Not collective. */
-    void add_row(const std::string &model,
-                 const std::string &quantity,
-                 const double       value,
-                 const double       t);
 
     /** All of a time has been written. @param summary and @param reached as RunFiles' */
     void end_time(const std::function<RunFiles::Json()> &summary, const std::string &reached);

@@ -8,16 +8,12 @@
 #include <perideal/base/memory.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/mesh_builder.h>
+#include <perideal/problems/problem_factory.h>
+#include <perideal/problems/run_context.h>
 #include <perideal/scene/lists.h>
-#include <perideal/solvers/floating_part.h>
-#include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-
-#include "problem_factory.h"
-#include "run_context.h"
 
 namespace PeriDeal
 {
@@ -91,52 +87,6 @@ namespace PeriDeal
   }
 
 
-  double processor_seconds()
-  {
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-  }
-
-
-  double time_of_application(const Operator &op)
-  {
-    Vector x, y;
-    op.initialize_vector(x);
-    op.initialize_vector(y);
-    op.apply(y, x);
-    constexpr unsigned int n_trials = 20;
-    const double           start    = processor_seconds();
-    for (unsigned int k = 0; k < n_trials; ++k)
-      op.apply(y, x);
-    return (processor_seconds() - start) / n_trials;
-  }
-
-
-  double time_of_linear_equilibrium(const SolverControlParameters &control,
-                                    ElasticOperator               &op,
-                                    const double                   t,
-                                    const bool                     must_be_held)
-  {
-    const double start = processor_seconds();
-    Vector       u, r, change;
-    for (Vector *const v : {&u, &r, &change})
-      op.initialize_vector(*v);
-    op.distribute(u, t);
-    op.residual(r, u, t);
-    LinearSolver solver(op, control.tolerance, control.max_iterations, control.direct_up_to);
-    if (must_be_held && r.l2_norm() > 0.)
-      check_no_loose_part(op, solver.surrogate(), r);
-    try
-      {
-        solver.solve(0., 1., change, r);
-      }
-    catch (const UserError &) // on all processes
-      {
-        return -1.;
-      }
-    return processor_seconds() - start;
-  }
-
-
   namespace
   {
     template <int dim>
@@ -144,11 +94,10 @@ namespace PeriDeal
                        const std::shared_ptr<Triangulation<dim>> &mesh,
                        Sample                                    &sample)
     {
-      ResultRecord          record;
-      RunOutput<dim>        output(scene, record);
-      Progress              quiet(mesh->get_communicator(), true);
-      const RunContext<dim> context{quiet, record, output};
-      Problems<dim>         problems;
+      ResultRecord     record;
+      Progress         quiet(mesh->get_communicator(), true);
+      const RunContext context{quiet, record, {}};
+      Problems<dim>    problems;
       for (unsigned int k = 0; k < sample.models.size(); ++k)
         {
           const double start = processor_seconds();
@@ -164,12 +113,7 @@ namespace PeriDeal
       for (unsigned int k = 0; k < problems.size(); ++k)
         {
           problems[k]->take_sample(context, sample.models[k]);
-          for (const OutputField &field : problems[k]->fields(0.))
-            sample.models[k].components += field.components.size();
-          // The difference of the models.
-          if (problems.size() > 1 && problems[k]->columns().size() == 1 &&
-              scene.general.models[k] == ModelKind::peridynamics)
-            sample.models[k].components += 1.;
+          sample.models[k].components = components_written(*problems[k], problems.size());
         }
     }
   } // namespace
@@ -200,63 +144,13 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  double time_of_equilibria(const Scene<dim>  &scene,
-                            ElasticOperator   &op,
-                            const unsigned int model,
-                            const double       n_steps,
-                            const MPI_Comm     communicator,
-                            double            &memory)
-  {
-    // Larger ones take longer than one likes to wait for a check; where there is no coarse lattice
-    // one waits some more.
-    constexpr double few_unknowns = 5e4, many_unknowns = 3e5;
-    // Iterations of other solvers over those of the linear one, where these are alike.
-    constexpr double of_full_kinematics = 3.;
-    if (scene.elasticity.solver == ElasticSolver::dynamic_relaxation ||
-        scene.elasticity.solver == ElasticSolver::adaptive_dynamic_relaxation)
-      return -1.;
-    const double n_unknowns = static_cast<double>(op.size().unknowns);
-    double       first      = 0.;
-    if (n_unknowns > few_unknowns)
-      {
-        const RunEstimate estimate = estimate_run(scene, communicator);
-        first                      = estimate.models[model].time_of_solution;
-        memory                     = std::max(memory, estimate.memory);
-      }
-    if (first <= 0. && n_unknowns <= many_unknowns)
-      first =
-        Utilities::MPI::max(time_of_linear_equilibrium(scene.solver,
-                                                       op,
-                                                       scene.time.steady ? 0. : scene.time.end_time,
-                                                       !op.nonlinear()),
-                            communicator);
-    if (first <= 0.)
-      return -1.;
-    if (op.nonlinear())
-      first *= of_full_kinematics;
-    // A step whose loads grow in proportion starts from its solution, and looks at every bond.
-    constexpr double applications_of_step = 5.;
-    if (scene.time.steady)
-      return first;
-    const bool alike = !op.nonlinear() && !scene.warms_slowly();
-    return first + n_steps * (alike ? applications_of_step * time_of_application(op) : first);
-  }
-
-
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
   template double number_of<dim>(const std::array<unsigned int, dim> &, const unsigned int);       \
   template std::array<unsigned int, dim> coarse_cells<dim>(const std::array<unsigned int, dim> &,  \
                                                            const double);                          \
   template std::shared_ptr<Scene<dim>>   coarse_scene<dim>(const Scene<dim> &,                     \
                                                          const std::array<unsigned int, dim> &); \
-  template Sample                        take_sample<dim>(const Scene<dim> &, const MPI_Comm);     \
-  template double                        time_of_equilibria<dim>(const Scene<dim> &,               \
-                                          ElasticOperator &,                \
-                                          const unsigned int,               \
-                                          const double,                     \
-                                          const MPI_Comm,                   \
-                                          double &);
+  template Sample                        take_sample<dim>(const Scene<dim> &, const MPI_Comm);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -3,15 +3,18 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/analysis/coupling_certificate.h>
 #include <perideal/base/memory.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
+#include <perideal/problems/check_sides.h>
+#include <perideal/problems/problem_factory.h>
+#include <perideal/problems/result_record.h>
+#include <perideal/problems/run_context.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/with_formulas.h>
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
-#include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,14 +22,9 @@
 #include <sstream>
 #include <utility>
 
-#include "check_sides.h"
 #include "closing.h"
 #include "model_comparison.h"
-#include "problem_factory.h"
-#include "result_record.h"
-#include "run_context.h"
 #include "summary_parts.h"
-#include "with_formulas.h"
 
 namespace PeriDeal
 {
@@ -63,9 +61,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  RunContext<dim> Simulation<dim>::context() const
+  RunContext Simulation<dim>::context() const
   {
-    return {progress, *record, *output};
+    return {progress, *record, [this](const std::string &model, double &memory) {
+              return estimate_model(scene, model, communicator, memory);
+            }};
   }
 
 
@@ -87,13 +87,18 @@ namespace PeriDeal
       {
         progress.doing("building " + to_string(model));
         problems.push_back(make_problem(model, *mesh, scene));
-        describe(*problems.back());
+        say_size(*problems.back(), progress);
         for (const std::string &note : problems.back()->notes())
           record->notes.push_back(note);
       }
     companions = make_companions(problems, *mesh, scene, record->notes);
+    for (const auto &companion : companions)
+      {
+        progress.line("to find the " + companion->field_name() + " in it:");
+        say_size(*companion, progress);
+      }
     prepare_adaptation();
-    make_reference();
+    exact = make_reference(scene);
     Timings::Scope scope(timings, "output");
     output->find_points(reported());
     for (const std::string &note : output->gaps_in_line())
@@ -104,81 +109,10 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::check_mesh()
   {
-    unsigned int n_own_cells = 0;
-    for (const auto &cell : mesh->active_cell_iterators())
-      n_own_cells += cell->is_locally_owned() ? 1 : 0;
-    AssertThrow(Utilities::MPI::min(n_own_cells, communicator) > 0,
-                UserError("A mesh of " + std::to_string(mesh->n_global_active_cells()) +
-                          " cells leaves some of the " +
-                          std::to_string(Utilities::MPI::n_mpi_processes(communicator)) +
-                          " processes without any. Use fewer processes or more 'Cells' (section "
-                          "'Domain')."));
+    require_cells_everywhere(*mesh);
     with_formulas(communicator, [&] { check_sides(scene, *mesh); });
     check_points_of_parts(scene, *mesh, record->notes);
     note_scene(scene, *mesh, record->notes);
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::describe(const Problem<dim> &model) const
-  {
-    const OperatorSize size = model.op().size();
-    std::string        line = model.name() + ": " + readable_count(size.unknowns) + " unknowns";
-    if (size.bonds > 0)
-      line += ", " + readable_count(size.bonds) + " bonds";
-    if (size.nonzeros > 0)
-      line += ", " + readable_count(size.nonzeros) +
-              (size.form == "lattice" && model.n_components() == 1 ? " stored corrections" :
-                                                                     " stored numbers");
-    const double memory = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
-    progress.line(line + ", " + readable_bytes(memory));
-    for (const auto &[name, value] : model.settings())
-      if (name == "operator form")
-        progress.line("  form: " + value);
-      else if (name == "calibration" && value.find("because") != std::string::npos)
-        progress.line("  calibration: " + value);
-    if (const CouplingCertificate *certificate = model.examined())
-      progress.line(certificate_line(*certificate));
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::make_reference()
-  {
-    if (scene.reference.solution.empty())
-      return;
-    ExactSolutionContext context;
-    context.dim = dim;
-    context.lower.resize(dim);
-    context.upper.resize(dim);
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        context.lower[d] = scene.domain.lower[d];
-        context.upper[d] = scene.domain.upper[d];
-      }
-    const Point<dim> middle = scene.domain.lower + 0.5 * (scene.domain.upper - scene.domain.lower);
-    context.conductivity    = scene.material.conductivity.value(middle);
-    context.storage         = scene.material.storage(middle);
-    context.kernel          = scene.peridynamics.kernel;
-    context.exponent        = scene.peridynamics.kernel_exponent;
-    if (scene.domain.shape != Shape::mesh_file)
-      {
-        context.horizon = scene.horizon();
-        context.family  = lattice_terms(lattice_family<dim>(scene.domain.spacing(),
-                                                           context.horizon,
-                                                           scene.peridynamics.kernel,
-                                                           scene.peridynamics.kernel_exponent,
-                                                           scene.peridynamics.volume_fraction,
-                                                           scene.peridynamics.calibration),
-                                       scene.domain.spacing(),
-                                       context.conductivity);
-      }
-    if (scene.domain.shape != Shape::box)
-      context.no_named = "is the solution in a box, but 'Shape' in section 'Domain' is another.";
-    else if (!scene.material.conductivity.is_constant() || !scene.material.density.is_constant() ||
-             !scene.material.heat_capacity.is_constant())
-      context.no_named = "holds for a uniform material only (section 'Material').";
-    exact = make_exact_solution(scene.reference.solution, context);
   }
 
 
@@ -257,7 +191,7 @@ namespace PeriDeal
   {
     for (const auto &companion : companions)
       {
-        Timings::Scope scope(timings, "heat problem");
+        Timings::Scope scope(timings, companion->field_name());
         companion->settle(context());
       }
     for (const auto &problem : problems)
@@ -289,7 +223,8 @@ namespace PeriDeal
   void Simulation<dim>::end_output(const double t)
   {
     output->end_time([&] { return summary_now(false); },
-                     scene.time.steady ? "the steady state" : "until t = " + full_precision(t));
+                     scene.time.steady ? problems[0]->steady_name() :
+                                         "until t = " + full_precision(t));
   }
 
 
@@ -339,7 +274,7 @@ namespace PeriDeal
   void Simulation<dim>::write_fields(const double t)
   {
     std::map<std::string, OutputField> more;
-    if (problems[0]->columns().size() == 1) // a single number at each node
+    if (shows_difference(*problems[0]))
       for (Vector &difference : difference_of_models(reported()))
         more.emplace(to_string(ModelKind::peridynamics),
                      OutputField{"peridynamics_minus_finite_elements", {std::move(difference)}});
@@ -388,14 +323,7 @@ namespace PeriDeal
       progress.note(note);
     std::vector<double> components;
     for (const auto &problem : problems)
-      {
-        components.push_back(problem->columns().size() == 1 && problems.size() > 1 &&
-                                 problem->name() == to_string(ModelKind::peridynamics) ?
-                               1. :
-                               0.);
-        for (const OutputField &field : problem->fields(0.))
-          components.back() += field.components.size();
-      }
+      components.push_back(components_written(*problem, problems.size()));
     for (const std::string &line : describe_costs(scene,
                                                   computing,
                                                   before + memory,
@@ -472,7 +400,7 @@ namespace PeriDeal
   {
     for (const auto &companion : companions)
       {
-        Timings::Scope scope(timings, "heat problem");
+        Timings::Scope scope(timings, companion->field_name());
         companion->advance(
           now,
           to,
@@ -498,7 +426,7 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::find_steady_state()
   {
-    progress.line("steady state");
+    progress.line(problems[0]->steady_name());
     settle();
     constexpr double settled = 0.05; // share of cells more or fewer
     for (unsigned int round = 0; round < 2 * scene.domain.coarsening; ++round)

@@ -7,12 +7,11 @@
 
 #include <perideal/analysis/coupling_certificate.h>
 #include <perideal/output/result_folder.h>
+#include <perideal/problems/problem.h>
+#include <perideal/problems/result_record.h>
 #include <perideal/scene/scene.h>
-#include <perideal/simulation/problem.h>
 
 #include <nlohmann/json.hpp>
-
-#include "result_record.h"
 
 namespace PeriDeal
 {
@@ -66,4 +65,7 @@ namespace PeriDeal
   nlohmann::ordered_json describe_certificate(const CouplingCertificate &certificate);
   std::string            certificate_line(const CouplingCertificate &certificate);
 
+  /** Lines about the size of a problem, the form of its operator, its coupling. Collective. */
+  template <int dim>
+  void say_size(const Problem<dim> &problem, const Progress &progress);
 } // namespace PeriDeal

@@ -8,8 +8,8 @@
 #include <perideal/analysis/exact_solution.h>
 #include <perideal/base/progress.h>
 #include <perideal/mesh/grading.h>
+#include <perideal/problems/problem.h>
 #include <perideal/scene/scene.h>
-#include <perideal/simulation/problem.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -51,14 +51,12 @@ namespace PeriDeal
   private:
     using List = std::vector<std::unique_ptr<Problem<dim>>>;
 
-    RunContext<dim>                   context() const;
+    RunContext                        context() const;
     std::vector<const Problem<dim> *> reported() const;
     std::vector<double>               output_times() const;
 
     void build();
     void check_mesh();
-    void describe(const Problem<dim> &problem) const;
-    void make_reference();
     void prepare_adaptation();
 
     nlohmann::ordered_json compute(); // the summary at the end
