@@ -26,7 +26,7 @@ namespace PeriDeal
     constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 
 
-    /** In plane elasticity G and kappa say all: kappa is (3 - nu)/(1 + nu), or 3 - 4 nu in strain. */
+    /** In plane elasticity G and kappa say all: (3 - nu)/(1 + nu) in stress, 3 - 4 nu in strain. */
     struct PlaneModuli
     {
       explicit PlaneModuli(const ExactSolidContext &context)
@@ -116,10 +116,9 @@ namespace PeriDeal
         const Number x = at_x - begin, y = at_y - middle;
         const double nu = moduli.poisson(), square = height * height;
         const double scale = force / (6. * moduli.young() * square * height / 12.);
-        return {
-          {scale * y * ((6. * length - 3. * x) * x + (2. + nu) * (y * y - 0.25 * square)),
-           -scale * (3. * nu * y * y * (length - x) + 0.25 * (4. + 5. * nu) * square * x +
-                     (3. * length - x) * x * x)}};
+        return {{scale * y * ((6. * length - 3. * x) * x + (2. + nu) * (y * y - 0.25 * square)),
+                 -scale * (3. * nu * y * y * (length - x) + 0.25 * (4. + 5. * nu) * square * x +
+                           (3. * length - x) * x * x)}};
       }
 
       PlaneModuli moduli;
@@ -221,11 +220,12 @@ namespace PeriDeal
         const auto    p    = frame.to(x[0], x[1]);
         const Complex root = root_at(p), z = across * Complex(p[0], p[1]) / root,
                       slope = -across * a * a / (root * root * root);
-        const double  kappa = moduli.kappa, k = 1. / (2. * moduli.shear);
+        const double kappa = moduli.kappa, k = 1. / (2. * moduli.shear);
         // Along and across the crack, of the component along and of that across.
-        const std::array<double, 2> by_x{{k * (0.5 * (kappa - 1.) * z.real() - p[1] * slope.imag() +
-                                               0.25 * (1. + kappa) * more_along),
-                                          k * (0.5 * (kappa + 1.) * z.imag() - p[1] * slope.real())}};
+        const std::array<double, 2> by_x{
+          {k * (0.5 * (kappa - 1.) * z.real() - p[1] * slope.imag() +
+                0.25 * (1. + kappa) * more_along),
+           k * (0.5 * (kappa + 1.) * z.imag() - p[1] * slope.real())}};
         const std::array<double, 2> by_y{
           {-k * (0.5 * (kappa + 1.) * z.imag() + p[1] * slope.real()),
            k * (0.5 * (kappa - 1.) * z.real() + p[1] * slope.imag() -
@@ -395,10 +395,12 @@ namespace PeriDeal
               "needs one straight crack with both ends in the body (section 'Cracks').");
       const auto  &c = context.crack;
       const double x = c[2] - c[0], y = c[3] - c[1], length = std::hypot(x, y);
-      CrackFrame   frame{{{0.5 * (c[0] + c[2]), 0.5 * (c[1] + c[3])}},
-                         {{x / length, y / length}}};
-      return std::make_unique<Westergaard>(
-        PlaneModuli(context), frame, 0.5 * length, s[0], s.back());
+      CrackFrame   frame{{{0.5 * (c[0] + c[2]), 0.5 * (c[1] + c[3])}}, {{x / length, y / length}}};
+      return std::make_unique<Westergaard>(PlaneModuli(context),
+                                           frame,
+                                           0.5 * length,
+                                           s[0],
+                                           s.back());
     }
 
 
@@ -447,8 +449,11 @@ namespace PeriDeal
 
   const std::vector<std::string> &exact_solid_names()
   {
-    static const std::vector<std::string> names = {
-      "kirsch", "crack tip", "westergaard", "cantilever", "standing wave"};
+    static const std::vector<std::string> names = {"kirsch",
+                                                   "crack tip",
+                                                   "westergaard",
+                                                   "cantilever",
+                                                   "standing wave"};
     return names;
   }
 

@@ -167,7 +167,8 @@ namespace PeriDeal
     };
 
 
-    std::array<double, 3> wave_numbers(const SolutionCall &call, const ExactSolutionContext &context)
+    std::array<double, 3> wave_numbers(const SolutionCall         &call,
+                                       const ExactSolutionContext &context)
     {
       const std::string wrong =
         solution_entry + ": '" + call.name + "' needs " + std::to_string(context.dim) +
@@ -194,7 +195,7 @@ namespace PeriDeal
     }
 
 
-    std::unique_ptr<ExactSolution> make_harmonic(const SolutionCall                 &call,
+    std::unique_ptr<ExactSolution> make_harmonic(const SolutionCall         &call,
                                                  const ExactSolutionContext &context)
     {
       const std::array<double, 3> k    = wave_numbers(call, context);
@@ -284,8 +285,8 @@ namespace PeriDeal
     const std::string clean = tidy(text);
     AssertThrow(!clean.empty(), UserError(solution_entry + " is empty."));
     const SolutionCall call     = take_apart(clean);
-    const bool known    = std::find(names.begin(), names.end(), call.name) != names.end();
-    const bool harmonic = known && call.name.find("harmonic") != std::string::npos;
+    const bool         known    = std::find(names.begin(), names.end(), call.name) != names.end();
+    const bool         harmonic = known && call.name.find("harmonic") != std::string::npos;
     AssertThrow(!known || context.no_named.empty(),
                 UserError(solution_entry + ": '" + call.name + "' " + context.no_named +
                           " Give an expression of x, y, z and t instead."));

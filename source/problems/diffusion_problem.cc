@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/analysis/exact_solution.h>
 #include <perideal/base/user_error.h>
 #include <perideal/problems/run_context.h>
 #include <perideal/scene/with_formulas.h>
@@ -12,7 +13,6 @@
 #include "diffusion_parts.h"
 #include "effective_conductivity.h"
 #include "finite_results.h"
-#include "scene_sample.h"
 
 namespace PeriDeal
 {
@@ -90,7 +90,7 @@ namespace PeriDeal
   template <int dim>
   std::vector<OutputField> DiffusionProblem<dim>::fields(const double t) const
   {
-    std::vector<OutputField> list{{field_name(), {solution}}};
+    std::vector<OutputField> list{{this->field_name(), {solution}}};
     list[0].components[0].update_ghost_values();
     solution.update_ghost_values();
     with_formulas(this->dofs().get_communicator(), [&] {
@@ -205,12 +205,25 @@ namespace PeriDeal
 
 
   template <int dim>
-  Difference DiffusionProblem<dim>::error(const ExactValue<dim> &exact) const
+  Difference DiffusionProblem<dim>::error(const ExactSolution &exact, const double t) const
   {
     solution.update_ghost_values();
-    const Difference result = difference_to(solution, exact);
+    const Difference result =
+      difference_to(solution, [&](const Point<dim> &p) { return exact_row(exact, p, t)[0]; });
     solution.set_ghost_state(false);
     return result;
+  }
+
+
+  template <int dim>
+  std::vector<double> DiffusionProblem<dim>::exact_row(const ExactSolution &exact,
+                                                       const Point<dim>    &point,
+                                                       const double         t) const
+  {
+    double x[dim];
+    for (unsigned int d = 0; d < dim; ++d)
+      x[d] = point[d];
+    return {exact.value(x, t)};
   }
 
 

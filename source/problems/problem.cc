@@ -45,14 +45,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  Difference Problem<dim>::error(const ExactValue<dim> &) const
-  {
-    Assert(false, dealii::ExcNotImplemented());
-    return {};
-  }
-
-
-  template <int dim>
   RecoveryIndicators Problem<dim>::indicators() const
   {
     Assert(false, dealii::ExcNotImplemented());

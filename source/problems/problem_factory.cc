@@ -38,8 +38,6 @@ namespace PeriDeal
               "'Growth' in section 'Cracks' cannot be used with 'Physics = elasticity' yet.");
       require(scene.domain.coarsening == 0,
               "'Coarsening' in section 'Domain' cannot be used with 'Physics = elasticity' yet.");
-      require(scene.reference.solution.empty(),
-              "'Solution' in section 'Reference' cannot be used with 'Physics = elasticity' yet.");
     }
 
 

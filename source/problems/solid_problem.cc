@@ -13,6 +13,7 @@
 
 #include "finite_results.h"
 #include "solid_cost.h"
+#include "solid_error.h"
 #include "solid_fields.h"
 #include "solid_notes.h"
 #include "solid_phases.h"
@@ -63,6 +64,22 @@ namespace PeriDeal
   std::vector<std::string> SolidProblem<dim>::columns() const
   {
     return solid_columns(scene);
+  }
+
+
+  template <int dim>
+  Difference SolidProblem<dim>::error(const ExactSolution &exact, const double t) const
+  {
+    return error_of_displacement(*this, exact, t);
+  }
+
+
+  template <int dim>
+  std::vector<double> SolidProblem<dim>::exact_row(const ExactSolution &exact,
+                                                   const Point<dim>    &point,
+                                                   const double         t) const
+  {
+    return exact_row_of_solid(scene, exact, point, t);
   }
 
 

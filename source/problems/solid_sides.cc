@@ -10,7 +10,6 @@
 #include <map>
 #include <sstream>
 
-#include "model_comparison.h"
 
 namespace PeriDeal
 {

@@ -3,6 +3,8 @@
 
 #include "solid_totals.h"
 
+#include <perideal/laws/elasticity.h>
+
 #include <algorithm>
 
 #include "finite_results.h"

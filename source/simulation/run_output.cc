@@ -76,7 +76,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void RunOutput<dim>::write_points(const double t, const Values &exact)
+  void RunOutput<dim>::write_points(const double t, const ExactSolution *exact)
   {
     for (PointOutput &output : outputs)
       if (!output.points.empty())
@@ -85,7 +85,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void RunOutput<dim>::write(PointOutput &output, const double t, const Values &exact)
+  void RunOutput<dim>::write(PointOutput &output, const double t, const ExactSolution *exact)
   {
     if (!output.table)
       output.table = std::make_unique<PointTable>(run_files->folder,
@@ -101,7 +101,14 @@ namespace PeriDeal
       return;
     std::vector<double> values;
     for (unsigned int k = 0; k < output.points.size(); ++k)
-      values.push_back(output.readers[0]->is_gap(k) ? std::nan("") : exact(output.points[k]));
+      {
+        Point<dim> point;
+        for (unsigned int d = 0; d < dim; ++d)
+          point[d] = output.points[k][d];
+        const std::vector<double> row = problems[0]->exact_row(*exact, point, t);
+        for (const double value : row)
+          values.push_back(output.readers[0]->is_gap(k) ? std::nan("") : value);
+      }
     output.table->add(t, "exact", values);
   }
 

@@ -28,7 +28,6 @@ namespace PeriDeal
   {
   public:
     using Problems = std::vector<const Problem<dim> *>;
-    using Values   = std::function<double(const std::vector<double> &point)>;
 
     /** Nothing is written before open(). Scene and record have to outlive this object. */
     RunOutput(const Scene<dim> &scene, ResultRecord &record);
@@ -47,8 +46,8 @@ namespace PeriDeal
     /** Notes on what of the line lies outside the body, or nothing. */
     std::vector<std::string> gaps_in_line() const;
 
-    /** @param exact what is known of the solution, as of another model; or empty */
-    void write_points(const double t, const Values &exact = {});
+    /** @param exact what is known of the solution, as of another model; or nullptr */
+    void write_points(const double t, const ExactSolution *exact);
 
     /** @param more fields, by the name of the model */
     void write_fields(const double t, const std::map<std::string, OutputField> &more = {});
@@ -70,7 +69,7 @@ namespace PeriDeal
       std::unique_ptr<PointTable>             table;
     };
 
-    void write(PointOutput &output, const double t, const Values &exact);
+    void write(PointOutput &output, const double t, const ExactSolution *exact);
 
     const Scene<dim>                              &scene;
     ResultRecord                                  &record;

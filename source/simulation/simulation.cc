@@ -9,6 +9,7 @@
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/problems/check_sides.h>
 #include <perideal/problems/problem_factory.h>
+#include <perideal/problems/reference.h>
 #include <perideal/problems/result_record.h>
 #include <perideal/problems/run_context.h>
 #include <perideal/scene/lists.h>
@@ -235,12 +236,7 @@ namespace PeriDeal
       return;
     for (const auto &problem : problems)
       with_formulas(communicator, [&] {
-        const Difference error = problem->error([&](const Point<dim> &p) {
-          double x[dim];
-          for (unsigned int d = 0; d < dim; ++d)
-            x[d] = p[d];
-          return exact->value(x, t);
-        });
+        const Difference error = problem->error(*exact, t);
         record->errors[problem->name()]["relative l2"].push_back({t, error.relative_l2});
         record->errors[problem->name()]["maximum"].push_back({t, error.maximum});
       });
@@ -259,10 +255,7 @@ namespace PeriDeal
     readers_fit = true;
     if (!tells_at_stops()) // refuses what is not finite before it is written
       add_totals(t);
-    typename RunOutput<dim>::Values known;
-    if (exact)
-      known = [&](const std::vector<double> &p) { return exact->value(p.data(), t); };
-    with_formulas(communicator, [&] { output->write_points(t, known); });
+    with_formulas(communicator, [&] { output->write_points(t, exact.get()); });
     add_errors(t);
     compare_models(reported(), scene.domain, t, *record);
     write_fields(t);

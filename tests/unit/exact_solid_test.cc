@@ -3,10 +3,10 @@
 
 // Exact displacements: gradients, equilibrium, what holds at holes, cracks, ends.
 
-#include <gtest/gtest.h>
-
 #include <perideal/analysis/exact_solid.h>
 #include <perideal/base/user_error.h>
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 
@@ -50,7 +50,7 @@ namespace
                    const double             x,
                    const double             y)
   {
-    constexpr double h = 1e-4;
+    constexpr double h    = 1e-4;
     const double     p[2] = {x, y};
     double           size = 0.;
     for (unsigned int c = 0; c < 2; ++c)
@@ -159,13 +159,15 @@ TEST(ExactSolid, westergaard)
         const double      c = std::cos(turn), s = std::sin(turn), a = 0.3;
         context.crack         = {0.2 - a * c, 0.1 - a * s, 0.2 + a * c, 0.1 + a * s};
         context.begins_inside = context.ends_inside = true;
-        const auto solution   = make_exact_solid("westergaard(2, 0.5)", context);
+        const auto solution = make_exact_solid("westergaard(2, 0.5)", context);
         for (const double angle : {0.3, 1., 2.4, -1.2})
           check_field(*solution, context, 0.2 + 0.7 * std::cos(angle), 0.1 + 0.4 * std::sin(angle));
         // Far away, beside the crack, and before its end: S sqrt(pi a)/sqrt(2 pi r).
         const auto along = [&](const double x, const double y) {
-          const auto found = stress_at(*solution, context, 0.2 + x * c - y * s, 0.1 + x * s + y * c);
-          const double across = found[0][0] * s * s - 2. * found[0][1] * s * c + found[1][1] * c * c;
+          const auto found =
+            stress_at(*solution, context, 0.2 + x * c - y * s, 0.1 + x * s + y * c);
+          const double across =
+            found[0][0] * s * s - 2. * found[0][1] * s * c + found[1][1] * c * c;
           return std::make_pair(found[0][0] + found[1][1] - across, across);
         };
         EXPECT_NEAR(along(3e4, 1e4).first, 0.5, 1e-6);
@@ -210,16 +212,15 @@ TEST(ExactSolid, standing_waves)
       context.lower             = {-1., 0., 0.};
       context.upper             = {1., 1., 1.};
       context.density           = 2.;
-      const double modulus =
-        dim == 1 ? 3. : context.moduli.lambda() + 2. * context.moduli.shear;
-      const auto       solution = make_exact_solid("standing wave(3, 0.1)", context);
-      const double     x[3] = {0.3, 0.2, 0.1}, t = 0.4, h = 1e-4;
-      double           left[3], right[3], before = 0., after = 0.;
-      const double     nearer[3] = {0.3 - h, 0.2, 0.1}, farther[3] = {0.3 + h, 0.2, 0.1};
+      const double modulus  = dim == 1 ? 3. : context.moduli.lambda() + 2. * context.moduli.shear;
+      const auto   solution = make_exact_solid("standing wave(3, 0.1)", context);
+      const double x[3] = {0.3, 0.2, 0.1}, t = 0.4, h = 1e-4;
+      double       left[3], right[3], before = 0., after = 0.;
+      const double nearer[3] = {0.3 - h, 0.2, 0.1}, farther[3] = {0.3 + h, 0.2, 0.1};
       solution->gradient(nearer, t, 0, left);
       solution->gradient(farther, t, 0, right);
-      before = solution->value(x, t - h, 0);
-      after  = solution->value(x, t + h, 0);
+      before                    = solution->value(x, t - h, 0);
+      after                     = solution->value(x, t + h, 0);
       const double acceleration = (after - 2. * solution->value(x, t, 0) + before) / (h * h);
       EXPECT_NEAR(2. * acceleration, modulus * (right[0] - left[0]) / (2. * h), 1e-5);
       EXPECT_NEAR(solution->value(context.lower.data(), t, 0), 0., 1e-15);

@@ -20,10 +20,10 @@ namespace PeriDeal
     Moduli              moduli;
     PlaneState          plane   = PlaneState::stress;
     double              density = 1.;
-    std::vector<double> hole;                    // centre and radius of the one hole; or empty
-    std::vector<double> crack;                   // ends of the one crack, x, y each; or empty
-    bool                begins_inside = false;   // the crack's first end is in the body
-    bool                ends_inside   = false;   // its second one is
+    std::vector<double> hole;                  // centre and radius of the one hole; or empty
+    std::vector<double> crack;                 // ends of the one crack, x, y each; or empty
+    bool                begins_inside = false; // the crack's first end is in the body
+    bool                ends_inside   = false; // its second one is
     std::string         no_named; // why the named solutions do not suit the scene; empty: they do
   };
 

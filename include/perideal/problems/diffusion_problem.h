@@ -35,7 +35,10 @@ namespace PeriDeal
     void                   add_totals(const double t, const RunContext &context) override;
     nlohmann::ordered_json describe_solving() const override;
     void describe_scene(nlohmann::ordered_json &summary, const bool at_the_end) const override;
-    Difference               error(const ExactValue<dim> &exact) const override;
+    Difference               error(const ExactSolution &exact, const double t) const override;
+    std::vector<double>      exact_row(const ExactSolution      &exact,
+                                       const dealii::Point<dim> &point,
+                                       const double              t) const override;
     std::vector<std::string> notes() const override;
     void   take_sample(const RunContext &context, ModelEstimate &estimate) override;
     double time_of_run(const std::vector<double> &times,

@@ -23,14 +23,10 @@
 namespace PeriDeal
 {
   struct CouplingCertificate;
+  class ExactSolution;
   struct ModelEstimate;
   struct ResultRecord;
   struct RunContext;
-
-  /** The value of the exact solution at a place. */
-  template <int dim>
-  using ExactValue = std::function<double(const dealii::Point<dim> &)>;
-
 
   /**
    * One physics of one model of a scene during a run: its unknowns on the shared mesh, its
@@ -108,8 +104,8 @@ namespace PeriDeal
     /** Rows of totals.csv, and what the summary says of a time. Throws UserError if not finite. */
     virtual void add_totals(const double t, const RunContext &context) = 0;
 
-    /** Against what is known of the solution. Only where Reference/Solution may be given. */
-    virtual Difference error(const ExactValue<dim> &exact) const;
+    /** Against what is known of the solution. */
+    virtual Difference error(const ExactSolution &exact, const double t) const = 0;
 
     /**
      * Square of the error that the recovered flux shows in each cell, which guides the mesh. Only
@@ -163,6 +159,14 @@ namespace PeriDeal
     /** The values of these columns, of one point after the other; the state has current ghosts. */
     virtual std::vector<double> at_points(const PointEvaluator<dim>              &reader,
                                           const std::vector<std::vector<double>> &points) const = 0;
+
+    /**
+     * The values of these columns of a known solution; those that it does not tell are no numbers.
+     * Not collective.
+     */
+    virtual std::vector<double> exact_row(const ExactSolution      &exact,
+                                          const dealii::Point<dim> &point,
+                                          const double              t) const = 0;
 
     /** All fields of files at a time, with current ghosts; the state has current ghosts. */
     virtual std::vector<OutputField> fields(const double t) const = 0;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/output/crack_writer.h>
+#include <perideal/output/tables.h>
 #include <perideal/scene/crack_tips.h>
 
 #include <nlohmann/json.hpp>

@@ -34,11 +34,15 @@ namespace PeriDeal
   public:
     explicit SolidProblem(const Scene<dim> &scene);
 
-    std::string                       field_name() const override;
-    std::string                       steady_name() const override;
-    const Vector                     &state() const override;
-    unsigned int                      n_components() const override;
-    std::vector<std::string>          columns() const override;
+    std::string              field_name() const override;
+    std::string              steady_name() const override;
+    const Vector            &state() const override;
+    unsigned int             n_components() const override;
+    std::vector<std::string> columns() const override;
+    Difference               error(const ExactSolution &exact, const double t) const override;
+    std::vector<double>      exact_row(const ExactSolution      &exact,
+                                       const dealii::Point<dim> &point,
+                                       const double              t) const override;
     typename FieldWriter<dim>::Choice shown() const override;
 
     void                begin(const RunContext &context) override;
