@@ -89,7 +89,7 @@ namespace
       }
     catch (const UserError &error)
       {
-        return error.what();
+        return error.message();
       }
     return "";
   }
