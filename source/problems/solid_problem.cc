@@ -157,6 +157,7 @@ namespace PeriDeal
   template <int dim>
   void SolidProblem<dim>::begin(const RunContext &context)
   {
+    op().initialize_vector(displacement);
     if (!scene.elasticity.is_static())
       begin_motion(context);
   }

@@ -385,10 +385,6 @@ namespace PeriDeal
     solver.parse();
     output.parse(time.end_time, time.steady);
     output.make_grid(domain.shape == Shape::box, domain.lower, domain.upper);
-    if (general.physics == Physics::elasticity && !output.grid.empty())
-      entry_error(
-        output.where("Grid"),
-        "is for what diffuses; with 'Physics = elasticity' use 'Fields', 'Line' and 'Probes'.");
     reference.parse();
     units.parse();
 
