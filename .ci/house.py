@@ -17,7 +17,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 # Rooms that are to know neither which physics nor which model they serve.
 WITHOUT_PHYSICS = ("source/simulation", "include/perideal/simulation", "source/output", "include/perideal/output")
-PHYSICS = re.compile(r"physics|heat|thermal|elastic|displacement|temperature|moisture", re.I)
+PHYSICS = re.compile(r"Physics::|heat|thermal|elastic|displacement|temperature|moisture", re.I)
 COMPARISON = re.compile(r"[=!]=\s*([A-Z]\w+)::[a-z]\w*|\bcase\s+([A-Z]\w+)::")
 
 
