@@ -3,6 +3,7 @@
 
 #include <deal.II/base/point.h>
 
+#include <perideal/analysis/exact_solid.h>
 #include <perideal/analysis/exact_solution.h>
 #include <perideal/analysis/heat_series.h>
 #include <perideal/base/user_error.h>
@@ -298,6 +299,7 @@ namespace PeriDeal
                     UserError(solution_entry + ": '" + call.name + "' takes no arguments."));
         return make_series(call.name, context);
       }
+    refuse_name_of_others(call, exact_solid_names(), "bodies that deform", names);
     try
       {
         return std::make_unique<ExpressionSolution>(text, context.dim);

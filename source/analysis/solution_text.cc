@@ -46,6 +46,18 @@ namespace PeriDeal
   }
 
 
+  void refuse_name_of_others(const SolutionCall             &call,
+                             const std::vector<std::string> &names_of_others,
+                             const std::string              &whom,
+                             const std::vector<std::string> &names)
+  {
+    AssertThrow(std::find(names_of_others.begin(), names_of_others.end(), call.name) ==
+                  names_of_others.end(),
+                UserError(solution_entry + ": '" + call.name + "' is for " + whom +
+                          ". Known here are " + join_names(names) + ", and formulas."));
+  }
+
+
   void refuse_unknown_name(const SolutionCall             &call,
                            const std::vector<std::string> &names,
                            const std::string              &others)

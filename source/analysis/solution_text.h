@@ -23,6 +23,12 @@ namespace PeriDeal
 
   SolutionCall take_apart(const std::string &text);
 
+  /** Throws UserError for a name that is known for another physics: that of @p whom. */
+  void refuse_name_of_others(const SolutionCall             &call,
+                             const std::vector<std::string> &names_of_others,
+                             const std::string              &whom,
+                             const std::vector<std::string> &names);
+
   /**
    * Throws UserError with the nearest name if what is no formula was meant as a name. @param others
    * what else may be given
