@@ -89,8 +89,7 @@ namespace PeriDeal
             "; bonds are cut too early or too late by at most the time that it needs for half of that ('Growth step' in section "
             "'Cracks').");
         }
-      if (scene.peridynamics.flux_treatment != FluxTreatment::natural &&
-          scene.boundary_conditions.flux.empty())
+      if (!scene.peridynamics.natural_fluxes() && scene.boundary_conditions.flux.empty())
         notes.push_back(
           "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' (an insulated side "
           "needs 'side: 0' there).");
