@@ -12,6 +12,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <type_traits>
 
 #include "solution_text.h"
 
@@ -74,9 +75,11 @@ namespace PeriDeal
       {
         constexpr double step = 1e-60;
         for (unsigned int d = 0; d < 2; ++d)
-          g[d] = std::imag(formula(Complex(x[0], d == 0 ? step : 0.),
-                                   Complex(x[1], d == 1 ? step : 0.))[component]) /
-                 step;
+          {
+            const Complex found = formula(Complex(x[0], d == 0 ? step : 0.),
+                                          Complex(x[1], d == 1 ? step : 0.))[component];
+            g[d]                = std::isnan(found.real()) ? nowhere : found.imag() / step;
+          }
         return true;
       }
 
@@ -129,6 +132,12 @@ namespace PeriDeal
     /** Coordinates along and across a crack, and displacements from these back. */
     struct CrackFrame
     {
+      /** Points so near to the crack, for its length, are on it: coordinates are rounded. */
+      bool is_small(const double distance) const
+      {
+        return std::abs(distance) < 1e-9 * length;
+      }
+
       template <typename Number>
       std::array<Number, 2> to(const Number &x, const Number &y) const
       {
@@ -143,6 +152,7 @@ namespace PeriDeal
       }
 
       std::array<double, 2> origin, along;
+      double                length;
     };
 
 
@@ -156,9 +166,12 @@ namespace PeriDeal
         using std::sqrt;
         const auto   p = frame.to(x, y);
         const Number r = sqrt(p[0] * p[0] + p[1] * p[1]);
-        if (real(r) == 0.)
-          return {{0., 0.}};
-        if (real(p[1]) == 0. && real(p[0]) < 0.)
+        if (frame.is_small(real(r))) // where there is no gradient
+          {
+            const double none = std::is_same<Number, double>::value ? 0. : nowhere;
+            return {{none, none}};
+          }
+        if (frame.is_small(real(p[1])) && real(p[0]) < 0.)
           return {{nowhere, nowhere}};
         // Half of the angle, from sums that lose no digits.
         const bool   ahead = real(p[0]) > 0.;
@@ -239,8 +252,8 @@ namespace PeriDeal
     private:
       Complex root_at(const std::array<double, 2> &p) const
       {
-        if (p[1] == 0. && std::abs(p[0]) <= a)
-          return std::abs(p[0]) == a ? Complex(1e-300) : Complex(nowhere);
+        if (frame.is_small(p[1]) && std::abs(p[0]) < a * (1. + 1e-9))
+          return frame.is_small(std::abs(p[0]) - a) ? Complex(1e-300) : Complex(nowhere);
         return std::sqrt(Complex(p[0] - a, p[1])) * std::sqrt(Complex(p[0] + a, p[1]));
       }
 
@@ -320,23 +333,6 @@ namespace PeriDeal
     };
 
 
-    /** Separated by commas outside of parentheses. */
-    std::vector<std::string> split(const std::string &text)
-    {
-      std::vector<std::string> parts(1);
-      int                      depth = 0;
-      for (const char c : text)
-        {
-          depth += (c == '(') - (c == ')');
-          if (c == ',' && depth == 0)
-            parts.emplace_back();
-          else
-            parts.back() += c;
-        }
-      return parts;
-    }
-
-
     /** The numbers in the parentheses, at least @p least and at most @p most. */
     std::vector<double> numbers_in(const SolutionCall &call,
                                    const std::size_t   least,
@@ -345,7 +341,7 @@ namespace PeriDeal
     {
       std::vector<double> found;
       if (call.has_arguments)
-        for (const std::string &part : split(call.arguments))
+        for (const std::string &part : split_at_commas(call.arguments))
           {
             const Expression number(part, solution_entry);
             AssertThrow(number.is_constant(),
@@ -377,10 +373,11 @@ namespace PeriDeal
               call,
               "needs one straight crack with one end in the body (section 'Cracks').");
       const unsigned int tip = context.begins_inside ? 0 : 2, other = 2 - tip;
-      CrackFrame         frame{{{context.crack[tip], context.crack[tip + 1]}}, {}};
+      CrackFrame         frame{{{context.crack[tip], context.crack[tip + 1]}}, {}, 0.};
       const double       x = frame.origin[0] - context.crack[other],
                    y       = frame.origin[1] - context.crack[other + 1];
-      frame.along          = {{x / std::hypot(x, y), y / std::hypot(x, y)}};
+      frame.length         = std::hypot(x, y);
+      frame.along          = {{x / frame.length, y / frame.length}};
       const TipField field{PlaneModuli(context), frame, k[0], k.size() > 1 ? k[1] : 0.};
       return std::make_unique<PlaneSolution<TipField>>(field);
     }
@@ -395,7 +392,9 @@ namespace PeriDeal
               "needs one straight crack with both ends in the body (section 'Cracks').");
       const auto  &c = context.crack;
       const double x = c[2] - c[0], y = c[3] - c[1], length = std::hypot(x, y);
-      CrackFrame   frame{{{0.5 * (c[0] + c[2]), 0.5 * (c[1] + c[3])}}, {{x / length, y / length}}};
+      CrackFrame   frame{{{0.5 * (c[0] + c[2]), 0.5 * (c[1] + c[3])}},
+                       {{x / length, y / length}},
+                       length};
       return std::make_unique<Westergaard>(PlaneModuli(context),
                                            frame,
                                            0.5 * length,
@@ -407,6 +406,11 @@ namespace PeriDeal
     std::unique_ptr<ExactSolution> make_named(const SolutionCall      &call,
                                               const ExactSolidContext &context)
     {
+      const auto lacks = [&](const bool has, const std::string &what) {
+        require(!has, call, "holds without " + what + ", which the scene has.");
+      };
+      lacks(context.has_cracks && call.name != "crack tip" && call.name != "westergaard", "cracks");
+      lacks(context.has_holes && call.name != "kirsch", "holes");
       if (call.name == "standing wave")
         {
           const std::vector<double> n = numbers_in(call, 1, 2, "standing wave(1, 1e-3)");
@@ -463,7 +467,7 @@ namespace PeriDeal
   {
     const auto                    &names = exact_solid_names();
     const SolutionCall             call  = take_apart(tidy(text));
-    const std::vector<std::string> parts = split(text);
+    const std::vector<std::string> parts = split_at_commas(text);
     if (std::find(names.begin(), names.end(), call.name) != names.end())
       {
         require(context.no_named.empty(), call, context.no_named);
@@ -478,6 +482,14 @@ namespace PeriDeal
                               " components of the displacement, separated by commas, but '" + text +
                               "' has " + std::to_string(parts.size()) + "."));
       }
-    return std::make_unique<FormulaSolid>(parts);
+    try
+      {
+        return std::make_unique<FormulaSolid>(parts);
+      }
+    catch (const UserError &)
+      {
+        refuse_unknown_name(call, names, "an expression of x, y, z and t for each component");
+        throw;
+      }
   }
 } // namespace PeriDeal

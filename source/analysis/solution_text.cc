@@ -46,6 +46,22 @@ namespace PeriDeal
   }
 
 
+  std::vector<std::string> split_at_commas(const std::string &text)
+  {
+    std::vector<std::string> parts(1);
+    int                      depth = 0;
+    for (const char c : text)
+      {
+        depth += (c == '(') - (c == ')');
+        if (c == ',' && depth == 0)
+          parts.emplace_back();
+        else
+          parts.back() += c;
+      }
+    return parts;
+  }
+
+
   void refuse_name_of_others(const SolutionCall             &call,
                              const std::vector<std::string> &names_of_others,
                              const std::string              &whom,

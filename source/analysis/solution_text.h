@@ -23,6 +23,9 @@ namespace PeriDeal
 
   SolutionCall take_apart(const std::string &text);
 
+  /** Separated by commas outside of parentheses. */
+  std::vector<std::string> split_at_commas(const std::string &text);
+
   /** Throws UserError for a name that is known for another physics: that of @p whom. */
   void refuse_name_of_others(const SolutionCall             &call,
                              const std::vector<std::string> &names_of_others,

@@ -54,19 +54,26 @@ namespace PeriDeal
     std::unique_ptr<ExactSolution> of_solid(const Scene<dim> &scene)
     {
       const Domain<dim> &domain = scene.domain;
-      const Point<dim>   middle = domain.lower + 0.5 * (domain.upper - domain.lower);
-      ExactSolidContext  context;
+      const bool         layers = domain.has_extra_layers();
+      const Point<dim>   lower  = layers ? domain.body_lower : domain.lower,
+                       upper    = layers ? domain.body_upper : domain.upper;
+      const Point<dim>  middle  = lower + 0.5 * (upper - lower);
+      ExactSolidContext context;
       context.dim = dim;
       context.lower.resize(dim);
       context.upper.resize(dim);
       for (unsigned int d = 0; d < dim; ++d)
         {
-          context.lower[d] = domain.lower[d];
-          context.upper[d] = domain.upper[d];
+          context.lower[d] = lower[d];
+          context.upper[d] = upper[d];
         }
-      context.moduli  = scene.material.moduli(middle);
-      context.plane   = scene.elasticity.plane;
-      context.density = scene.material.density.value(middle);
+      context.plane      = scene.elasticity.plane;
+      context.has_cracks = !scene.cracks.cracks.empty();
+      context.has_holes  = domain.shape == Shape::plate_with_hole;
+      if (scene.material.uniform_moduli())
+        context.moduli = scene.material.moduli(middle);
+      if (scene.material.density.is_constant())
+        context.density = scene.material.density.value(middle);
       if constexpr (dim == 2)
         {
           if (domain.shape == Shape::plate_with_hole && domain.has_one_hole &&
@@ -77,8 +84,8 @@ namespace PeriDeal
                             domain.holes[0].center[1],
                             domain.holes[0].radius};
           const auto is_inside = [&](const Point<dim> &p) {
-            return (p - domain.lower)[0] > 0. && (p - domain.lower)[1] > 0. &&
-                   (domain.upper - p)[0] > 0. && (domain.upper - p)[1] > 0.;
+            return (p - lower)[0] > 0. && (p - lower)[1] > 0. && (upper - p)[0] > 0. &&
+                   (upper - p)[1] > 0.;
           };
           const auto pieces = scene.cracks.pieces(0.);
           if (pieces.size() == 1 && pieces[0].corners.size() == 2)
@@ -91,7 +98,7 @@ namespace PeriDeal
         }
       if (domain.shape == Shape::mesh_file || domain.shape == Shape::image)
         context.no_named = "is the solution in a box, but 'Shape' in section 'Domain' is another.";
-      else if (!scene.material.uniform_moduli())
+      else if (!scene.material.uniform_moduli() || !scene.material.density.is_constant())
         context.no_named = "holds for a uniform material only (section 'Material').";
       return make_exact_solid(scene.reference.solution, context);
     }

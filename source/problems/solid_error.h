@@ -12,7 +12,7 @@ namespace PeriDeal
 {
   /**
    * Of the displacements at the nodes, weighted by their volumes; nodes where the solution has no
-   * single value, on the faces of a crack, do not count. Collective.
+   * single value, on the faces of a crack, and those of extra layers do not count. Collective.
    */
   template <int dim>
   Difference error_of_displacement(const SolidProblem<dim> &problem,

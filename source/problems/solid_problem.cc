@@ -187,7 +187,11 @@ namespace PeriDeal
   {
     constexpr double share = 0.01; // of the end time, if no step is given
     if (scene.warms_slowly())      // `Time step` is that of the heat problem
-      return (op().brittle() || op().nonlinear() ? share : 1.) * scene.time.end_time;
+      {
+        const bool in_steps = scene.material.fracture_energy || scene.material.critical_stretch ||
+                              scene.elasticity.kinematics == Kinematics::full;
+        return (in_steps ? share : 1.) * scene.time.end_time;
+      }
     return scene.time.time_step > 0. ? scene.time.time_step : share * scene.time.end_time;
   }
 

@@ -474,9 +474,7 @@ namespace PeriDeal
     }
     with_formulas(communicator, [&] {
       for (auto &problem : problems)
-        {
-          problem->after_remesh(t, scene.time.steady);
-        }
+        problem->after_remesh(t, scene.time.steady);
     });
     for (auto &problem : problems)
       problem->renew_stepper();

@@ -268,7 +268,7 @@ namespace PeriDeal
                       expected.size() == values.size(),
                     UserError("work_precision: '" + computed.rows[k].folder +
                               "/grid.csv' is not whole. Compute the row again with --redo."));
-        row.error = nodal_error(values, expected, planned.cells);
+        row.error = nodal_error(values, expected, planned.cells, plan.reference.empty());
         for (unsigned int d = 0; d < box.dim(); ++d)
           row.spacing = std::max(row.spacing, (box.upper[d] - box.lower[d]) / planned.cells[d]);
         results.rows.push_back(row);

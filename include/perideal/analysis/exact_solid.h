@@ -24,6 +24,7 @@ namespace PeriDeal
     std::vector<double> crack;                 // ends of the one crack, x, y each; or empty
     bool                begins_inside = false; // the crack's first end is in the body
     bool                ends_inside   = false; // its second one is
+    bool                has_cracks = false, has_holes = false;
     std::string         no_named; // why the named solutions do not suit the scene; empty: they do
   };
 
@@ -39,8 +40,8 @@ namespace PeriDeal
    * - `westergaard(S, T)`: infinite plate with the straight crack of the scene under a tension S
    *   across and T along the crack (if not given: S), after Westergaard.
    * - `cantilever(P)`: box whose right side bears the force -P in y, as a parabola, with
-   *   displacements of the beam's left side as given by Timoshenko and Goodier, section 21 (held
-   *   where the middle axis begins, without rotation there).
+   *   displacements of the beam's left side as given by Timoshenko and Goodier, section 21: none in
+   *   its middle, and none in x at its corners.
    * - `standing wave(n, A)`: A sin(n pi (x - x_0)/L) cos(omega t) in x, of whole wave numbers n; in
    *   bars, and between sides that slide in two and three dimensions. A is 1 if not given.
    *
