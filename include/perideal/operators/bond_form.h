@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/bonds/diffusion_bonds.h>
+#include <perideal/scene/choices.h>
 
 #include <functional>
 #include <memory>
@@ -93,4 +94,10 @@ namespace PeriDeal
    */
   template <int dim>
   bool lattice_form_suits(const DiffusionBonds<dim> &bonds, std::string &reason);
+
+  /**
+   * Whether bonds take the lattice form under the entry `Operator form`. @param reason why they
+   * cannot, or empty; @param pays with `auto`. Throws UserError where they have to, but cannot.
+   */
+  bool takes_lattice_form(const OperatorForm wanted, const std::string &reason, const bool pays);
 } // namespace PeriDeal
