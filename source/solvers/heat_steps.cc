@@ -45,7 +45,7 @@ namespace PeriDeal
   }
 
 
-  void HeldHeat::exchange(Archive &archive, const UnknownKeys &keys)
+  void HeldHeat::exchange(Archive &archive, const NodeKeys &keys)
   {
     if (needed)
       archive.exchange("start of span", before, keys);

@@ -112,7 +112,7 @@ namespace PeriDeal
         heat_entered += held.taken(u);
       }
 
-      void exchange_own(Archive &archive, const UnknownKeys &keys) override
+      void exchange_own(Archive &archive, const NodeKeys &keys) override
       {
         archive.exchange("time step", dt);
         archive.exchange("taken", taken, keys);
@@ -340,7 +340,7 @@ namespace PeriDeal
         n_known    = std::min(n_known + 1, 2ULL);
       }
 
-      void exchange_own(Archive &archive, const UnknownKeys &keys) override
+      void exchange_own(Archive &archive, const NodeKeys &keys) override
       {
         ImplicitStepper::exchange_own(archive, keys);
         archive.exchange("previous", previous, keys);

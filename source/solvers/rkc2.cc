@@ -133,7 +133,7 @@ namespace PeriDeal
           take_material_at(u, span.end); // for what is written there
       }
 
-      void exchange_own(Archive &archive, const UnknownKeys &keys) override
+      void exchange_own(Archive &archive, const NodeKeys &keys) override
       {
         archive.exchange("time step", dt);
         held.exchange(archive, keys);

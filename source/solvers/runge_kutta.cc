@@ -119,7 +119,7 @@ namespace PeriDeal
         heat_entered += held.taken(u);
       }
 
-      void exchange_own(Archive &archive, const UnknownKeys &keys) override
+      void exchange_own(Archive &archive, const NodeKeys &keys) override
       {
         archive.exchange("time step", dt);
         held.exchange(archive, keys);

@@ -34,7 +34,7 @@ namespace PeriDeal
   } // namespace
 
 
-  bool Stepper::advance(Vector &u, const double t, const double t_end, Interrupt *interrupt)
+  void Stepper::advance(Vector &u, const double t, const double t_end, const AfterStep &after_step)
   {
     span         = Span();
     span.start   = t;
@@ -42,13 +42,13 @@ namespace PeriDeal
     span.now     = t;
     span.is_open = true;
     begin_span(u);
-    return go_on(u, interrupt);
+    go_on(u, after_step);
   }
 
 
-  bool Stepper::go_on(Vector &u, Interrupt *interrupt)
+  void Stepper::go_on(Vector &u, const AfterStep &after_step)
   {
-    Assert(span.is_open, dealii::ExcMessage("No span has been interrupted."));
+    Assert(span.is_open, dealii::ExcMessage("There is no rest of a span."));
     const auto is_over = [&] {
       return span.n_steps > 0 ? span.n_done == span.n_steps : span.now >= span.end;
     };
@@ -56,17 +56,16 @@ namespace PeriDeal
       {
         take_step(u);
         ++span.n_done;
-        if (interrupt != nullptr && !is_over() && interrupt->asked(span.now))
-          return false;
+        if (after_step && !is_over())
+          after_step(span.now);
       }
     span.is_open = false;
     span.now     = span.end;
     end_span(u);
-    return true;
   }
 
 
-  void Stepper::exchange(Archive &archive, const UnknownKeys &keys)
+  void Stepper::exchange(Archive &archive, const NodeKeys &keys)
   {
     archive.exchange("span start", span.start);
     archive.exchange("span end", span.end);

@@ -32,7 +32,7 @@ namespace PeriDeal
     double taken(const Vector &u);
 
     /** The values that the span began with. Collective. */
-    void exchange(Archive &archive, const UnknownKeys &keys);
+    void exchange(Archive &archive, const NodeKeys &keys);
 
   private:
     const Operator &op;

@@ -6,6 +6,7 @@
 #include <perideal/base/archive.h>
 #include <perideal/operators/operator.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,18 +30,11 @@ namespace PeriDeal
   };
 
 
-  /** Ends Stepper::advance() early. */
-  class Interrupt
-  {
-  public:
-    virtual ~Interrupt() = default;
-
-    /**
-     * Whether to stop at time t. Asked after each step, so it must be fast; the answer must be the
-     * same on all processes.
-     */
-    virtual bool asked(const double t) = 0;
-  };
+  /**
+   * Called after a step that ends at time t and is not the last of its span, when all that the next
+   * steps depend on can be kept. What it throws ends the span.
+   */
+  using AfterStep = std::function<void(const double t)>;
 
 
   /**
@@ -58,25 +52,25 @@ namespace PeriDeal
     /**
      * From u at time t to exactly t_end > t. u must be distributed at t, and comes back distributed
      * at t_end. Throws UserError as soon as values are no longer finite. Collective.
-     *
-     * Where @p interrupt asks for it, ends between two steps, and returns false: go_on() then takes
-     * the same steps as if there had been no break.
      */
-    bool advance(Vector &u, const double t, const double t_end, Interrupt *interrupt = nullptr);
+    void advance(Vector &u, const double t, const double t_end, const AfterStep &after_step = {});
 
-    /** The rest of a span that was interrupted, as advance(). Collective. */
-    bool go_on(Vector &u, Interrupt *interrupt = nullptr);
+    /**
+     * The rest of a span whose beginning was kept by exchange(), with the same steps as if there
+     * had been no break; as advance(). Collective.
+     */
+    void go_on(Vector &u, const AfterStep &after_step = {});
 
-    /** There is a rest of a span to go_on() with. */
+    /** Within a span: there is a rest to go_on() with. */
     bool is_inside_span() const
     {
       return span.is_open;
     }
 
-    /** The end of the last step. */
-    double reached() const
+    /** Where that ends. */
+    double end_of_span() const
     {
-      return span.now;
+      return span.end;
     }
 
     /**
@@ -84,7 +78,7 @@ namespace PeriDeal
      * stepper that loads must be made as the one that saved, for an operator of the same scene at
      * the same time. @p keys those of u. Collective.
      */
-    void exchange(Archive &archive, const UnknownKeys &keys);
+    void exchange(Archive &archive, const NodeKeys &keys);
 
     /** Forget the past (multistep methods): the operator or the solution has changed abruptly. */
     virtual void restart() {}
@@ -150,7 +144,7 @@ namespace PeriDeal
     virtual void end_span(Vector &u) = 0;
 
     /** What this method has besides the members here. */
-    virtual void exchange_own(Archive &, const UnknownKeys &) {}
+    virtual void exchange_own(Archive &, const NodeKeys &) {}
 
     Span        span;
     StepperCost spent;
