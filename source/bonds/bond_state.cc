@@ -6,6 +6,7 @@
 #include <perideal/bonds/bond_state.h>
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace PeriDeal
 {
@@ -41,6 +42,38 @@ namespace PeriDeal
       return entry.first == number;
     });
     return found == times.end() ? 0. : found->second;
+  }
+
+
+  std::vector<std::size_t> BondState::exchange(Archive                        &archive,
+                                               const std::vector<std::size_t> &starts,
+                                               const NodeKeys                 &keys)
+  {
+    KeyedPairs               pairs; // a node, and the number of its bond among its own
+    std::vector<std::size_t> numbers;
+    if (!archive.loads())
+      for (const auto &[number, time] : times)
+        {
+          const auto        next = std::upper_bound(starts.begin(), starts.end(), number);
+          const std::size_t node = next - starts.begin() - 1;
+          pairs.keys.push_back({keys[node], number - starts[node]});
+          pairs.values.insert(pairs.values.end(), {time, static_cast<double>(marks[number])});
+        }
+    archive.exchange("bonds", pairs, keys);
+    if (!archive.loads() || pairs.keys.empty())
+      return numbers;
+    std::unordered_map<std::uint64_t, std::size_t> node_of;
+    for (std::size_t node = 0; node < keys.size(); ++node)
+      node_of[keys[node]] = node;
+    resize(starts.back());
+    for (std::size_t k = 0; k < pairs.keys.size(); ++k)
+      {
+        const std::size_t number = starts[node_of.at(pairs.keys[k][0])] + pairs.keys[k][1];
+        mark(number, static_cast<Mark>(pairs.values[2 * k + 1]), pairs.values[2 * k]);
+        numbers.push_back(number);
+      }
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
   }
 
 

@@ -200,6 +200,32 @@ namespace PeriDeal
 
 
   template <int dim>
+  void DisplacementConditions<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    KeyedPairs pairs; // a node and a component
+    for (const Prescribed &entry : prescribed)
+      if (entry.rate && !archive.loads())
+        {
+          pairs.keys.push_back({keys[entry.unknown / dim], entry.unknown % dim});
+          pairs.values.insert(pairs.values.end(), {entry.time, entry.way});
+        }
+    archive.exchange("prescribed velocities", pairs, keys);
+    if (!archive.loads())
+      return;
+    std::map<KeyedPairs::Key, std::size_t> found;
+    for (std::size_t k = 0; k < pairs.keys.size(); ++k)
+      found[pairs.keys[k]] = k;
+    for (Prescribed &entry : prescribed)
+      if (entry.rate)
+        {
+          const std::size_t k = found.at({keys[entry.unknown / dim], entry.unknown % dim});
+          entry.time          = pairs.values[2 * k];
+          entry.way           = pairs.values[2 * k + 1];
+        }
+  }
+
+
+  template <int dim>
   void DisplacementConditions<dim>::add_reactions(
     const Vector                                 &v,
     std::map<types::boundary_id, Tensor<1, dim>> &forces) const

@@ -195,6 +195,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ElasticElements<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    conditions->exchange(archive, keys);
+    ElasticOperator::exchange(archive, keys);
+  }
+
+
+  template <int dim>
   void ElasticElements<dim>::distribute(Vector &u, const double t) const
   {
     conditions->distribute(u, t);

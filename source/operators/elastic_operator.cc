@@ -50,6 +50,43 @@ namespace PeriDeal
   }
 
 
+  void BreakPlaces::exchange(Archive &archive)
+  {
+    archive.exchange("first break", first);
+    archive.exchange("breaks elsewhere", elsewhere);
+    unsigned int n_sides = beside_loads.size();
+    archive.exchange("loaded sides with breaks", n_sides);
+    auto side = beside_loads.begin();
+    for (unsigned int k = 0; k < n_sides; ++k)
+      {
+        const Archive::Part part(archive, "loaded side " + std::to_string(k));
+        std::string         name  = archive.loads() ? "" : side->first;
+        unsigned long long  count = archive.loads() ? 0 : (side++)->second;
+        archive.exchange("name", name);
+        archive.exchange("breaks", count);
+        beside_loads[name] = count;
+      }
+  }
+
+
+  void ElasticOperator::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    Operator::exchange(archive, keys);
+    places.exchange(archive);
+    bool is_warmed = nodal_change.size() > 0;
+    archive.exchange("is warmed", is_warmed);
+    if (!is_warmed)
+      return;
+    Vector change;
+    initialize_nodal_vector(change);
+    for (unsigned int i = 0; i < nodal_change.locally_owned_size(); ++i)
+      change.local_element(i) = nodal_change.local_element(i);
+    archive.exchange("temperature change", change, keys);
+    if (archive.loads())
+      set_temperature_change(change);
+  }
+
+
   double ElasticOperator::scaled_bound() const
   {
     return sharp_bound(

@@ -279,10 +279,26 @@ namespace PeriDeal
     if (state.size() == 0)
       state.resize(images.size());
     state.mark(number, mark, t);
+    release(number);
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::release(const std::size_t number)
+  {
     springs[number] = 0.;
     moments[number] = Tensor<1, dim>();
     if (!lengths.empty())
       lengths[number] = across[number] = 0.;
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    const Archive::Part part(archive, "fictitious nodes");
+    for (const std::size_t number : state.exchange(archive, starts, keys))
+      release(number);
   }
 
 

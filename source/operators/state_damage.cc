@@ -209,10 +209,7 @@ namespace PeriDeal
     for (const auto &[k, ratio] : breaking)
       {
         state.mark(k, BondState::broken, t);
-        springs[k] = 0.;
-        moments[k] = Tensor<1, dim>();
-        if (full)
-          lengths[k] = across[k] = 0.;
+        release(k);
       }
     n_ends = Utilities::MPI::sum(breaking.size() + break_images(t), all);
     released += before - energy(u);
@@ -222,6 +219,38 @@ namespace PeriDeal
     if (any_thermal)
       find_thermal_loads();
     return n_ends / 2;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::release(const std::size_t stored_bond)
+  {
+    springs[stored_bond] = 0.;
+    moments[stored_bond] = Tensor<1, dim>();
+    if (full)
+      lengths[stored_bond] = across[stored_bond] = 0.;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    conditions->exchange(archive, keys);
+    const std::vector<std::size_t> now_broken = state.exchange(archive, starts, keys);
+    for (const std::size_t k : now_broken)
+      release(k);
+    n_bonds -= 0.5 * now_broken.size();
+    if (beyond)
+      beyond->exchange(archive, keys);
+    archive.exchange("released energy", released);
+    archive.exchange("broken bonds", n_broken);
+    if (archive.loads() && breaks)
+      {
+        find_diagonal();
+        if (any_thermal)
+          find_thermal_loads();
+      }
+    ElasticOperator::exchange(archive, keys);
   }
 
 
@@ -287,6 +316,8 @@ namespace PeriDeal
   template unsigned long long  StateOperator<dim>::break_bonds(const Vector &,                       \
                                                               const double,                         \
                                                               const double);                        \
+  template void                StateOperator<dim>::release(const std::size_t);                       \
+  template void                StateOperator<dim>::exchange(Archive &, const NodeKeys &);            \
   template double              StateOperator<dim>::released_energy() const;                          \
   template unsigned long long  StateOperator<dim>::n_broken_bonds() const;                           \
   template std::vector<double> StateOperator<dim>::damage() const;

@@ -3,6 +3,7 @@
 
 #include <perideal/analysis/exact_solution.h>
 #include <perideal/base/user_error.h>
+#include <perideal/mesh/node_keys.h>
 #include <perideal/problems/run_context.h>
 #include <perideal/scene/with_formulas.h>
 #include <perideal/solvers/linear_solver.h>
@@ -168,13 +169,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  void DiffusionProblem<dim>::advance(const double from,
+  void DiffusionProblem<dim>::advance(const double,
                                       const double to,
                                       const std::function<void(const double)> &,
-                                      const RunContext &)
+                                      const RunContext &context)
   {
     if (!scene.time.steady)
-      advance_through_events(from, to);
+      advance_through_events(to, context.after_step);
   }
 
 
@@ -291,23 +292,67 @@ namespace PeriDeal
 
 
   template <int dim>
-  void DiffusionProblem<dim>::advance_through_events(const double t_begin, const double t_end)
+  void DiffusionProblem<dim>::advance_through_events(const double     t_end,
+                                                     const AfterStep &after_step)
   {
     with_formulas(this->dofs().get_communicator(), [&] {
-      for (double from = t_begin; from < t_end;)
+      while (reached < t_end)
         {
-          if (scene.cracks.change())
+          double to = stepper->end_of_span();
+          if (stepper->is_inside_span())
             {
-              Timings::Scope scope(this->timings, "changing cracks");
-              if (update(from))
-                stepper->restart();
+              Timings::Scope scope(this->timings, "time stepping");
+              stepper->go_on(solution, after_step);
             }
-          Timings::Scope scope(this->timings, "time stepping");
-          const double   to = std::min(t_end, op().next_event(from));
-          stepper->advance(solution, from, to);
-          from = to;
+          else
+            {
+              if (scene.cracks.change())
+                {
+                  Timings::Scope scope(this->timings, "changing cracks");
+                  if (update(reached))
+                    stepper->restart();
+                }
+              Timings::Scope scope(this->timings, "time stepping");
+              to = std::min(t_end, op().next_event(reached));
+              stepper->advance(solution, reached, to, after_step);
+            }
+          reached = to;
+          if (after_step && reached < t_end)
+            after_step(reached);
         }
     });
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::exchange(Archive &archive)
+  {
+    const NodeKeys keys = node_keys(this->dofs());
+    archive.exchange("solution", solution, keys);
+    archive.exchange("reached", reached);
+    archive.exchange("steady iterations", steady_iterations);
+    ledger.exchange(archive);
+    this->timings.exchange(archive);
+    if (stepper)
+      stepper->exchange(archive, keys);
+    if (archive.loads())
+      repeat_changes();
+    op().exchange(archive, keys);
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::repeat_changes()
+  {
+    // One after the other, as they have been made: sums of changes keep their digits.
+    if (scene.cracks.change() && stepper)
+      with_formulas(this->dofs().get_communicator(), [&] {
+        for (double t = time_of_start; t < reached || (t == reached && stepper->is_inside_span());
+             t        = op().next_event(t))
+          update(t);
+      });
+    if (op().depends_on_solution())
+      with_formulas(this->dofs().get_communicator(), [&] { op().take_material_at(solution); });
   }
 
 

@@ -128,16 +128,22 @@ namespace PeriDeal
         transfer->prepare_for_coarsening_and_refinement(this->solution);
       }
 
-      void after_remesh(const double t, const bool steady) override
+      void rebuild(const double t) override
       {
         const unsigned long long applications = fem->n_applications();
         fem.reset();
         node_set.reset();
         number_unknowns();
         build_operator(t);
+        this->time_of_start = t;
         fem->carry_over_applications(applications);
+        fem->initialize_vector(this->solution);
+      }
+
+      void after_remesh(const double t, const bool steady) override
+      {
+        rebuild(t);
         Vector &u = this->solution;
-        fem->initialize_vector(u);
         transfer->interpolate(u);
         transfer.reset();
         fem->interpolate_hanging(u);

@@ -74,6 +74,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Problem<dim>::rebuild(const double)
+  {
+    Assert(false, dealii::ExcNotImplemented());
+  }
+
+
+  template <int dim>
   void Problem<dim>::renew_stepper()
   {
     Assert(false, dealii::ExcNotImplemented());

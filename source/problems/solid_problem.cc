@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/user_error.h>
+#include <perideal/mesh/node_keys.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/scene/lists.h>
 #include <perideal/solvers/static_solver.h>
@@ -158,7 +159,9 @@ namespace PeriDeal
   void SolidProblem<dim>::begin(const RunContext &context)
   {
     op().initialize_vector(displacement);
-    if (!scene.elasticity.is_static())
+    if (scene.elasticity.is_static())
+      make_loading();
+    else
       begin_motion(context);
   }
 
@@ -237,12 +240,49 @@ namespace PeriDeal
   {
     if (!loading)
       return move(from, to, report, context);
-    if (scene.warms_slowly())
+    if (scene.warms_slowly() && !loading->is_inside_step())
       take_temperature();
     Timings::Scope scope(this->timings, "solving");
-    loading->step(displacement, to);
+    if (loading->is_inside_step())
+      loading->go_on(displacement, context.after_step);
+    else
+      loading->step(displacement, to, context.after_step);
     n_iterations = loading->n_iterations();
     tell_first_break(*this, to, context);
+  }
+
+
+  template <int dim>
+  typename SolidProblem<dim>::MotionParts SolidProblem<dim>::parts_between(const double from,
+                                                                           const double to) const
+  {
+    constexpr double n_reports = 50.; // of the progress
+    MotionParts      parts;
+    parts.n_steps = std::max(1., std::ceil((to - from) / stepper->current_step() * (1. - 1e-10)));
+    parts.span    = StepSpan::between(from, to);
+    parts.span.n_steps = static_cast<unsigned long long>(std::min(parts.n_steps, n_reports));
+    return parts;
+  }
+
+
+  template <int dim>
+  double SolidProblem<dim>::MotionParts::next() const
+  {
+    // Whole steps between two reports, so that these change no step.
+    const unsigned int part = span.n_done + 1;
+    return part == span.n_steps ?
+             span.end :
+             span.start +
+               (span.end - span.start) * std::floor(n_steps * part / span.n_steps) / n_steps;
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::MotionParts::exchange(Archive &archive)
+  {
+    const Archive::Part part(archive, "parts");
+    span.exchange(archive);
+    archive.exchange("planned steps", n_steps);
   }
 
 
@@ -252,26 +292,51 @@ namespace PeriDeal
                                const std::function<void(const double)> &report,
                                const RunContext                        &context)
   {
-    constexpr unsigned int n_reports = 50; // of the progress
-    Timings::Scope         scope(this->timings, "time stepping");
-    // Whole steps between two reports, so that these change no step.
-    const double       span = to - from, step = stepper->current_step();
-    const double       n_steps = std::max(1., std::ceil(span / step * (1. - 1e-10)));
-    const unsigned int n_parts = std::min(n_steps, static_cast<double>(n_reports));
-    double             now     = from;
-    for (unsigned int part = 1; part <= n_parts; ++part)
+    Timings::Scope scope(this->timings, "time stepping");
+    if (!moving.span.is_open)
+      moving = parts_between(from, to);
+    StepSpan &span = moving.span;
+    while (span.n_done < span.n_steps)
       {
-        const double next =
-          part == n_parts ? to : from + span * std::floor(n_steps * part / n_parts) / n_steps;
-        stepper->advance(displacement, velocity, now, next);
-        now = next;
+        const double next = moving.next();
+        if (stepper->is_inside_span())
+          stepper->go_on(displacement, velocity, context.after_step);
+        else
+          stepper->advance(displacement, velocity, span.now, next, context.after_step);
+        span.now = next;
+        ++span.n_done;
         if (op().brittle())
           {
             tell_broken_bonds(op().n_broken_bonds());
             tell_first_break(*this, next, context);
           }
-        report(static_cast<double>(part) / n_parts);
+        report(static_cast<double>(span.n_done) / span.n_steps);
+        if (context.after_step && span.n_done < span.n_steps)
+          context.after_step(next);
       }
+    span.is_open = false;
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::exchange(Archive &archive)
+  {
+    const NodeKeys keys = node_keys(this->dofs());
+    archive.exchange("displacement", displacement, keys);
+    archive.exchange("force scale", force_scale);
+    archive.exchange("iterations", n_iterations);
+    this->timings.exchange(archive);
+    op().exchange(archive, keys);
+    if (loading)
+      loading->exchange(archive, keys);
+    if (stepper)
+      {
+        archive.exchange("velocity", velocity, keys);
+        moving.exchange(archive);
+        stepper->exchange(archive, keys);
+      }
+    if (archive.loads())
+      op().linearize(displacement);
   }
 
 
@@ -350,10 +415,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidProblem<dim>::begin_loading(const RunContext &context)
+  void SolidProblem<dim>::make_loading()
   {
-    Timings::Scope scope(this->timings, "solving");
-    StaticOptions  options;
+    StaticOptions options;
     options.tolerance      = scene.solver.tolerance;
     options.max_iterations = scene.solver.most_iterations(scene.elasticity.solver);
     options.direct_up_to   = scene.solver.direct_up_to;
@@ -362,6 +426,13 @@ namespace PeriDeal
       op(),
       make_static_solver(scene.elasticity.solver_name(), op(), options),
       options);
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::begin_loading(const RunContext &context)
+  {
+    Timings::Scope scope(this->timings, "solving");
     loading->begin(displacement, 0.);
     n_iterations = loading->n_iterations();
     tell_first_break(*this, 0., context);

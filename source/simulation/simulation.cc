@@ -147,25 +147,22 @@ namespace PeriDeal
     build();
     begin();
     progress.begin("time");
-    if (!scene.time.steady)
-      settle();
-    const bool at_stops = tells_at_stops();
-    if (at_stops)
-      add_totals(0.);
-    if (scene.output.starts_at_zero() && !scene.time.steady)
-      write_fields(0.);
-    if (at_stops)
-      end_output(0.);
-    for (const double t : output_times())
+    start();
+    for (const std::vector<double> times = output_times(); place.output < times.size();)
       {
+        const double t = times[place.output];
         advance_to(t);
         progress.update(scene.time.steady ? 1. : t / scene.time.end_time);
         write_output(t);
+        place.stops.clear();
+        place.stop = 0;
+        if (++place.output < times.size())
+          offer_checkpoint(t);
       }
     progress.end();
-    if (n_adaptations > 0)
-      record->notes.push_back("the mesh was adapted " + std::to_string(n_adaptations) +
-                              (n_adaptations == 1 ? " time" : " times") + "; it has " +
+    if (const unsigned int n = history.n_adaptations(); n > 0)
+      record->notes.push_back("the mesh was adapted " + std::to_string(n) +
+                              (n == 1 ? " time" : " times") + "; it has " +
                               readable_count(mesh->n_global_active_cells()) +
                               " cells at the end ('Zone = adaptive' in section 'Coupling').");
     for (const auto &problem : problems)
@@ -184,6 +181,22 @@ namespace PeriDeal
     for (const auto *list : {&companions, &problems})
       for (const auto &problem : *list)
         problem->begin(context());
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::start()
+  {
+    if (scene.time.steady)
+      return;
+    settle();
+    const bool at_stops = tells_at_stops();
+    if (at_stops)
+      add_totals(0.);
+    if (scene.output.starts_at_zero())
+      write_fields(0.);
+    if (at_stops)
+      end_output(0.);
   }
 
 
@@ -280,7 +293,8 @@ namespace PeriDeal
   {
     nlohmann::ordered_json summary = PeriDeal::describe_scene(scene, text, *mesh, communicator);
     if (scene.domain.coarsening > 0)
-      summary["mesh"] = {{"coarsening", scene.domain.coarsening}, {"adaptations", n_adaptations}};
+      summary["mesh"] = {{"coarsening", scene.domain.coarsening},
+                         {"adaptations", history.n_adaptations()}};
     describe_run(scene, *mesh, *record, timings, summary);
     summary["write times"] = output_times();
     for (const auto &problem : problems)
@@ -334,12 +348,12 @@ namespace PeriDeal
     double some = 0., all = 0.;
     for (unsigned int k = 0; k < problems.size(); ++k)
       {
-        const double work = problems[k]->work_of(to - now);
+        const double work = problems[k]->work_of(to - place.now);
         all += work;
         if (k < n)
           some += work;
       }
-    return (now + some / all * (to - now)) / scene.time.end_time;
+    return (place.now + some / all * (to - place.now)) / scene.time.end_time;
   }
 
 
@@ -348,7 +362,7 @@ namespace PeriDeal
   {
     std::vector<double> stops;
     for (const auto &problem : problems)
-      for (const double stop : problem->stops(now, t))
+      for (const double stop : problem->stops(place.now, t))
         stops.push_back(stop);
     std::sort(stops.begin(), stops.end());
     stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
@@ -361,26 +375,32 @@ namespace PeriDeal
   {
     if (scene.time.steady)
       return find_steady_state();
-    if (!(t > now))
+    if (!(t > place.now))
       return;
-    const std::vector<double> stops = stops_until(t);
-    for (unsigned int n = 0; n < stops.size(); ++n)
+    if (place.stops.empty())
+      place.stops = stops_until(t);
+    while (place.stop < place.stops.size())
       {
-        while (now < stops[n])
+        for (const double stop = place.stops[place.stop]; place.now < stop;)
           {
-            const double next = grading ? grading->next_adaptation(now) :
+            const double next = grading ? grading->next_adaptation(place.now) :
                                           std::numeric_limits<double>::infinity();
-            const double to   = std::min(stops[n], next);
-            advance_all(to, n + 1, stops.size(), t);
+            const double to   = std::min(stop, next);
+            advance_all(to, place.stop + 1, place.stops.size(), t);
             if (to == next)
               adapt(to);
           }
+        ++place.stop;
         if (!tells_at_stops())
           continue;
-        Timings::Scope scope(timings, "output");
-        add_totals(now);
-        end_output(now);
-        progress.update(now / scene.time.end_time);
+        {
+          Timings::Scope scope(timings, "output");
+          add_totals(place.now);
+          end_output(place.now);
+        }
+        progress.update(place.now / scene.time.end_time);
+        if (place.stop < place.stops.size())
+          offer_checkpoint(place.now);
       }
   }
 
@@ -391,28 +411,32 @@ namespace PeriDeal
                                     const unsigned int n_stops,
                                     const double       t)
   {
-    for (const auto &companion : companions)
+    for (; place.problem < companions.size(); ++place.problem)
       {
-        Timings::Scope scope(timings, companion->field_name());
-        companion->advance(
-          now,
+        Problem<dim>  &companion = *companions[place.problem];
+        Timings::Scope scope(timings, companion.field_name());
+        companion.advance(
+          place.now,
           to,
           [](const double) {},
           context());
       }
-    for (unsigned int k = 0; k < problems.size(); ++k)
+    for (; place.problem < companions.size() + problems.size(); ++place.problem)
       {
-        const double before = share_done(k, to), after = share_done(k + 1, to);
-        progress.doing(problems[k]->doing(stop, n_stops, t));
-        if (!problems[k]->tells_at_stops())
-          progress.advancing(now, to, before, after);
-        problems[k]->advance(
-          now,
+        const unsigned int k       = place.problem - companions.size();
+        Problem<dim>      &problem = *problems[k];
+        const double       before = share_done(k, to), after = share_done(k + 1, to);
+        progress.doing(problem.doing(stop, n_stops, t));
+        if (!problem.tells_at_stops())
+          progress.advancing(place.now, to, before, after);
+        problem.advance(
+          place.now,
           to,
           [&](const double share) { progress.update(before + share * (after - before)); },
           context());
       }
-    now = to;
+    place.problem = 0;
+    place.now     = to;
   }
 
 
@@ -431,56 +455,6 @@ namespace PeriDeal
         if (std::abs(mesh->n_global_active_cells() - n_before) < settled * n_before)
           break;
       }
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::prepare_adaptation()
-  {
-    if (scene.coupling.zone != ZoneKind::adaptive)
-      return;
-    grading = std::make_unique<Grading<dim>>(scene, *mesh);
-    if (scene.time.steady)
-      return;
-    for (unsigned int round = 0; round < scene.domain.coarsening && adapt(0.); ++round)
-      for (auto &problem : problems)
-        problem->start_anew();
-  }
-
-
-  template <int dim>
-  bool Simulation<dim>::adapt(const double t)
-  {
-    if (!grading)
-      return false;
-    grading->set_time(t);
-    const auto guide = std::find_if(problems.begin(), problems.end(), [](const auto &problem) {
-      return problem->name() == to_string(ModelKind::coupled);
-    });
-    const RecoveryIndicators found = (*guide)->indicators();
-    // A uniform field has fluxes of round-off only.
-    constexpr double round_off = 1e-20;
-    const double     least     = round_off * found.size / scene.domain.spacing().norm_square();
-    const double     goal      = scene.coupling.adaptive_tolerance;
-    const double     target =
-      goal * goal * std::max(found.energy, least) / mesh->n_global_active_cells();
-    {
-      Timings::Scope scope(timings, "mesh adaptation");
-      if (!grading->mark(*mesh, found.squares, target))
-        return false;
-      for (auto &problem : problems)
-        problem->before_remesh();
-      mesh->execute_coarsening_and_refinement();
-    }
-    with_formulas(communicator, [&] {
-      for (auto &problem : problems)
-        problem->after_remesh(t, scene.time.steady);
-    });
-    for (auto &problem : problems)
-      problem->renew_stepper();
-    readers_fit = false;
-    ++n_adaptations;
-    return true;
   }
 
 

@@ -7,6 +7,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <perideal/problems/places.h>
+#include <perideal/problems/problem_factory.h>
 
 #include <algorithm>
 #include <cmath>

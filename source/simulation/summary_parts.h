@@ -6,6 +6,7 @@
 #include <deal.II/grid/tria.h>
 
 #include <perideal/analysis/coupling_certificate.h>
+#include <perideal/base/progress.h>
 #include <perideal/output/result_folder.h>
 #include <perideal/problems/problem.h>
 #include <perideal/problems/result_record.h>

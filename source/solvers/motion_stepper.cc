@@ -208,47 +208,96 @@ namespace PeriDeal
   }
 
 
-  void MotionStepper::advance(Vector &u, Vector &v, const double t, const double t_end)
+  void MotionStepper::advance(Vector          &u,
+                              Vector          &v,
+                              const double     t,
+                              const double     t_end,
+                              const AfterStep &after_step)
   {
-    constexpr unsigned int between_checks = 20, between_examinations = 50;
-    constexpr double       same = 1e-6; // not another step, but round-off of the times
-    double                 from = t;
-    unsigned long long     n = n_equal_steps(t_end - t, longest), k = 0;
+    span         = StepSpan::between(t, t_end);
+    span.n_steps = n_equal_steps(t_end - t, longest);
     if (fresh)
       begin(u, v, t);
-    for (double now = t; k < n;)
+    go_on(u, v, after_step);
+  }
+
+
+  void MotionStepper::go_on(Vector &u, Vector &v, const AfterStep &after_step)
+  {
+    while (span.n_done < span.n_steps)
       {
-        const double next = k + 1 == n ? t_end : from + (k + 1) * ((t_end - from) / n);
-        if (std::abs(next - now - step_now) > same * step_now)
-          jumps += kept_back(next - now) - kept_back(step_now);
-        step_now      = next - now;
-        last          = u;
-        last_velocity = v;
-        step(u, v, now, step_now);
-        ++spent.steps;
-        change = u;
-        change -= last;
-        const double gain = work_of_forces.step(change, unbalanced, next);
-        work += gain;
-        effort += std::abs(gain);
-        exchanged = std::max(exchanged, start + std::abs(work));
-        break_bonds(u, next);
-        now = next;
-        tell_step(now);
-        // Of linear bodies there is nothing to be found: what their steps keep they keep to
-        // round-off.
-        if (op.nonlinear() && spent.steps % between_examinations == 0)
-          examine(u, v, now);
-        else if (spent.steps % between_checks == 0 || k + 1 == n)
-          check(v, now);
-        ++k;
-        if (spent.steps % StepLimit::between_looks == 0 && follow_body(u, now) && k < n)
-          {
-            from = now;
-            n    = n_equal_steps(t_end - from, longest);
-            k    = 0;
-          }
+        take_step(u, v);
+        look_after(u, v);
+        if (after_step && span.n_done < span.n_steps)
+          after_step(span.now);
       }
+    span.is_open = false;
+  }
+
+
+  void MotionStepper::take_step(Vector &u, Vector &v)
+  {
+    constexpr double same = 1e-6; // not another step, but round-off of the times
+    const double     next = span.n_done + 1 == span.n_steps ?
+                              span.end :
+                              span.start + (span.n_done + 1) * ((span.end - span.start) / span.n_steps);
+    if (std::abs(next - span.now - step_now) > same * step_now)
+      jumps += kept_back(next - span.now) - kept_back(step_now);
+    step_now      = next - span.now;
+    last          = u;
+    last_velocity = v;
+    step(u, v, span.now, step_now);
+    ++spent.steps;
+    change = u;
+    change -= last;
+    const double gain = work_of_forces.step(change, unbalanced, next);
+    work += gain;
+    effort += std::abs(gain);
+    exchanged = std::max(exchanged, start + std::abs(work));
+    break_bonds(u, next);
+    span.now = next;
+    ++span.n_done;
+    tell_step(next);
+  }
+
+
+  void MotionStepper::look_after(const Vector &u, const Vector &v)
+  {
+    constexpr unsigned int between_checks = 20, between_examinations = 50;
+    const bool             is_last = span.n_done == span.n_steps;
+    // Of linear bodies there is nothing to be found: what their steps keep they keep to round-off.
+    if (op.nonlinear() && spent.steps % between_examinations == 0)
+      examine(u, v, span.now);
+    else if (spent.steps % between_checks == 0 || is_last)
+      check(v, span.now);
+    if (spent.steps % StepLimit::between_looks != 0 || !follow_body(u, span.now) || is_last)
+      return;
+    span.start   = span.now;
+    span.n_steps = n_equal_steps(span.end - span.now, longest);
+    span.n_done  = 0;
+  }
+
+
+  void MotionStepper::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    span.exchange(archive);
+    spent.exchange(archive);
+    archive.exchange("unbalanced", unbalanced, keys);
+    archive.exchange("started", started);
+    archive.exchange("fresh", fresh);
+    archive.exchange("suspected at", suspected_at);
+    archive.exchange("longest step", longest);
+    archive.exchange("shortest step", shortest);
+    archive.exchange("last step", step_now);
+    archive.exchange("start", start);
+    archive.exchange("work", work);
+    archive.exchange("effort", effort);
+    archive.exchange("start of supports", support_start);
+    archive.exchange("jumps", jumps);
+    archive.exchange("exchanged", exchanged);
+    work_of_forces.exchange(archive, keys);
+    if (limit)
+      limit->exchange(archive);
   }
 
 

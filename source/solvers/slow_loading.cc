@@ -93,15 +93,16 @@ namespace PeriDeal
   }
 
 
-  void SlowLoading::break_bonds(Vector &u, const double t)
+  void SlowLoading::break_bonds(Vector &u, const double t, const AfterStep &after_round)
   {
     constexpr double share = 0.9; // of the largest stretch: what breaks at once
     if (!op.brittle())
       return;
-    bool any = false;
-    for (double energy = op.energy(u); op.break_bonds(u, t, share) > 0;)
+    if (!breaking.is_open)
+      breaking = {t, op.energy(u), false, true};
+    while (op.break_bonds(u, t, share) > 0)
       {
-        any = true;
+        breaking.any = true;
         solver->operator_changed();
         scratch = u;
         solve(u, t);
@@ -109,10 +110,13 @@ namespace PeriDeal
         // Supports are at rest.
         const double gain = scratch * work_of_forces.loads(), left = op.energy(u);
         so_far.work += gain;
-        so_far.dissipated += energy + gain - left;
-        energy = left;
+        so_far.dissipated += breaking.energy + gain - left;
+        breaking.energy = left;
+        if (after_round)
+          after_round(t);
       }
-    if (!any)
+    breaking.is_open = false;
+    if (!breaking.any)
       return;
     op.unbalanced(unbalanced, u, t);
     work_of_forces.begin(unbalanced, t);
@@ -127,12 +131,12 @@ namespace PeriDeal
     so_far.start = op.energy(u);
     op.unbalanced(unbalanced, u, t);
     work_of_forces.begin(unbalanced, t);
-    break_bonds(u, t);
+    break_bonds(u, t, {});
     now = t;
   }
 
 
-  void SlowLoading::step(Vector &u, const double t)
+  void SlowLoading::step(Vector &u, const double t, const AfterStep &after_round)
   {
     last = u;
     if (has_before)
@@ -152,13 +156,45 @@ namespace PeriDeal
     before -= last;
     so_far.work += work_of_forces.step(before, unbalanced, t);
     so_far.exchanged = std::max(so_far.exchanged, so_far.start + std::abs(so_far.work));
-    break_bonds(u, t);
+    breaking         = {t, 0., false, false};
+    go_on(u, after_round);
+  }
+
+
+  void SlowLoading::go_on(Vector &u, const AfterStep &after_round)
+  {
+    const double t = breaking.time;
+    break_bonds(u, t, after_round);
     before.sadd(-1., 1., u);
     has_before = true;
     last_time  = now;
     now        = t;
     ++steps;
     tell_step(t);
+  }
+
+
+  void SlowLoading::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    archive.exchange("last equilibrium", last, keys);
+    archive.exchange("before", before, keys);
+    archive.exchange("has before", has_before);
+    archive.exchange("size of residuals", size);
+    archive.exchange("now", now);
+    archive.exchange("time before", last_time);
+    archive.exchange("iterations", iterations);
+    archive.exchange("steps", steps);
+    archive.exchange("start", so_far.start);
+    archive.exchange("work", so_far.work);
+    archive.exchange("exchanged", so_far.exchanged);
+    archive.exchange("dissipated", so_far.dissipated);
+    archive.exchange("time of breaking", breaking.time);
+    archive.exchange("energy of breaking", breaking.energy);
+    archive.exchange("any broken", breaking.any);
+    archive.exchange("breaking", breaking.is_open);
+    work_of_forces.exchange(archive, keys);
+    if (archive.loads())
+      solver->operator_changed();
   }
 
 

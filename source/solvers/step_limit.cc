@@ -58,4 +58,13 @@ namespace PeriDeal
       step = std::min(first, share * limit);
     return step;
   }
+
+
+  void StepLimit::exchange(Archive &archive)
+  {
+    archive.exchange("limited step", step);
+    archive.exchange("stretch at limit", stretch);
+    archive.exchange("broken bonds at limit", n_broken);
+    archive.exchange("applications for limits", spent);
+  }
 } // namespace PeriDeal

@@ -36,11 +36,7 @@ namespace PeriDeal
 
   void Stepper::advance(Vector &u, const double t, const double t_end, const AfterStep &after_step)
   {
-    span         = Span();
-    span.start   = t;
-    span.end     = t_end;
-    span.now     = t;
-    span.is_open = true;
+    span = StepSpan::between(t, t_end);
     begin_span(u);
     go_on(u, after_step);
   }
@@ -67,15 +63,8 @@ namespace PeriDeal
 
   void Stepper::exchange(Archive &archive, const NodeKeys &keys)
   {
-    archive.exchange("span start", span.start);
-    archive.exchange("span end", span.end);
-    archive.exchange("span now", span.now);
-    archive.exchange("span steps", span.n_steps);
-    archive.exchange("span steps done", span.n_done);
-    archive.exchange("span is open", span.is_open);
-    archive.exchange("steps", spent.steps);
-    archive.exchange("rejected", spent.rejected);
-    archive.exchange("iterations", spent.iterations);
+    span.exchange(archive);
+    spent.exchange(archive);
     archive.exchange_share("heat entered", heat_entered);
     exchange_own(archive, keys);
   }

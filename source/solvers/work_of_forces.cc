@@ -46,4 +46,12 @@ namespace PeriDeal
     last_forces.swap(forces);
     return dealii::Utilities::MPI::sum(work, du.get_mpi_communicator());
   }
+
+
+  void WorkOfForces::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    archive.exchange("work has begun", begun);
+    archive.exchange("load", load, keys);
+    archive.exchange("last forces", last_forces, keys);
+  }
 } // namespace PeriDeal

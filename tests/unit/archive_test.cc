@@ -40,13 +40,13 @@ namespace PeriDeal
 
 
     /** A run in two spans; the first may be interrupted. */
-    struct Run
+    struct HeatRun
     {
-      Run(const Settings       &settings,
-          const ModelKind       model,
-          const std::string    &method,
-          const StepperOptions &options,
-          const MPI_Comm        communicator = MPI_COMM_WORLD)
+      HeatRun(const Settings       &settings,
+              const ModelKind       model,
+              const std::string    &method,
+              const StepperOptions &options,
+              const MPI_Comm        communicator = MPI_COMM_WORLD)
         : problem(settings, model, communicator)
         , keys(keys_of(problem))
         , stepper(make_stepper(method, problem.op(), options))
@@ -84,7 +84,7 @@ namespace PeriDeal
 
 
     /** How far a run that was resumed ends from one that was not; both relative. */
-    void expect_same(const Run &whole, const Run &resumed, const double tolerance)
+    void expect_same(const HeatRun &whole, const HeatRun &resumed, const double tolerance)
     {
       EXPECT_LE(difference(whole.problem, whole.u, resumed.problem, resumed.u),
                 tolerance * whole.u.linfty_norm());
@@ -108,24 +108,25 @@ namespace PeriDeal
       options.time_step        = time_step;
       options.solver_tolerance = 1e-14;
 
-      Run whole(settings, model, method, options);
+      HeatRun whole(settings, model, method, options);
       whole.first();
       whole.second();
 
       MemoryArchive saved(MPI_COMM_WORLD);
       {
-        Run          begun(settings, model, method, options);
-        unsigned int n_steps = 0;
+        HeatRun            begun(settings, model, method, options);
+        const unsigned int wanted  = time_step > 0. ? 3 : 1; // steps of its own are longer
+        unsigned int       n_steps = 0;
         begun.first([&](const double t) {
-          if (++n_steps != 3)
+          if (++n_steps != wanted)
             return;
           EXPECT_LT(t, 0.6 * t_end);
           begun.exchange(saved);
         });
-        ASSERT_GE(n_steps, 3u);
+        ASSERT_GE(n_steps, wanted);
       }
       const auto resume = [&](const MPI_Comm communicator, const double allowed) {
-        Run           resumed(settings, model, method, options, communicator);
+        HeatRun       resumed(settings, model, method, options, communicator);
         MemoryArchive archive(saved, communicator);
         resumed.exchange(archive);
         ASSERT_TRUE(resumed.stepper->is_inside_span());
@@ -181,7 +182,7 @@ namespace PeriDeal
   {
     StepperOptions options;
     options.time_step = 2e-4;
-    Run           run(plate + moving, ModelKind::peridynamics, "euler", options);
+    HeatRun       run(plate + moving, ModelKind::peridynamics, "euler", options);
     MemoryArchive saved(MPI_COMM_WORLD);
     run.exchange(saved);
 
@@ -190,7 +191,7 @@ namespace PeriDeal
     EXPECT_THROW(archive.exchange("nothing", other), UserError);
 
     const Settings finer = plate + Settings{{"Domain/Cells", "16, 12"}};
-    Run            larger(finer + moving, ModelKind::peridynamics, "euler", options);
+    HeatRun        larger(finer + moving, ModelKind::peridynamics, "euler", options);
     EXPECT_THROW(larger.exchange(archive), UserError);
   }
 } // namespace PeriDeal

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
+
 #include <chrono>
 #include <map>
 #include <string>
@@ -45,6 +47,23 @@ namespace PeriDeal
       for (const auto &[name, seconds] : phases)
         sum += seconds;
       return sum;
+    }
+
+    /** Those of the first process. Collective. */
+    void exchange(Archive &archive)
+    {
+      unsigned int n = phases.size();
+      archive.exchange("phases", n);
+      auto phase = phases.begin();
+      for (unsigned int k = 0; k < n; ++k)
+        {
+          const Archive::Part part(archive, "phase " + std::to_string(k));
+          std::string         name    = archive.loads() ? "" : phase->first;
+          double              seconds = archive.loads() ? 0. : (phase++)->second;
+          archive.exchange("name", name);
+          archive.exchange("seconds", seconds);
+          phases[name] = seconds;
+        }
     }
 
   private:

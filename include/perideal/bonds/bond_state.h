@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -48,6 +50,16 @@ namespace PeriDeal
 
     /** Since when a bond is not whole; infinity while it is, 0 if it is parted from the start. */
     double since(const std::size_t number) const;
+
+    /**
+     * The marks of bonds that have been whole at first, and since when: they are set in a list in
+     * which these are whole. @param starts of the bonds of each owned node in the list
+     * Returns the numbers of the bonds that have been marked by that, in ascending order.
+     * Collective.
+     */
+    std::vector<std::size_t> exchange(Archive                        &archive,
+                                      const std::vector<std::size_t> &starts,
+                                      const NodeKeys                 &keys);
 
     /** Of those marks. */
     std::size_t count(const Mark mark) const;

@@ -64,6 +64,12 @@ namespace PeriDeal
     bool depends_on_time() const;
 
     /**
+     * How far prescribed velocities have moved their nodes. @param keys of the owned nodes.
+     * Collective.
+     */
+    void exchange(Archive &archive, const NodeKeys &keys);
+
+    /**
      * Add the components of a vector that belong to prescribed unknowns to the force of their side.
      * Not collective.
      */

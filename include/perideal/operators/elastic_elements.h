@@ -75,6 +75,7 @@ namespace PeriDeal
     void                initialize_nodal_vector(Vector &vector) const override;
     void                set_temperature_change(const Vector &nodal) override;
     Inversion           inverted(const Vector &u) const override;
+    void                exchange(Archive &archive, const NodeKeys &keys) override;
 
     /** Place of a node of this process, by local number. */
     const dealii::Point<dim> &position(const unsigned int node) const;

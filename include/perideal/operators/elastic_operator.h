@@ -54,6 +54,9 @@ namespace PeriDeal
      */
     std::map<std::string, unsigned long long> beside_loads;
     bool                                      elsewhere = false; // some broke there, too
+
+    /** Collective. */
+    void exchange(Archive &archive);
   };
 
 
@@ -193,6 +196,9 @@ namespace PeriDeal
     {
       return places;
     }
+
+    /** Counters, the temperature that was set, and where bonds broke. */
+    void exchange(Archive &archive, const NodeKeys &keys) override;
 
     bool symmetric() const override
     {

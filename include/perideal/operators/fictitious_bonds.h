@@ -170,6 +170,9 @@ namespace PeriDeal
                          const std::vector<unsigned int> &lost,
                          const double                     t);
 
+    /** What has broken. @param keys of the owned nodes. Collective. */
+    void exchange(Archive &archive, const NodeKeys &keys);
+
     std::size_t size() const;
     std::size_t memory_consumption() const;
 
@@ -184,6 +187,7 @@ namespace PeriDeal
                                const PointBins<dim>                  &bins,
                                std::vector<unsigned int>             &number_of);
     void         make_room();
+    void         release(const std::size_t number);
     unsigned int image_at(const Index &index, const Site &site, const double volume);
     bool         is_cut(const unsigned int                                     i,
                         const std::vector<Term>                               &of_image,

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
 #include <perideal/base/types.h>
 
 #include <functional>
@@ -246,6 +247,15 @@ namespace PeriDeal
     unsigned long long n_applications() const
     {
       return applications;
+    }
+
+    /**
+     * What does not follow from scene, time and solution. An operator that loads must be made for
+     * the same scene. @param keys of the owned nodes. Collective.
+     */
+    virtual void exchange(Archive &archive, const NodeKeys & /*keys*/)
+    {
+      archive.exchange("applications", applications);
     }
 
     /** Go on counting from what an operator of the same model has had. */

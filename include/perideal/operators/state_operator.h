@@ -100,6 +100,7 @@ namespace PeriDeal
     Inversion           inverted(const Vector &u) const override;
     bool                brittle() const override;
     unsigned long long  break_bonds(const Vector &u, double t, double share = 0.) override;
+    void                exchange(Archive &archive, const NodeKeys &keys) override;
     double              released_energy() const override;
     unsigned long long  n_broken_bonds() const override;
 
@@ -231,6 +232,9 @@ namespace PeriDeal
     }
 
     double strained_extension_moment(const double *u, const unsigned int i, const Bond &bond) const;
+
+    /** Bear nothing any more. */
+    void release(const std::size_t stored_bond);
 
     const Scene<dim>                                          &scene;
     Families<dim>                                              bonds;

@@ -31,6 +31,7 @@ namespace PeriDeal
                                    const double                             to,
                                    const std::function<void(const double)> &report,
                                    const RunContext                        &context) override;
+    void                   exchange(Archive &archive) override;
     double                 work_of(const double span) const override;
     void                   add_totals(const double t, const RunContext &context) override;
     nlohmann::ordered_json describe_solving() const override;
@@ -55,8 +56,11 @@ namespace PeriDeal
     /** The steady state. */
     void solve();
 
-    /** Through the events of the cracks between two times. */
-    void advance_through_events(const double t_begin, const double t_end);
+    /**
+     * Through the events of the cracks until a time, from where the solution is, and whatever is
+     * left of a span of the stepper first.
+     */
+    void advance_through_events(const double t_end, const AfterStep &after_step);
 
     /** Make the stepper and begin the balance of heat. Throws UserError. */
     void begin_stepping();
@@ -100,8 +104,13 @@ namespace PeriDeal
     HeatLedger               ledger;  // of the run from the start, unless steady
     unsigned int             steady_iterations = 0;
 
+  protected:
+    double reached       = 0.; // the time of the solution, but for steps within a span
+    double time_of_start = 0.; // that for which the operator was made
+
   private:
     void make_stepper();
+    void repeat_changes();
   };
 
 

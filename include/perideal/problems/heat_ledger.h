@@ -5,6 +5,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/archive.h>
+
 namespace PeriDeal
 {
   /**
@@ -57,6 +59,13 @@ namespace PeriDeal
     {
       return {dealii::Utilities::MPI::sum(entered, communicator) + came_otherwise,
               content - content_at_start};
+    }
+
+    /** Collective. */
+    void exchange(Archive &archive)
+    {
+      archive.exchange("content at start", content_at_start);
+      archive.exchange("came otherwise", came_otherwise);
     }
 
   private:

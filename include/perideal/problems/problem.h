@@ -8,6 +8,7 @@
 #include <perideal/analysis/comparison.h>
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/analysis/recovery.h>
+#include <perideal/base/archive.h>
 #include <perideal/base/timing.h>
 #include <perideal/mesh/nodes.h>
 #include <perideal/operators/operator.h>
@@ -95,6 +96,13 @@ namespace PeriDeal
                          const std::function<void(const double)> &report,
                          const RunContext                        &context) = 0;
 
+    /**
+     * The state of the problem between the times at which all problems meet, or where
+     * RunContext::after_step is asked. A problem that loads has been through begin(), on the same
+     * mesh; advance() then goes on where that was. Throws UserError.
+     */
+    virtual void exchange(Archive &archive) = 0;
+
     /** How much work it is to advance by a time span, to be compared with that of others. */
     virtual double work_of(const double span) const = 0;
 
@@ -124,6 +132,12 @@ namespace PeriDeal
      * in the body stays what it was, unless steady.
      */
     virtual void after_remesh(const double t, const bool steady);
+
+    /**
+     * Unknowns and operator on the mesh as it is now, with the cracks of time t; the solution is
+     * nothing, until it is loaded.
+     */
+    virtual void rebuild(const double t);
 
     /** After that: a stepper of the new operator, with the cost of the old one. */
     virtual void renew_stepper();

@@ -6,6 +6,7 @@
 #include <perideal/base/progress.h>
 #include <perideal/problems/problem_cost.h>
 #include <perideal/problems/result_record.h>
+#include <perideal/solvers/step_span.h>
 
 #include <functional>
 #include <string>
@@ -23,5 +24,8 @@ namespace PeriDeal
      * run needs beyond what is there now. Collective.
      */
     std::function<ModelEstimate(const std::string &model, double &memory)> estimate;
+
+    /** Asked while a problem advances, whenever its state can be kept; or nothing. Collective. */
+    AfterStep after_step;
   };
 } // namespace PeriDeal

@@ -54,6 +54,7 @@ namespace PeriDeal
                         const double                             to,
                         const std::function<void(const double)> &report,
                         const RunContext                        &context) override;
+    void        exchange(Archive &archive) override;
     double      work_of(const double span) const override;
     void        examine(const double t) override;
     void        add_totals(const double t, const RunContext &context) override;
@@ -98,14 +99,28 @@ namespace PeriDeal
     unsigned int                   n_iterations = 0;
 
   private:
+    /** A span of a motion in parts of whole steps, after each of which there is a report. */
+    struct MotionParts
+    {
+      StepSpan span;
+      double   n_steps = 0.; // planned, of the motion
+
+      double next() const;
+      void   exchange(Archive &archive);
+    };
+
     void           set_start();
     void           take_temperature();
     StepperOptions stepper_options() const;
+    void           make_loading();
     void           begin_loading(const RunContext &context);
+    MotionParts    parts_between(const double from, const double to) const;
     void           move(const double                             from,
                         const double                             to,
                         const std::function<void(const double)> &report,
                         const RunContext                        &context);
+
+    MotionParts moving;
   };
 
 

@@ -8,6 +8,7 @@
 #include <perideal/analysis/exact_solution.h>
 #include <perideal/base/progress.h>
 #include <perideal/mesh/grading.h>
+#include <perideal/mesh/mesh_history.h>
 #include <perideal/problems/problem.h>
 #include <perideal/scene/scene.h>
 
@@ -51,6 +52,18 @@ namespace PeriDeal
   private:
     using List = std::vector<std::unique_ptr<Problem<dim>>>;
 
+    /** How far the run is, at and between the times at which all problems meet. */
+    struct Place
+    {
+      double              now    = 0.; // at which all have been
+      unsigned int        output = 0;  // of the output times the next
+      std::vector<double> stops;       // all on the way to it, from the last one on
+      unsigned int        stop    = 0; // of these the next
+      unsigned int        problem = 0; // companions first: the one on its way to the next meeting
+
+      void exchange(Archive &archive);
+    };
+
     RunContext                        context() const;
     std::vector<const Problem<dim> *> reported() const;
     std::vector<double>               output_times() const;
@@ -61,6 +74,7 @@ namespace PeriDeal
 
     nlohmann::ordered_json compute(); // the summary at the end
     void                   begin();
+    void                   start();
     void                   settle();
     bool                   tells_at_stops() const;
     void                   advance_to(const double t);
@@ -80,6 +94,13 @@ namespace PeriDeal
     double share_done(const unsigned int n, const double t) const;
     bool   adapt(const double t);
 
+    /** The whole state of the run, on the mesh of restore_mesh() and after begin(). */
+    void exchange(Archive &archive);
+    void restore_mesh(Archive &archive);
+
+    /** Where the state can be kept: keeps it if that is due. */
+    void offer_checkpoint(const double t);
+
     void                   write_output(const double t);
     void                   write_fields(const double t);
     void                   add_totals(const double t);
@@ -98,8 +119,9 @@ namespace PeriDeal
     std::unique_ptr<ResultRecord>               record;
     std::unique_ptr<RunOutput<dim>>             output;
     std::unique_ptr<Grading<dim>>               grading; // only where the mesh is adapted
-    bool                                        readers_fit   = true; // the mesh
-    unsigned int                                n_adaptations = 0;
-    double                                      now           = 0.;
+    MeshHistory                                 history; // of an adapted mesh
+    double                                      time_of_mesh = 0.;
+    bool                                        readers_fit  = true; // the mesh
+    Place                                       place;
   };
 } // namespace PeriDeal

@@ -64,7 +64,29 @@ namespace PeriDeal
      * their last step. Throws UserError, with what to change, if values are not finite, and what
      * examine() throws, which is asked now and then. Collective.
      */
-    void advance(Vector &u, Vector &v, const double t, const double t_end);
+    void advance(Vector          &u,
+                 Vector          &v,
+                 const double     t,
+                 const double     t_end,
+                 const AfterStep &after_step = {});
+
+    /**
+     * The rest of a span whose beginning was kept by exchange(), with the same steps as if there
+     * had been no break; as advance(). Collective.
+     */
+    void go_on(Vector &u, Vector &v, const AfterStep &after_step = {});
+
+    /** Within a span: there is a rest to go_on() with. */
+    bool is_inside_span() const
+    {
+      return span.is_open;
+    }
+
+    /**
+     * All that the next steps depend on besides u and v, which the caller keeps, and the operator.
+     * A stepper that loads must be made as the one that saved. Collective.
+     */
+    void exchange(Archive &archive, const NodeKeys &keys);
 
     /**
      * Throws UserError, with what to change, if the drift of the energy is more than allowed_drift
@@ -127,6 +149,8 @@ namespace PeriDeal
 
   private:
     void   begin(const Vector &u, const Vector &v, const double t);
+    void   take_step(Vector &u, Vector &v);
+    void   look_after(const Vector &u, const Vector &v);
     double kinetic_energy(const Vector &v, const bool supports_only) const;
     void   check(const Vector &v, const double t);
     void   check_drift(const Vector &u, const Vector &v, const double t);
@@ -135,6 +159,7 @@ namespace PeriDeal
     void   break_bonds(const Vector &u, const double t);
     double kept_back(const double dt) const;
 
+    StepSpan                   span;
     double                     longest, shortest;
     std::unique_ptr<StepLimit> limit; // null: none
     bool                       started = false, fresh = true;

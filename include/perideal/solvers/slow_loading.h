@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/solvers/static_solver.h>
+#include <perideal/solvers/step_span.h>
 #include <perideal/solvers/work_of_forces.h>
 
 #include <memory>
@@ -56,11 +57,27 @@ namespace PeriDeal
     void begin(Vector &u, const double t);
 
     /**
-     * From the equilibrium u to that at time t. Collective. Throws UserError if there is none to be
+     * From the equilibrium u to that at time t. Bonds break in rounds, and @p after_round is called
+     * after each with the new equilibrium, when all that the next rounds depend on can be kept. Collective. Throws UserError if there is none to be
      * found, among others since the body has come apart under loads that nothing bears any more; u
      * is the last equilibrium then. So it does where full kinematics end with the body inside out.
      */
-    void step(Vector &u, const double t);
+    void step(Vector &u, const double t, const AfterStep &after_round = {});
+
+    /** The rest of a step whose beginning was kept by exchange(); as step(). Collective. */
+    void go_on(Vector &u, const AfterStep &after_round = {});
+
+    /** Within a step: there is a rest to go_on() with. */
+    bool is_inside_step() const
+    {
+      return breaking.is_open;
+    }
+
+    /**
+     * All that the next steps depend on besides u, which the caller keeps, and the operator.
+     * Collective.
+     */
+    void exchange(Archive &archive, const NodeKeys &keys);
 
     /** Energies at u, the last equilibrium. Collective. */
     LoadingEnergy energy(const Vector &u) const;
@@ -77,8 +94,15 @@ namespace PeriDeal
     }
 
   private:
+    /** The rounds of breaking in an equilibrium. */
+    struct Breaking
+    {
+      double time = 0., energy = 0.; // of that of the last round
+      bool   any = false, is_open = false;
+    };
+
     void solve(Vector &u, const double t);
-    void break_bonds(Vector &u, const double t);
+    void break_bonds(Vector &u, const double t, const AfterStep &after_round);
     void check_inversion(Vector &u, const double t) const;
 
     ElasticOperator              &op;
@@ -93,5 +117,6 @@ namespace PeriDeal
     bool   has_before        = false;
     unsigned int  iterations = 0, steps = 0;
     LoadingEnergy so_far;
+    Breaking      breaking;
   };
 } // namespace PeriDeal

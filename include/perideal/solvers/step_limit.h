@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
 #include <perideal/operators/elastic_operator.h>
 
 namespace PeriDeal
@@ -34,6 +35,9 @@ namespace PeriDeal
      * the limit is estimated. Collective.
      */
     double follow(const Vector &u, const double t, const unsigned long long n_steps);
+
+    /** Its last estimate, and what all have taken. Collective. */
+    void exchange(Archive &archive);
 
     /** 0.8 of the limit: what is chosen for the user. */
     static constexpr double share = 0.8;

@@ -3,10 +3,9 @@
 
 #pragma once
 
-#include <perideal/base/archive.h>
 #include <perideal/operators/operator.h>
+#include <perideal/solvers/step_span.h>
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,14 +26,14 @@ namespace PeriDeal
   struct StepperCost
   {
     unsigned long long steps = 0, rejected = 0, iterations = 0;
+
+    void exchange(Archive &archive)
+    {
+      archive.exchange("steps", steps);
+      archive.exchange("rejected", rejected);
+      archive.exchange("iterations", iterations);
+    }
   };
-
-
-  /**
-   * Called after a step that ends at time t and is not the last of its span, when all that the next
-   * steps depend on can be kept. What it throws ends the span.
-   */
-  using AfterStep = std::function<void(const double t)>;
 
 
   /**
@@ -125,15 +124,6 @@ namespace PeriDeal
     }
 
   protected:
-    /** The times between which advance() steps. */
-    struct Span
-    {
-      double             start = 0., end = 0., now = 0.;
-      unsigned long long n_steps = 0; // all of equal length; 0: as many as it takes
-      unsigned long long n_done  = 0; // rejected ones too
-      bool               is_open = false;
-    };
-
     /** Called with u at the start of the span; sets n_steps where steps are equal. */
     virtual void begin_span(const Vector &u) = 0;
 
@@ -146,7 +136,7 @@ namespace PeriDeal
     /** What this method has besides the members here. */
     virtual void exchange_own(Archive &, const NodeKeys &) {}
 
-    Span        span;
+    StepSpan    span;
     StepperCost spent;
     double      heat_entered = 0.;
   };

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
 #include <perideal/operators/elastic_operator.h>
 
 #include <vector>
@@ -30,6 +31,9 @@ namespace PeriDeal
      * Collective.
      */
     double step(const Vector &du, const Vector &unbalanced, const double t);
+
+    /** What the next step depends on. Collective. */
+    void exchange(Archive &archive, const NodeKeys &keys);
 
     /** Loads without the supports' forces at the end of the last step. */
     const Vector &loads() const
