@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/command_line.h>
 #include <perideal/base/process_end.h>
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
@@ -53,6 +54,7 @@ namespace
   void compute(const SceneText &text,
                const MPI_Comm   communicator,
                const Action     action,
+               const RunMode    mode,
                const bool       quiet)
   {
     Scene<dim> scene;
@@ -63,13 +65,14 @@ namespace
     if (action == Action::check)
       simulation.dry_run();
     else
-      simulation.run();
+      simulation.run(mode);
   }
 
 
   void compute(const std::string              &file,
                const std::vector<std::string> &overrides,
                const Action                    action,
+               const RunMode                   mode,
                const bool                      quiet)
   {
     const MPI_Comm  communicator = MPI_COMM_WORLD;
@@ -77,11 +80,11 @@ namespace
     switch (dimension_of(text))
       {
         case 1:
-          return compute<1>(text, communicator, action, quiet);
+          return compute<1>(text, communicator, action, mode, quiet);
         case 2:
-          return compute<2>(text, communicator, action, quiet);
+          return compute<2>(text, communicator, action, mode, quiet);
         default:
-          return compute<3>(text, communicator, action, quiet);
+          return compute<3>(text, communicator, action, mode, quiet);
       }
   }
 
@@ -91,7 +94,7 @@ namespace
   {
     std::string              scene, format = "prm";
     std::vector<std::string> overrides;
-    bool                     quiet = false, estimate = false;
+    bool                     quiet = false, estimate = false, resume = false, overwrite = false;
 
     std::vector<std::string> files,
       variations; // of a study: one study file, or scenes and what varies
@@ -259,6 +262,15 @@ namespace
           ->allow_extra_args(false);
         command->add_flag("-q,--quiet", request.quiet, "print nothing but errors");
       }
+    CLI::Option *resume = run->add_flag(
+      "--resume",
+      request.resume,
+      "go on with the run in the output directory, from its newest checkpoint; its end time, output, processes and solver tolerance may be others");
+    run
+      ->add_flag("--overwrite",
+                 request.overwrite,
+                 "begin anew where a run lies that could be resumed, and replace its results")
+      ->excludes(resume);
     check->add_flag(
       "--estimate",
       request.estimate,
@@ -296,6 +308,8 @@ namespace
   {
     std::string              message = problem.what();
     std::vector<std::string> options = {"--set", "--quiet", "--help", "--version"};
+    if (app.got_subcommand("run"))
+      options.insert(options.end(), {"--resume", "--overwrite"});
     if (app.got_subcommand("study"))
       options.insert(options.end(),
                      {"--vary",
@@ -350,6 +364,9 @@ namespace
               request.estimate            ? Action::estimate :
               app.got_subcommand("check") ? Action::check :
                                             Action::run,
+              request.resume    ? RunMode::resume :
+              request.overwrite ? RunMode::overwrite :
+                                  RunMode::begin,
               request.quiet);
   }
 
@@ -440,6 +457,14 @@ int main(int argc, char **argv)
   catch (const UserError &error)
     {
       return report("error: " + error.message(), first_rank, ExitStatus::error);
+    }
+  catch (const Stopped &stopped)
+    {
+      const unsigned int n_proc = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+      return report(std::string(stopped.what()) +
+                      "\nTo go on:  " + command_that_resumes(argc, argv, n_proc),
+                    first_rank,
+                    ExitStatus::stopped);
     }
   catch (const std::exception &error)
     {

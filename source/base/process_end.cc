@@ -36,6 +36,10 @@ namespace PeriDeal
     bool                             has_company        = false;
     thread_local bool                memory_was_refused = false;
 
+    std::atomic<bool>   stoppable{false};
+    std::atomic<int>    stop_signal{0}; // that a run has been asked to stop by
+    std::atomic<time_t> stop_asked{0};  // when, in seconds
+
     const char *const out_of_memory =
       "out of memory. `perideal check` tells what a scene needs; a coarser lattice, fewer 'Models' or a smaller 'Horizon ratio' need less.";
 
@@ -77,12 +81,39 @@ namespace PeriDeal
     }
 
 
+    const char *name_of_request(const int signal)
+    {
+      return signal == SIGINT  ? "an interrupt (SIGINT)" :
+             signal == SIGUSR1 ? "a request to stop (SIGUSR1)" :
+                                 "a request to end (SIGTERM)";
+    }
+
+
+    /** Whether the run will see to it. */
+    bool is_request(const int signal)
+    {
+      constexpr time_t same_moment = 2;
+      timespec         now         = {};
+      clock_gettime(CLOCK_MONOTONIC, &now);
+      if (!stoppable.load())
+        return false;
+      if (stop_signal.load() != 0)
+        return now.tv_sec - stop_asked.load() <= same_moment;
+      stop_asked  = now.tv_sec;
+      stop_signal = signal;
+      return true;
+    }
+
+
     void stop(int signal)
     {
+      if (is_request(signal))
+        return;
       const Farewell *last = farewell.load();
       leave_in_order(last);
-      say(signal == SIGINT ? "\nperideal: stopped by an interrupt (SIGINT)." :
-                             "\nperideal: stopped by a request to end (SIGTERM).");
+      say("\nperideal: stopped by ");
+      say(name_of_request(signal));
+      say(".");
       if (last != nullptr)
         {
           say(" ");
@@ -200,8 +231,8 @@ namespace PeriDeal
         &action.sa_mask); // one process that fails is told to end when another one has spoken
       sigaction(signal, &action, nullptr);
     };
-    on(SIGTERM, stop, 0);
-    on(SIGINT, stop, 0);
+    for (const int signal : {SIGTERM, SIGINT, SIGUSR1})
+      on(signal, stop, SA_RESTART);
     on(SIGALRM, give_up, 0);
     std::signal(SIGXFSZ,
                 SIG_IGN); // a file that would grow beyond a limit: writing fails, which is checked
@@ -215,6 +246,27 @@ namespace PeriDeal
     for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
       on(signal, fail, SA_ONSTACK);
 #endif
+  }
+
+
+  void set_stoppable(const bool run_asks)
+  {
+    stop_asked  = 0;
+    stop_signal = 0;
+    stoppable   = run_asks;
+  }
+
+
+  bool stop_requested()
+  {
+    return stop_signal.load() != 0;
+  }
+
+
+  std::string stop_reason()
+  {
+    const int signal = stop_signal.load();
+    return signal == 0 ? "" : name_of_request(signal);
   }
 
 
@@ -280,6 +332,10 @@ namespace PeriDeal
         action();
       }
     catch (const UserError &)
+      {
+        throw;
+      }
+    catch (const Stopped &)
       {
         throw;
       }

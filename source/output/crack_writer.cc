@@ -8,6 +8,8 @@
 
 #include <sstream>
 
+#include "exchange_of_first.h"
+
 namespace PeriDeal
 {
   namespace
@@ -73,5 +75,15 @@ namespace PeriDeal
     dealii::DataOutBase::write_pvd_record(pvd, records);
     if (!folder.failed())
       folder.write("cracks.pvd", pvd.str());
+  }
+
+
+  void CrackWriter::exchange(Archive &archive)
+  {
+    auto state = nlohmann::ordered_json::array({last, records, n_files});
+    exchange_of_first(archive, "cracks", state, folder.processes());
+    state[0].get_to(last);
+    state[1].get_to(records);
+    state[2].get_to(n_files);
   }
 } // namespace PeriDeal

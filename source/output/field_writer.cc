@@ -15,6 +15,7 @@
 #include <limits>
 #include <sstream>
 
+#include "exchange_of_first.h"
 #include "gather_in_turn.h"
 #include "hdf5_file.h"
 #include "tensor_array.h"
@@ -433,6 +434,18 @@ namespace PeriDeal
     nodal.clear();
     return name;
   }
+
+
+  template <int dim>
+  void FieldWriter<dim>::exchange(Archive &archive)
+  {
+    auto state = nlohmann::ordered_json::array({n_written, vtu_records, xdmf_entries});
+    exchange_of_first(archive, series, state, folder.processes());
+    state[0].get_to(n_written);
+    state[1].get_to(vtu_records);
+    state[2].get_to(xdmf_entries);
+  }
+
 
   template class FieldWriter<1>;
   template class FieldWriter<2>;

@@ -6,6 +6,7 @@
 #include <hdf5.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace PeriDeal
@@ -19,13 +20,17 @@ namespace PeriDeal
   class Hdf5File
   {
   public:
-    explicit Hdf5File(const std::string &name);
+    /** @param user_block bytes at the beginning that are not HDF5's: 0, or 512, 1024, ... */
+    explicit Hdf5File(const std::string &name, const std::size_t user_block = 0);
     ~Hdf5File();
 
     Hdf5File(const Hdf5File &)            = delete;
     Hdf5File &operator=(const Hdf5File &) = delete;
 
-    /** Begin a table of so many rows and columns; the type is that of append(). */
+    /**
+     * Begin a table of so many rows and columns; the type is that of append(). Slashes in the name
+     * make groups.
+     */
     template <typename number>
     void begin_table(const std::string &name,
                      const std::size_t  n_rows,
@@ -49,4 +54,41 @@ namespace PeriDeal
     std::size_t n_columns = 0, n_written = 0;
     int         problem = 0;
   };
+
+
+  /** An HDF5 file to read from, on one process. */
+  class Hdf5Input
+  {
+  public:
+    explicit Hdf5Input(const std::string &name);
+    ~Hdf5Input();
+
+    Hdf5Input(const Hdf5Input &)            = delete;
+    Hdf5Input &operator=(const Hdf5Input &) = delete;
+
+    /** Rows of a table; false if it has no such rows or they cannot be read. */
+    template <typename number>
+    bool read(const std::string &table,
+              const std::size_t  first_row,
+              const std::size_t  n_rows,
+              const std::size_t  n_columns,
+              number            *values) const;
+
+    /** All of a table of one column; false if it cannot be read. */
+    template <typename Container>
+    bool read_all(const std::string &table, Container &values) const;
+
+  private:
+    std::size_t n_rows_of(const std::string &table) const;
+
+    hid_t file = -1;
+  };
+
+
+  template <typename Container>
+  bool Hdf5Input::read_all(const std::string &table, Container &values) const
+  {
+    values.resize(n_rows_of(table));
+    return read(table, 0, values.size(), 1, values.data());
+  }
 } // namespace PeriDeal

@@ -28,12 +28,6 @@ namespace PeriDeal
       "# What runs of PeriDeal have written into the folder above; the next run replaces these files and no others.\n";
 
 
-    std::string reason_of(const int number)
-    {
-      return number == 0 ? "the system gives no reason" : std::strerror(number);
-    }
-
-
     std::set<std::string> read_list(const fs::path &file)
     {
       std::set<std::string> names;
@@ -56,6 +50,16 @@ namespace PeriDeal
     bool there_is(const fs::path &file)
     {
       return fs::exists(fs::symlink_status(file));
+    }
+
+
+    /** Whether a folder has one of these files. */
+    bool has_checkpoint(const std::set<std::string> &names, const fs::path &folder)
+    {
+      const std::string begin = "checkpoints/";
+      return std::any_of(names.begin(), names.end(), [&](const std::string &name) {
+        return name.compare(0, begin.size(), begin) == 0 && there_is(folder / name);
+      });
     }
 
 
@@ -106,7 +110,8 @@ namespace PeriDeal
   ResultFolder::ResultFolder(const std::string              &directory,
                              const std::string              &scene_file,
                              const std::vector<std::string> &names,
-                             const MPI_Comm                  communicator)
+                             const MPI_Comm                  communicator,
+                             const RunMode                   mode)
     : path(directory)
     , own(directory + "/.perideal")
     , communicator(communicator)
@@ -116,7 +121,7 @@ namespace PeriDeal
     if (first_rank)
       try
         {
-          message = take(scene_file, names);
+          message = take(scene_file, names, mode);
         }
       catch (const fs::filesystem_error &error)
         {
@@ -147,7 +152,8 @@ namespace PeriDeal
 
 
   std::string ResultFolder::take(const std::string              &scene_file,
-                                 const std::vector<std::string> &names)
+                                 const std::vector<std::string> &names,
+                                 const RunMode                   mode)
   {
     for (fs::path folder = own; !folder.empty() && !fs::exists(folder);
          folder          = folder.parent_path())
@@ -178,6 +184,15 @@ namespace PeriDeal
       return "cannot use '" + path + "': '" + other +
              "' lies there, which no run has listed as its own and which would be written over. "
              "Choose another directory, or move it away";
+    if (mode == RunMode::resume)
+      {
+        go_on_with(earlier);
+        return "";
+      }
+    if (mode == RunMode::begin && is_resumable(earlier))
+      return "a run lies in '" + path +
+             "' that was stopped and can go on. Add --resume to go on with it, --overwrite to begin anew and "
+             "replace its results, or choose another directory";
     set_aside(earlier);
     if (const int problem = replace_file(own + "/" + list_name, list_head); problem != 0)
       return "cannot use '" + path + "': " + reason_of(problem) +
@@ -241,6 +256,20 @@ namespace PeriDeal
   }
 
 
+  void ResultFolder::go_on_with(const std::set<std::string> &earlier)
+  {
+    const std::string previous = own + "/previous";
+    if (fs::exists(previous)) // a run began anew and ended without results: back to those before it
+      {
+        if (fs::exists(previous + "/" + list_name))
+          set_aside(earlier);
+        put_back();
+        aside = false;
+      }
+    listed = read_list(own + "/" + list_name);
+  }
+
+
   void ResultFolder::put_back()
   {
     const std::string     previous = own + "/previous", mark = previous + "/" + list_name;
@@ -291,9 +320,18 @@ namespace PeriDeal
   }
 
 
-  std::string ResultFolder::claim(const std::string &name)
+  bool ResultFolder::is_resumable(const std::set<std::string> &earlier) const
+  {
+    const std::string previous = own + "/previous", mark = previous + "/" + list_name;
+    return has_checkpoint(earlier, path) || has_checkpoint(earlier, previous) ||
+           has_checkpoint(read_list(mark), previous);
+  }
+
+
+  std::string ResultFolder::claim(const std::string &name, int &problem)
   {
     Assert(first_rank, dealii::ExcMessage("the other processes write nothing"));
+    problem = 0;
     if (listed.count(name) == 0)
       {
         errno = 0;
@@ -301,12 +339,22 @@ namespace PeriDeal
         list << name << "\n" << std::flush;
         if (!list)
           {
-            keep_failure(name, errno);
+            problem = errno != 0 ? errno : -1;
             return "";
           }
         listed.insert(name);
       }
     return path + "/" + name;
+  }
+
+
+  std::string ResultFolder::claim(const std::string &name)
+  {
+    int               problem = 0;
+    const std::string file    = claim(name, problem);
+    if (problem != 0)
+      keep_failure(name, problem);
+    return file;
   }
 
 
@@ -330,6 +378,13 @@ namespace PeriDeal
         "': " + reason_of(reason) +
         ". Is the disk full, or was the directory removed or closed to writing during the run? "
         "Files that were finished before are whole.";
+  }
+
+
+  void ResultFolder::keep_failure(const std::string &message)
+  {
+    if (failure.empty())
+      failure = message;
   }
 
 
@@ -359,6 +414,12 @@ namespace PeriDeal
     remove_files(read_list(list), directory);
     fs::remove(list, ignored);
     fs::remove_all(fs::path(directory) / ".perideal" / "previous", ignored);
+  }
+
+
+  std::string reason_of(const int number)
+  {
+    return number <= 0 ? "the system gives no reason" : std::strerror(number);
   }
 
 

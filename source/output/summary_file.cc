@@ -4,6 +4,8 @@
 #include <perideal/base/process_end.h>
 #include <perideal/output/summary_file.h>
 
+#include "exchange_of_first.h"
+
 namespace PeriDeal
 {
   namespace
@@ -26,9 +28,11 @@ namespace PeriDeal
   } // namespace
 
 
-  SummaryFile::SummaryFile(ResultFolder &folder, const Json &start)
+  SummaryFile::SummaryFile(ResultFolder &folder, const Json &start, const bool goes_on)
     : folder(folder)
   {
+    if (goes_on)
+      return;
     update(start,
            folder.has_earlier_results() ? "there are none yet; those of the run before lie in '" +
                                             folder.directory() + "/.perideal/previous'" :
@@ -42,11 +46,12 @@ namespace PeriDeal
   }
 
 
-  void SummaryFile::update(const Json &summary, const std::string &reached)
+  void SummaryFile::update(const Json &summary, const std::string &until)
   {
     if (!folder.writes())
       return;
-    known = summary;
+    known   = summary;
+    reached = until;
     folder.write(file_name, text_of(known, "running"));
     set_farewell(folder.directory() + "/" + file_name,
                  text_of(known, "stopped", "the process was told to end, or failed"),
@@ -67,5 +72,14 @@ namespace PeriDeal
       return;
     folder.write(file_name, text_of(known, status, message));
     clear_farewell();
+  }
+
+
+  void SummaryFile::exchange(Archive &archive)
+  {
+    Json state = Json::array({known, reached});
+    exchange_of_first(archive, "known", state, folder.processes());
+    if (archive.loads())
+      update(state[0], state[1].get<std::string>());
   }
 } // namespace PeriDeal

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/mpi.h>
+
 #include <perideal/output/tables.h>
 
 #include <fcntl.h>
@@ -35,7 +37,10 @@ namespace PeriDeal
   }
 
 
-  Table::Table(ResultFolder &folder, const std::string &name, const std::string &header)
+  Table::Table(ResultFolder      &folder,
+               const std::string &name,
+               const std::string &header,
+               const bool         goes_on)
     : folder(folder)
     , name(name)
   {
@@ -44,7 +49,9 @@ namespace PeriDeal
     const std::string path = folder.claim(name);
     if (path.empty())
       return;
-    file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    file = open(path.c_str(), O_WRONLY | O_CLOEXEC | (goes_on ? 0 : O_CREAT | O_TRUNC), 0666);
+    if (goes_on)
+      return; // exchange() tells what is wrong
     if (file < 0)
       folder.keep_failure(name, errno);
     add(header + "\n");
@@ -82,14 +89,43 @@ namespace PeriDeal
   }
 
 
+  void Table::exchange(Archive &archive)
+  {
+    unsigned long long       length = 0;
+    const unsigned long long found  = file < 0 ? 0 : lseek(file, 0, SEEK_END);
+    if (!archive.loads())
+      {
+        if (file >= 0)
+          fdatasync(file); // before the state that counts on it
+        length = dealii::Utilities::MPI::broadcast(folder.processes(), found, 0);
+      }
+    archive.exchange("length", length);
+    if (!archive.loads() || !folder.writes())
+      return;
+    const std::string path = "'" + folder.directory() + "/" + name + "'";
+    if (file < 0)
+      folder.keep_failure("The run cannot go on: its table " + path +
+                          " is gone or cannot be written to. Bring it back, or begin the run "
+                          "anew with --overwrite.");
+    else if (found < length)
+      folder.keep_failure("The run cannot go on: its table " + path + " has " +
+                          std::to_string(found) + " bytes, and had " + std::to_string(length) +
+                          " when the checkpoint was written: rows are missing. Bring them back, or "
+                          "begin the run anew with --overwrite.");
+    else if (ftruncate(file, static_cast<off_t>(length)) != 0)
+      folder.keep_failure(name, errno);
+  }
+
+
   PointTable::PointTable(ResultFolder                           &folder,
                          const std::string                      &name,
                          const std::vector<std::vector<double>> &points,
                          const unsigned int                      dim,
-                         const std::vector<std::string>         &columns)
+                         const std::vector<std::string>         &columns,
+                         const bool                              goes_on)
     : points(points)
     , n_columns(columns.size())
-    , table(folder, name, point_header(dim, columns))
+    , table(folder, name, point_header(dim, columns), goes_on)
   {}
 
 
@@ -110,5 +146,11 @@ namespace PeriDeal
         rows += "\n";
       }
     table.add(rows);
+  }
+
+
+  void PointTable::exchange(Archive &archive)
+  {
+    table.exchange(archive);
   }
 } // namespace PeriDeal

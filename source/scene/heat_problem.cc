@@ -17,7 +17,8 @@ namespace PeriDeal
     const auto                        problem = std::make_shared<Scene<dim>>();
     const std::vector<SceneSection *> from = sections(), to = problem->sections();
     for (unsigned int k = 0; k < from.size(); ++k)
-      if (from[k] != &elasticity && from[k] != &output && from[k] != &reference)
+      if (from[k] != &elasticity && from[k] != &output && from[k] != &checkpoint &&
+          from[k] != &reference)
         for (const Entry &entry : from[k]->entries())
           to[k]->set(entry.name, entry.text);
     problem->general.set("Physics", names_of(Physics::heat).physics);

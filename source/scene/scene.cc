@@ -342,6 +342,7 @@ namespace PeriDeal
             &time,
             &solver,
             &output,
+            &checkpoint,
             &reference,
             &units};
   }
@@ -384,6 +385,7 @@ namespace PeriDeal
       (general.physics == Physics::elasticity && elasticity.is_static() && !is_loaded_slowly());
     solver.parse();
     output.parse(time.end_time, time.steady);
+    checkpoint.parse(time.end_time, time.steady);
     const bool layers = domain.has_extra_layers();
     output.make_grid(domain.shape == Shape::box,
                      layers ? domain.body_lower : domain.lower,

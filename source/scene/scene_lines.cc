@@ -190,6 +190,16 @@ namespace PeriDeal
   }
 
 
+  SceneEntries entries_of(const std::string &text)
+  {
+    SceneEntries entries;
+    for (const SceneLine &line : scan_lines(text, "scene").entries)
+      entries.emplace_back((line.section.empty() ? "" : line.section + "/") + line.entry,
+                           line.value);
+    return entries;
+  }
+
+
   std::string apply_overrides(const std::string              &text,
                               const std::string              &file_name,
                               const std::vector<std::string> &overrides)

@@ -48,16 +48,25 @@ namespace PeriDeal
       {
         if (control.wall_time_limit > 0. &&
             now + margin * (cost + between_looks) >= control.wall_time_limit)
-          own[0] = 1.;
+          own[0] = 2.;
         own[1] = control.every > 0. && now - last_kept >= control.every ? 1. : 0.;
         own[2] = std::floor(
           std::min(n_asked * between_looks / std::max(now - last_look, 1e-9), 2. * n_asked + 1.));
       }
     Utilities::MPI::max(own, communicator, all);
-    n_between = std::max(1., all[2]);
-    n_asked   = 0;
-    last_look = now;
+    n_between   = std::max(1., all[2]);
+    n_asked     = 0;
+    last_look   = now;
+    out_of_time = all[0] > 1.;
     return all[0] > 0. ? Need::stop : all[1] > 0. || passes ? Need::keep : Need::none;
+  }
+
+
+  std::string CheckpointClock::reason() const
+  {
+    if (out_of_time)
+      return "'Wall time limit' in section 'Checkpoint'";
+    return stop_reason().empty() ? "a signal" : stop_reason();
   }
 
 

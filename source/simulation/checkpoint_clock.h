@@ -8,6 +8,7 @@
 #include <mpi.h>
 
 #include <chrono>
+#include <string>
 
 namespace PeriDeal
 {
@@ -34,6 +35,9 @@ namespace PeriDeal
     /** The state has been kept; it took so many seconds on this process. Collective. */
     void kept(const double seconds);
 
+    /** Why the run has to stop, as it goes after "by". */
+    std::string reason() const;
+
     /** Seconds of wall time since this was made. */
     double elapsed() const;
 
@@ -44,7 +48,8 @@ namespace PeriDeal
     const MPI_Comm           communicator;
     const Clock::time_point  start;
     double                   last_kept = 0., last_look = 0., cost = 0.; // wall time
-    double                   passed;                                    // the last time of the run
-    unsigned long long       n_asked = 0, n_between = 1;                // since the last look
+    bool                     out_of_time = false;
+    double                   passed;                     // the last time of the run
+    unsigned long long       n_asked = 0, n_between = 1; // since the last look
   };
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
 #include <perideal/simulation/run_files.h>
 
@@ -39,12 +40,40 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /** The newest checkpoint of a run of this scene. Throws UserError. Collective. */
+    std::unique_ptr<CheckpointReader> open_checkpoint(const ResultFolder       &folder,
+                                                      const CheckpointHeader   &header,
+                                                      std::vector<std::string> &notes)
+    {
+      const std::string name   = newest_checkpoint(folder.directory(), folder.processes(), notes);
+      auto              reader = std::make_unique<CheckpointReader>(name, folder.processes());
+      require_same_run(reader->header(), header.scene, name);
+      return reader;
+    }
+  } // namespace
+
+
   template <int dim>
-  RunFiles::RunFiles(const Scene<dim> &scene, const SceneText &text, const MPI_Comm communicator)
-    : folder(scene.general.output_directory, text.file_name, names_of_results(scene), communicator)
+  RunFiles::RunFiles(const Scene<dim> &scene,
+                     const SceneText  &text,
+                     const MPI_Comm    communicator,
+                     const RunMode     mode)
+    : folder(scene.general.output_directory,
+             text.file_name,
+             names_of_results(scene),
+             communicator,
+             mode)
     , communicator(communicator)
-    , summary_file(folder, describe_start(scene, text, communicator))
-    , totals(folder, "totals.csv", "time,model,quantity,value")
+    , header{PERIDEAL_VERSION,
+             scene_with_defaults(),
+             dim,
+             Utilities::MPI::n_mpi_processes(communicator)}
+    , checkpoints(folder, scene.checkpoint.n_kept, communicator)
+    , reader(mode == RunMode::resume ? open_checkpoint(folder, header, notes) : nullptr)
+    , summary_file(folder, describe_start(scene, text, communicator), reader != nullptr)
+    , totals(folder, "totals.csv", "time,model,quantity,value", reader != nullptr)
     , last_update(Clock::now())
   {
     folder.write("scene.prm", scene_with_defaults());
@@ -85,6 +114,50 @@ namespace PeriDeal
     folder.check();
     summary_file.complete(summary);
     folder.check();
+    checkpoints.remove_all();
+  }
+
+
+  CheckpointReader *RunFiles::checkpoint() const
+  {
+    return reader.get();
+  }
+
+
+  void RunFiles::has_resumed()
+  {
+    reader.reset();
+    has_results = true;
+  }
+
+
+  std::string RunFiles::write_checkpoint(const double                          time,
+                                         const double                          wall_time,
+                                         const std::function<void(Archive &)> &save)
+  {
+    header.time               = time;
+    header.wall_time          = wall_time;
+    const std::string problem = checkpoints.write(header, save);
+    has_results               = has_results || problem.empty();
+    return problem;
+  }
+
+
+  std::string RunFiles::last_checkpoint() const
+  {
+    return checkpoints.last().empty() ? "" : folder.directory() + "/" + checkpoints.last();
+  }
+
+
+  void RunFiles::exchange(Archive &archive)
+  {
+    {
+      const Archive::Part part(archive, "summary");
+      summary_file.exchange(archive);
+    }
+    const Archive::Part part(archive, "totals.csv");
+    totals.exchange(archive);
+    folder.check();
   }
 
 
@@ -114,6 +187,11 @@ namespace PeriDeal
         end(error.message(), true);
         throw;
       }
+    catch (const Stopped &stopped)
+      {
+        end(stopped.what(), false);
+        throw;
+      }
     catch (...)
       {
         end("out of memory, or a fault of the program", false);
@@ -122,7 +200,7 @@ namespace PeriDeal
   }
 
 
-  template RunFiles::RunFiles(const Scene<1> &, const SceneText &, const MPI_Comm);
-  template RunFiles::RunFiles(const Scene<2> &, const SceneText &, const MPI_Comm);
-  template RunFiles::RunFiles(const Scene<3> &, const SceneText &, const MPI_Comm);
+  template RunFiles::RunFiles(const Scene<1> &, const SceneText &, const MPI_Comm, const RunMode);
+  template RunFiles::RunFiles(const Scene<2> &, const SceneText &, const MPI_Comm, const RunMode);
+  template RunFiles::RunFiles(const Scene<3> &, const SceneText &, const MPI_Comm, const RunMode);
 } // namespace PeriDeal

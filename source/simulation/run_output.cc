@@ -29,9 +29,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  void RunOutput<dim>::open(const SceneText &text, const MPI_Comm communicator)
+  void RunOutput<dim>::open(const SceneText &text, const MPI_Comm communicator, const RunMode mode)
   {
-    run_files = std::make_unique<RunFiles>(scene, text, communicator);
+    run_files = std::make_unique<RunFiles>(scene, text, communicator, mode);
   }
 
 
@@ -85,14 +85,22 @@ namespace PeriDeal
 
 
   template <int dim>
+  void RunOutput<dim>::make_table(PointOutput &output, const bool goes_on)
+  {
+    output.table = std::make_unique<PointTable>(run_files->folder,
+                                                output.file,
+                                                output.points,
+                                                dim,
+                                                problems[0]->columns(),
+                                                goes_on);
+  }
+
+
+  template <int dim>
   void RunOutput<dim>::write(PointOutput &output, const double t, const ExactSolution *exact)
   {
     if (!output.table)
-      output.table = std::make_unique<PointTable>(run_files->folder,
-                                                  output.file,
-                                                  output.points,
-                                                  dim,
-                                                  problems[0]->columns());
+      make_table(output, false);
     for (std::size_t k = 0; k < problems.size(); ++k)
       output.table->add(t,
                         problems[k]->name(),
@@ -114,6 +122,17 @@ namespace PeriDeal
 
 
   template <int dim>
+  void RunOutput<dim>::make_writer()
+  {
+    const Problem<dim> &problem = *problems[writers.size()];
+    writers.push_back(std::make_unique<FieldWriter<dim>>(problem.dofs(),
+                                                         run_files->folder,
+                                                         series_of(problem.name()),
+                                                         problem.shown()));
+  }
+
+
+  template <int dim>
   void RunOutput<dim>::write_fields(const double t, const std::map<std::string, OutputField> &more)
   {
     if (!scene.output.vtu && !scene.output.hdf5)
@@ -123,10 +142,7 @@ namespace PeriDeal
       {
         const std::string model = problems[k]->name();
         if (writers.size() == k)
-          writers.push_back(std::make_unique<FieldWriter<dim>>(problems[k]->dofs(),
-                                                               run_files->folder,
-                                                               series_of(model),
-                                                               problems[k]->shown()));
+          make_writer();
         std::vector<OutputField> fields = problems[k]->fields(t);
         if (const auto found = more.find(model); found != more.end())
           fields.push_back(found->second);
@@ -158,6 +174,38 @@ namespace PeriDeal
   {
     run_files->add_totals(std::exchange(record.totals, ""));
     run_files->complete(summary);
+  }
+
+
+  template <int dim>
+  void RunOutput<dim>::exchange(Archive &archive)
+  {
+    const Archive::Part part(archive, "output");
+    run_files->exchange(archive);
+    record.exchange(archive);
+    for (PointOutput &output : outputs)
+      {
+        const Archive::Part of_file(archive, output.file);
+        bool                has_table = output.table != nullptr;
+        archive.exchange("exists", has_table);
+        if (has_table && !output.table)
+          make_table(output, true);
+        if (has_table)
+          output.table->exchange(archive);
+      }
+    unsigned int n_writers = writers.size();
+    archive.exchange("number of field writers", n_writers);
+    while (writers.size() < n_writers)
+      make_writer();
+    for (const auto &writer : writers)
+      writer->exchange(archive);
+    bool has_cracks = cracks != nullptr;
+    archive.exchange("has cracks", has_cracks);
+    if (has_cracks && !cracks)
+      cracks = std::make_unique<CrackWriter>(run_files->folder);
+    if (has_cracks)
+      cracks->exchange(archive);
+    run_files->folder.check();
   }
 
 

@@ -33,7 +33,9 @@ namespace PeriDeal
     RunOutput(const Scene<dim> &scene, ResultRecord &record);
 
     /** Takes the output directory. Throws UserError. */
-    void open(const SceneText &text, const MPI_Comm communicator);
+    void open(const SceneText &text,
+              const MPI_Comm   communicator,
+              const RunMode    mode = RunMode::begin);
     bool is_open() const;
     void close();
 
@@ -60,6 +62,12 @@ namespace PeriDeal
 
     RunFiles &files();
 
+    /**
+     * What has been written and the record of it, so that a run that is resumed goes on with the
+     * same files. After find_points(). Throws UserError where a file is gone.
+     */
+    void exchange(Archive &archive);
+
   private:
     struct PointOutput
     {
@@ -70,6 +78,8 @@ namespace PeriDeal
     };
 
     void write(PointOutput &output, const double t, const ExactSolution *exact);
+    void make_table(PointOutput &output, const bool goes_on);
+    void make_writer();
 
     const Scene<dim>                              &scene;
     ResultRecord                                  &record;

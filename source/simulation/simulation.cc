@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/memory.h>
+#include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
@@ -23,6 +24,7 @@
 #include <sstream>
 #include <utility>
 
+#include "checkpoint_clock.h"
 #include "closing.h"
 #include "model_comparison.h"
 #include "summary_parts.h"
@@ -62,11 +64,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  RunContext Simulation<dim>::context() const
+  RunContext Simulation<dim>::context()
   {
-    return {progress, *record, [this](const std::string &model, double &memory) {
+    return {progress,
+            *record,
+            [this](const std::string &model, double &memory) {
               return estimate_model(scene, model, communicator, memory);
-            }};
+            },
+            clock ? AfterStep([this](const double t) { offer_checkpoint(t); }) : AfterStep()};
   }
 
 
@@ -128,11 +133,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::run()
+  void Simulation<dim>::run(const RunMode mode)
   {
     require_computable(scene);
     require_memory(scene, communicator);
-    output->open(text, communicator);
+    output->open(text, communicator, mode);
     nlohmann::ordered_json summary;
     with_orderly_end(output->files(), progress, [&] { summary = compute(); });
     output->close();
@@ -145,20 +150,20 @@ namespace PeriDeal
   nlohmann::ordered_json Simulation<dim>::compute()
   {
     build();
-    begin();
-    progress.begin("time");
-    start();
-    for (const std::vector<double> times = output_times(); place.output < times.size();)
+    if (!scene.time.steady)
+      clock = std::make_unique<CheckpointClock>(scene.checkpoint, communicator);
+    if (resumes())
       {
-        const double t = times[place.output];
-        advance_to(t);
-        progress.update(scene.time.steady ? 1. : t / scene.time.end_time);
-        write_output(t);
-        place.stops.clear();
-        place.stop = 0;
-        if (++place.output < times.size())
-          offer_checkpoint(t);
+        resume();
+        progress.begin("time");
       }
+    else
+      {
+        begin();
+        progress.begin("time");
+        start();
+      }
+    pass_output_times();
     progress.end();
     if (const unsigned int n = history.n_adaptations(); n > 0)
       record->notes.push_back("the mesh was adapted " + std::to_string(n) +
@@ -181,6 +186,32 @@ namespace PeriDeal
     for (const auto *list : {&companions, &problems})
       for (const auto &problem : *list)
         problem->begin(context());
+  }
+
+
+  template <int dim>
+  bool Simulation<dim>::resumes() const
+  {
+    return output->is_open() && output->files().checkpoint() != nullptr;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::pass_output_times()
+  {
+    set_stoppable(!scene.time.steady);
+    for (const std::vector<double> times = output_times(); place.output < times.size();)
+      {
+        const double t = times[place.output];
+        advance_to(t);
+        progress.update(scene.time.steady ? 1. : t / scene.time.end_time);
+        write_output(t);
+        place.stops.clear();
+        place.stop = 0;
+        if (++place.output < times.size())
+          offer_checkpoint(t);
+      }
+    set_stoppable(false);
   }
 
 

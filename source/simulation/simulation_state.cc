@@ -3,12 +3,16 @@
 
 // What changes in a run besides its solutions: the mesh, how far it is; and keeping all of it.
 
+#include <perideal/base/process_end.h>
+#include <perideal/base/user_error.h>
 #include <perideal/problems/result_record.h>
+#include <perideal/scene/lists.h>
 #include <perideal/scene/with_formulas.h>
 #include <perideal/simulation/simulation.h>
 
 #include <algorithm>
 
+#include "checkpoint_clock.h"
 #include "run_output.h"
 
 namespace PeriDeal
@@ -21,7 +25,7 @@ namespace PeriDeal
     if (scene.coupling.zone != ZoneKind::adaptive)
       return;
     grading = std::make_unique<Grading<dim>>(scene, *mesh);
-    if (scene.time.steady)
+    if (scene.time.steady || resumes())
       return;
     for (unsigned int round = 0; round < scene.domain.coarsening && adapt(0.); ++round)
       for (auto &problem : problems)
@@ -80,30 +84,28 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::exchange(Archive &archive)
   {
-    {
-      const Archive::Part part(archive, "mesh");
-      history.exchange(archive);
-      archive.exchange("time", time_of_mesh);
-    }
     place.exchange(archive);
     timings.exchange(archive);
-    for (const auto &[list, name] :
-         {std::make_pair(&companions, "companion "), std::make_pair(&problems, "problem ")})
-      for (std::size_t k = 0; k < list->size(); ++k)
+    const auto exchange_all = [&](List &list, const std::string &name) {
+      for (std::size_t k = 0; k < list.size(); ++k)
         {
           const Archive::Part part(archive, name + std::to_string(k));
-          (*list)[k]->exchange(archive);
+          list[k]->exchange(archive);
         }
+    };
+    exchange_all(companions, "companion ");
+    exchange_all(problems, "problem ");
+    output->exchange(archive);
   }
 
 
   template <int dim>
-  void Simulation<dim>::restore_mesh(Archive &archive)
+  void Simulation<dim>::exchange_mesh(Archive &archive)
   {
     const Archive::Part part(archive, "mesh");
     history.exchange(archive);
     archive.exchange("time", time_of_mesh);
-    if (history.n_adaptations() == 0)
+    if (!archive.loads() || history.n_adaptations() == 0)
       return;
     history.repeat(*mesh);
     grading->set_time(time_of_mesh);
@@ -111,20 +113,61 @@ namespace PeriDeal
       for (auto &problem : problems)
         problem->rebuild(time_of_mesh);
     });
-    readers_fit = false;
+    output->find_points(reported());
   }
 
 
   template <int dim>
-  void Simulation<dim>::offer_checkpoint(const double)
-  {}
+  void Simulation<dim>::resume()
+  {
+    CheckpointReader &saved = *output->files().checkpoint();
+    exchange_mesh(saved);
+    begin();
+    exchange(saved);
+    wall_time_before = saved.header().wall_time;
+    progress.line("resumed at t = " + number_text(saved.header().time) + ", after " +
+                  readable_duration(wall_time_before));
+    output->files().has_resumed();
+  }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                         \
-  template void Simulation<dim>::prepare_adaptation();    \
-  template bool Simulation<dim>::adapt(const double);     \
-  template void Simulation<dim>::exchange(Archive &);     \
-  template void Simulation<dim>::restore_mesh(Archive &); \
+  template <int dim>
+  void Simulation<dim>::offer_checkpoint(const double t)
+  {
+    const CheckpointClock::Need need = clock->need(t);
+    if (need == CheckpointClock::Need::none)
+      return;
+    const double      before = clock->elapsed();
+    const std::string failure =
+      output->files().write_checkpoint(t, wall_time_before + before, [this](Archive &archive) {
+        exchange_mesh(archive);
+        exchange(archive);
+      });
+    clock->kept(clock->elapsed() - before);
+    if (need == CheckpointClock::Need::stop)
+      stop(t, failure);
+    if (failure.empty())
+      progress.line("checkpoint at t = " + number_text(t));
+    else
+      progress.note(failure);
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::stop(const double t, const std::string &failure) const
+  {
+    const std::string last = output->files().last_checkpoint(),
+                      why  = "stopped at t = " + number_text(t) + " by " + clock->reason() + ". ";
+    AssertThrow(!last.empty(), UserError("The run was " + why + failure));
+    throw Stopped(why + (failure.empty() ? "Its state is kept in " + last + "." :
+                                           failure + " The last one kept is " + last + "."));
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                      \
+  template void Simulation<dim>::prepare_adaptation(); \
+  template bool Simulation<dim>::adapt(const double);  \
+  template void Simulation<dim>::resume();             \
   template void Simulation<dim>::offer_checkpoint(const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -123,7 +123,7 @@ namespace PeriDeal
     template <int dim>
     void run(const Scene<dim> &scene, const SceneText &text, const MPI_Comm communicator)
     {
-      Simulation<dim>(scene, text, communicator, true).run();
+      Simulation<dim>(scene, text, communicator, true).run(RunMode::overwrite);
     }
 
 

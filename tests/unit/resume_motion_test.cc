@@ -187,8 +187,8 @@ namespace PeriDeal
     StaticOptions options;
     options.tolerance               = 1e-12;
     const Settings         settings = plate + brittle + slow;
-    constexpr double       end      = 0.6;
-    constexpr unsigned int n_steps  = 12;
+    constexpr double       end      = 0.3;
+    constexpr unsigned int n_steps  = 4;
     for (const char *name : {"linear", "conjugate gradients"})
       for (const unsigned int n_before : {2u})
         {

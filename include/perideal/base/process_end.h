@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <string>
 
@@ -14,7 +15,29 @@ namespace PeriDeal
     complete = 0,
     error    = 1, // of the user or of the machine, or a run that diverged
     fault    = 2, // of the program
-    stopped  = 3  // by a signal
+    stopped  = 3  // by a signal or the limit of its wall time
+  };
+
+
+  /**
+   * A run has stopped before its end, in order: its state is kept, to be gone on with. Thrown on
+   * all processes; no error.
+   */
+  class Stopped : public std::exception
+  {
+  public:
+    /** @param message sentences for the user: why, when, and where the state is kept */
+    explicit Stopped(const std::string &message)
+      : text(message)
+    {}
+
+    const char *what() const noexcept override
+    {
+      return text.c_str();
+    }
+
+  private:
+    std::string text;
   };
 
 
@@ -29,10 +52,11 @@ namespace PeriDeal
   void prepare_mpi_environment();
 
   /**
-   * From now on SIGTERM and SIGINT end the process with ExitStatus::stopped after what
-   * set_farewell() has asked for; faults (a segmentation fault, a bus error, abort()) end it with
-   * one message, without a trace, and ExitStatus::fault, or ExitStatus::error if memory has run
-   * out. To be called after MPI_Init, which sets handlers of its own.
+   * From now on SIGTERM, SIGINT and SIGUSR1 end the process with ExitStatus::stopped after what
+   * set_farewell() has asked for, unless a run stops by itself (set_stoppable()); faults (a
+   * segmentation fault, a bus error, abort()) end it with one message, without a trace, and
+   * ExitStatus::fault, or ExitStatus::error if memory has run out. To be called after MPI_Init,
+   * which sets handlers of its own.
    *
    * @param speaks whether this process tells the user; one of each run does
    * @param alone  whether the run has no other processes; those would wait for ever for one that
@@ -40,6 +64,19 @@ namespace PeriDeal
    *               ends when nobody has reported it for 20 s
    */
   void handle_signals(const bool speaks, const bool alone);
+
+  /**
+   * Whether a run asks stop_requested() often and stops in order then. Between true and false the
+   * first of the signals above is a request; one that comes more than two seconds later ends the
+   * process as before. (Who starts a run may send the same signal to it in several ways.)
+   */
+  void set_stoppable(const bool run_asks);
+
+  /** Whether a signal has asked this process to stop. Others may not know yet. */
+  bool stop_requested();
+
+  /** By what: `an interrupt (SIGINT)`; empty if nothing has. */
+  std::string stop_reason();
 
   /**
    * A library ends all processes by MPI_Abort(): what set_farewell() has asked for, and one

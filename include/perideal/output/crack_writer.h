@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
 #include <perideal/output/result_folder.h>
 
 #include <array>
@@ -32,6 +33,9 @@ namespace PeriDeal
      * Write the pieces, if there are any, on rank 0. What cannot be written is kept in the folder.
      */
     void write(const CrackCorners &pieces, const double time);
+
+    /** What has been written, so that the series goes on. Collective. */
+    void exchange(Archive &archive);
 
   private:
     ResultFolder                               &folder;

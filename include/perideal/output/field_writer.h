@@ -6,7 +6,7 @@
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/dofs/dof_handler.h>
 
-#include <perideal/base/types.h>
+#include <perideal/base/archive.h>
 #include <perideal/output/result_folder.h>
 
 #include <functional>
@@ -60,6 +60,9 @@ namespace PeriDeal
                       const double                    time,
                       const bool                      vtu,
                       const bool                      hdf5);
+
+    /** What has been written, so that the series goes on. Collective. */
+    void exchange(Archive &archive);
 
   private:
     const std::vector<dealii::DataOutBase::Patch<dim, dim>> &get_patches() const override;

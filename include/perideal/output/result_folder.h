@@ -13,6 +13,15 @@
 
 namespace PeriDeal
 {
+  /** What a run does with the results that lie in its output directory. */
+  enum class RunMode
+  {
+    begin,     // replace them, unless they are those of a run that can be resumed
+    overwrite, // replace them
+    resume     // go on with them
+  };
+
+
   /**
    * The output directory of one run. The folder `.perideal` in it holds the list of the files that
    * runs have written there, each named before it is written, a lock while a run goes on, and the
@@ -25,6 +34,9 @@ namespace PeriDeal
    * - A run that ends by an error before commit() leaves the directory as it was. One that is
    *   killed or told to end before leaves the results before it in `.perideal/previous`, until
    *   another run has results.
+   * - A run that can be resumed has checkpoints in the list (`checkpoints/N.h5`); it is not
+   *   replaced unless that is asked for.
+   * - A run that is resumed finds all as it was left, and leaves what it cannot go on with.
    *
    * Files are written by rank 0. What goes wrong there is kept, and check() throws it on all
    * processes.
@@ -33,7 +45,8 @@ namespace PeriDeal
   {
   public:
     /**
-     * Takes the directory and sets aside what an earlier run wrote there.
+     * Takes the directory and, unless it goes on with it, sets aside what an earlier run wrote
+     * there.
      *
      * @param scene_file must not be among the results @param names of files that the run is going
      *                   to write or its report is, relative to the directory;
@@ -44,7 +57,8 @@ namespace PeriDeal
     ResultFolder(const std::string              &directory,
                  const std::string              &scene_file,
                  const std::vector<std::string> &names,
-                 const MPI_Comm                  communicator);
+                 const MPI_Comm                  communicator,
+                 const RunMode                   mode = RunMode::begin);
 
     /** Without commit() everything is as before. */
     ~ResultFolder();
@@ -63,6 +77,12 @@ namespace PeriDeal
       return first_rank;
     }
 
+    /** Those of the run. */
+    MPI_Comm processes() const
+    {
+      return communicator;
+    }
+
     /** Whether results of a run before lie in `.perideal/previous`. Not collective. */
     bool has_earlier_results() const;
 
@@ -72,6 +92,15 @@ namespace PeriDeal
      */
     std::string claim(const std::string &name);
 
+    /** The same for a file that the run can do without; @p problem 0 or an error number. */
+    std::string claim(const std::string &name, int &problem);
+
+    /** Whether the list of the run's own files has this one. Only where writes(). */
+    bool lists(const std::string &name) const
+    {
+      return listed.count(name) > 0;
+    }
+
     /** Write a file whole or not at all. Does nothing where not writes(). */
     void write(const std::string &name, const std::string &text);
 
@@ -80,6 +109,9 @@ namespace PeriDeal
      * gave none). The first such message counts.
      */
     void keep_failure(const std::string &name, const int reason);
+
+    /** The same for what is wrong otherwise, a sentence. */
+    void keep_failure(const std::string &message);
 
     /** Throws a UserError on all processes if anything could not be written. Collective. */
     void check() const;
@@ -94,9 +126,13 @@ namespace PeriDeal
     void commit();
 
   private:
-    std::string take(const std::string &scene_file, const std::vector<std::string> &names);
+    std::string take(const std::string              &scene_file,
+                     const std::vector<std::string> &names,
+                     const RunMode                   mode);
     std::string file_of_another_origin(const std::vector<std::string> &names,
                                        const std::set<std::string>    &earlier) const;
+    bool        is_resumable(const std::set<std::string> &earlier) const;
+    void        go_on_with(const std::set<std::string> &earlier);
     void        set_aside(const std::set<std::string> &earlier);
     void        put_back();
     void        restore();
@@ -125,7 +161,9 @@ namespace PeriDeal
    */
   int replace_file(const std::string &name, const std::string &text);
 
+  /** What the system says to an error number; 0 and negative ones: that it says nothing. */
+  std::string reason_of(const int number);
+
   /** As replace_file(), throws UserError. */
   void write_file(const std::string &name, const std::string &text);
-
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
 #include <perideal/output/result_folder.h>
 
 #include <nlohmann/json.hpp>
@@ -21,8 +22,11 @@ namespace PeriDeal
   public:
     using Json = nlohmann::ordered_json;
 
-    /** @param start what is known before anything is computed */
-    SummaryFile(ResultFolder &folder, const Json &start);
+    /**
+     * @param start   what is known before anything is computed
+     * @param goes_on the file is that of a run that is resumed, and stays until exchange()
+     */
+    SummaryFile(ResultFolder &folder, const Json &start, const bool goes_on = false);
 
     /** The process needs no farewell any more. */
     ~SummaryFile();
@@ -38,8 +42,12 @@ namespace PeriDeal
     /** The run ends early. @param status `diverged` or `stopped` */
     void end(const std::string &status, const std::string &message);
 
+    /** What is known. When it is loaded the file says that the run goes on. Collective. */
+    void exchange(Archive &archive);
+
   private:
     ResultFolder &folder;
     Json          known;
+    std::string   reached;
   };
 } // namespace PeriDeal

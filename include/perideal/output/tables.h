@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
 #include <perideal/output/result_folder.h>
 
 #include <string>
@@ -21,8 +22,13 @@ namespace PeriDeal
     /**
      * The file exists with its header from now on. Writes where the folder does; failures are kept
      * there.
+     *
+     * @param goes_on it is that of a run that is resumed, and exchange() comes before rows
      */
-    Table(ResultFolder &folder, const std::string &name, const std::string &header);
+    Table(ResultFolder      &folder,
+          const std::string &name,
+          const std::string &header,
+          const bool         goes_on = false);
     ~Table();
 
     Table(const Table &)            = delete;
@@ -30,6 +36,12 @@ namespace PeriDeal
 
     /** @param rows whole lines */
     void add(const std::string &rows);
+
+    /**
+     * The length of the file. What has been added since it was saved goes when it is loaded; that
+     * the file is shorter or gone is kept in the folder. Collective.
+     */
+    void exchange(Archive &archive);
 
     /** This process writes it. */
     bool writes() const
@@ -55,10 +67,14 @@ namespace PeriDeal
                const std::string                      &name,
                const std::vector<std::vector<double>> &points,
                const unsigned int                      dim,
-               const std::vector<std::string>         &columns = {"value"});
+               const std::vector<std::string>         &columns = {"value"},
+               const bool                              goes_on = false);
 
     /** @param values those of all columns of the first point, then of the next */
     void add(const double time, const std::string &model, const std::vector<double> &values);
+
+    /** As Table::exchange(). */
+    void exchange(Archive &archive);
 
   private:
     std::vector<std::vector<double>> points;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
 #include <perideal/output/crack_writer.h>
 #include <perideal/output/tables.h>
 #include <perideal/scene/crack_tips.h>
@@ -76,6 +77,23 @@ namespace PeriDeal
     {
       totals +=
         full_precision(t) + "," + model + "," + quantity + "," + full_precision(value) + "\n";
+    }
+
+    /** All of it, so that a run that is resumed has the same summary. Collective. */
+    void exchange(Archive &archive)
+    {
+      json state = json::array(
+        {notes, fields, errors, comparison, comparisons, balances, extremes, totals});
+      std::string text = state.dump(-1, ' ', false, json::error_handler_t::replace);
+      archive.exchange("record", text);
+      if (!archive.loads())
+        return;
+      state  = json::parse(text);
+      notes  = state[0].get<std::vector<std::string>>();
+      totals = state[7].get<std::string>();
+      json *const members[] = {&fields, &errors, &comparison, &comparisons, &balances, &extremes};
+      for (unsigned int k = 0; k < 6; ++k)
+        *members[k] = state[k + 1];
     }
   };
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/checkpoint_control.h>
 #include <perideal/scene/control.h>
 #include <perideal/scene/coupling_control.h>
 #include <perideal/scene/crack_history.h>
@@ -77,6 +78,7 @@ namespace PeriDeal
     TimeControl             time;
     SolverControlParameters solver;
     OutputControl<dim>      output;
+    CheckpointControl       checkpoint;
     Reference               reference;
     Units                   units;
 

@@ -38,6 +38,12 @@ namespace PeriDeal
    */
   SceneLines scan_lines(const std::string &text, const std::string &file_name);
 
+  /** `Section/Entry` and value of each statement, in their order. */
+  using SceneEntries = std::vector<std::pair<std::string, std::string>>;
+
+  /** Of a text as scene_with_defaults() gives it: all entries of a scene. */
+  SceneEntries entries_of(const std::string &text);
+
   /**
    * Put overrides "Section/Entry=value" into the text of a scene: in the place of the entry, so
    * that line numbers stay, or at the end. Whether the names exist is not checked here. Throws

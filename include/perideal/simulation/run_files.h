@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/base/progress.h>
+#include <perideal/output/checkpoints.h>
 #include <perideal/output/summary_file.h>
 #include <perideal/output/tables.h>
 #include <perideal/scene/scene.h>
@@ -26,11 +27,15 @@ namespace PeriDeal
     using Json = nlohmann::ordered_json;
 
     /**
-     * Takes the output directory and writes what is known at the start. Throws UserError.
-     * Collective.
+     * Takes the output directory and writes what is known at the start. A run that is resumed finds
+     * the newest checkpoint and checks that it can go on from it before anything is written. Throws
+     * UserError. Collective.
      */
     template <int dim>
-    RunFiles(const Scene<dim> &scene, const SceneText &text, const MPI_Comm communicator);
+    RunFiles(const Scene<dim> &scene,
+             const SceneText  &text,
+             const MPI_Comm    communicator,
+             const RunMode     mode = RunMode::begin);
 
     /**
      * Rows for totals.csv, after all other output of that time; with them, unless anything could
@@ -54,12 +59,43 @@ namespace PeriDeal
      */
     bool end_early(const std::string &message, const bool diverged);
 
-    ResultFolder folder;
+    /** The checkpoint to go on from, until has_resumed(); null in a run that begins. */
+    CheckpointReader *checkpoint() const;
+
+    /** All has been loaded: the run has results, and lets go of the checkpoint. */
+    void has_resumed();
+
+    /**
+     * Keep the state of the run, which @p save hands over. Returns why it could not be written, a
+     * sentence, empty if it could; then the run has results.
+     *
+     * @param time      simulated
+     * @param wall_time of the whole run, in seconds
+     *
+     * Collective.
+     */
+    std::string write_checkpoint(const double                          time,
+                                 const double                          wall_time,
+                                 const std::function<void(Archive &)> &save);
+
+    /** The last checkpoint that was written, with its folder; empty if there is none. */
+    std::string last_checkpoint() const;
+
+    /** Summary and totals. Throws UserError where a file cannot be gone on with. Collective. */
+    void exchange(Archive &archive);
+
+    ResultFolder             folder;
+    std::vector<std::string> notes; // on checkpoints that could not be taken
 
   private:
     using Clock = std::chrono::steady_clock;
 
-    const MPI_Comm    communicator;
+    const MPI_Comm   communicator;
+    CheckpointHeader header; // of this run
+    Checkpoints      checkpoints;
+
+    std::unique_ptr<CheckpointReader> reader;
+
     SummaryFile       summary_file;
     Table             totals;
     bool              has_results = false;

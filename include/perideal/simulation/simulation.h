@@ -9,6 +9,7 @@
 #include <perideal/base/progress.h>
 #include <perideal/mesh/grading.h>
 #include <perideal/mesh/mesh_history.h>
+#include <perideal/output/result_folder.h>
 #include <perideal/problems/problem.h>
 #include <perideal/scene/scene.h>
 
@@ -20,6 +21,7 @@
 
 namespace PeriDeal
 {
+  class CheckpointClock;
   struct ResultRecord;
   template <int dim>
   class RunOutput;
@@ -43,8 +45,11 @@ namespace PeriDeal
                const bool        quiet);
     ~Simulation();
 
-    /** Compute, write all files, summary.json last. */
-    void run();
+    /**
+     * Compute, write all files, summary.json last. @param mode what becomes of the results that lie
+     * in the output directory
+     */
+    void run(const RunMode mode = RunMode::begin);
 
     /** Build everything, say what a run would need, compute and write nothing. */
     void dry_run();
@@ -64,7 +69,7 @@ namespace PeriDeal
       void exchange(Archive &archive);
     };
 
-    RunContext                        context() const;
+    RunContext                        context();
     std::vector<const Problem<dim> *> reported() const;
     std::vector<double>               output_times() const;
 
@@ -75,6 +80,7 @@ namespace PeriDeal
     nlohmann::ordered_json compute(); // the summary at the end
     void                   begin();
     void                   start();
+    void                   pass_output_times();
     void                   settle();
     bool                   tells_at_stops() const;
     void                   advance_to(const double t);
@@ -94,12 +100,18 @@ namespace PeriDeal
     double share_done(const unsigned int n, const double t) const;
     bool   adapt(const double t);
 
-    /** The whole state of the run, on the mesh of restore_mesh() and after begin(). */
+    /** The state of the run: the mesh, then, after begin(), all else. */
+    void exchange_mesh(Archive &archive);
     void exchange(Archive &archive);
-    void restore_mesh(Archive &archive);
 
-    /** Where the state can be kept: keeps it if that is due. */
+    bool resumes() const; // and has not done so yet
+    void resume();
+
+    /** Where the state can be kept: keeps it if that is due, and stops if it has to. */
     void offer_checkpoint(const double t);
+
+    /** @param failure of keeping the state */
+    [[noreturn]] void stop(const double t, const std::string &failure) const;
 
     void                   write_output(const double t);
     void                   write_fields(const double t);
@@ -123,5 +135,7 @@ namespace PeriDeal
     double                                      time_of_mesh = 0.;
     bool                                        readers_fit  = true; // the mesh
     Place                                       place;
+    std::unique_ptr<CheckpointClock>            clock;                 // unless steady
+    double                                      wall_time_before = 0.; // the run was resumed
   };
 } // namespace PeriDeal
