@@ -281,7 +281,6 @@ namespace PeriDeal
           number_along_lattice(handler, scene.domain);
       }
 
-
       /**
        * Where sizes of cells meet, the mean around a node is that of a place beside it, which
        * shifts smooth fields: correct by the difference of the values there. On the surface of the
@@ -327,7 +326,6 @@ namespace PeriDeal
         });
       }
 
-
       /**
        * Where cells have been merged the interpolant holds a little more or less heat than the
        * finer field did. The difference goes to the nodes of merged cells, each by the same
@@ -355,7 +353,6 @@ namespace PeriDeal
         fem->distribute(u, t);
       }
 
-
       void build_operator(const double start = 0.)
       {
         Timings::Scope                 scope(this->timings, "operator");
@@ -376,7 +373,6 @@ namespace PeriDeal
         fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling), start);
       }
 
-
       /**
        * Exchange that is not exact must not run; of the others the user is told how wrong they are.
        */
@@ -390,13 +386,11 @@ namespace PeriDeal
                               ". Choose another 'Zone', or a mesh with less distorted cells."));
       }
 
-
       /** Peridynamics alone has nothing to splice or to blend with. */
       CouplingScheme scheme() const
       {
         return model == ModelKind::coupled ? scene.coupling.scheme : CouplingScheme::exchange;
       }
-
 
       /** Which nodes are in the zone, and the part of their bonds that cracks have cut. */
       void add_bond_fields(const Vector &u, std::vector<OutputField> &fields) const
@@ -425,7 +419,6 @@ namespace PeriDeal
         fields.push_back(vector_field<1>("cut_fraction", cut));
       }
 
-
       /**
        * Integral of f times the shape function of each owned unknown, with two Gauss points along
        * each direction. Collective.
@@ -451,7 +444,6 @@ namespace PeriDeal
             }
         integrals.compress(VectorOperation::add);
       }
-
 
       /** Call visit(local index, position) for each owned dof. */
       void for_each_node(

@@ -253,40 +253,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  typename SolidProblem<dim>::MotionParts SolidProblem<dim>::parts_between(const double from,
-                                                                           const double to) const
-  {
-    constexpr double n_reports = 50.; // of the progress
-    MotionParts      parts;
-    parts.n_steps = std::max(1., std::ceil((to - from) / stepper->current_step() * (1. - 1e-10)));
-    parts.span    = StepSpan::between(from, to);
-    parts.span.n_steps = static_cast<unsigned long long>(std::min(parts.n_steps, n_reports));
-    return parts;
-  }
-
-
-  template <int dim>
-  double SolidProblem<dim>::MotionParts::next() const
-  {
-    // Whole steps between two reports, so that these change no step.
-    const unsigned int part = span.n_done + 1;
-    return part == span.n_steps ?
-             span.end :
-             span.start +
-               (span.end - span.start) * std::floor(n_steps * part / span.n_steps) / n_steps;
-  }
-
-
-  template <int dim>
-  void SolidProblem<dim>::MotionParts::exchange(Archive &archive)
-  {
-    const Archive::Part part(archive, "parts");
-    span.exchange(archive);
-    archive.exchange("planned steps", n_steps);
-  }
-
-
-  template <int dim>
   void SolidProblem<dim>::move(const double                             from,
                                const double                             to,
                                const std::function<void(const double)> &report,
@@ -294,7 +260,7 @@ namespace PeriDeal
   {
     Timings::Scope scope(this->timings, "time stepping");
     if (!moving.span.is_open)
-      moving = parts_between(from, to);
+      moving = MotionParts::between(from, to, stepper->current_step());
     StepSpan &span = moving.span;
     while (span.n_done < span.n_steps)
       {

@@ -232,9 +232,7 @@ namespace PeriDeal
     }
 
     double strained_extension_moment(const double *u, const unsigned int i, const Bond &bond) const;
-
-    /** Bear nothing any more. */
-    void release(const std::size_t stored_bond);
+    void   release(const std::size_t stored_bond); // bears nothing any more
 
     const Scene<dim>                                          &scene;
     Families<dim>                                              bonds;
@@ -280,7 +278,6 @@ namespace PeriDeal
     for_each_lattice_bond(i, lattice_bonds, visit);
   }
 
-
   template <int dim>
   template <typename Visit>
   inline void StateOperator<dim>::for_each_lattice_bond(const unsigned int              i,
@@ -296,8 +293,8 @@ namespace PeriDeal
         const unsigned int j = bonds.neighbors().node_at(site + bond.offset);
         if (j == dealii::numbers::invalid_unsigned_int)
           continue;
-        const double w     = volume * nodes.volume(j);
-        const double other = laws[j].law.extension / weighted.local_element(j);
+        const double w     = volume * nodes.volume(j),
+                     other = laws[j].law.extension / weighted.local_element(j);
         visit(Bond{j, w * bond.moment, (own + other) / (w * bond.weight), 0., true});
       }
   }

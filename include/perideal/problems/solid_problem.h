@@ -7,6 +7,7 @@
 #include <perideal/analysis/phase_statistics.h>
 #include <perideal/analysis/stress_intensity.h>
 #include <perideal/operators/elastic_operator.h>
+#include <perideal/problems/motion_parts.h>
 #include <perideal/problems/problem.h>
 #include <perideal/scene/scene.h>
 #include <perideal/solvers/motion_stepper.h>
@@ -99,22 +100,11 @@ namespace PeriDeal
     unsigned int                   n_iterations = 0;
 
   private:
-    /** A span of a motion in parts of whole steps, after each of which there is a report. */
-    struct MotionParts
-    {
-      StepSpan span;
-      double   n_steps = 0.; // planned, of the motion
-
-      double next() const;
-      void   exchange(Archive &archive);
-    };
-
     void           set_start();
     void           take_temperature();
     StepperOptions stepper_options() const;
     void           make_loading();
     void           begin_loading(const RunContext &context);
-    MotionParts    parts_between(const double from, const double to) const;
     void           move(const double                             from,
                         const double                             to,
                         const std::function<void(const double)> &report,

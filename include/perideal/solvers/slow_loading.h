@@ -57,10 +57,11 @@ namespace PeriDeal
     void begin(Vector &u, const double t);
 
     /**
-     * From the equilibrium u to that at time t. Bonds break in rounds, and @p after_round is called
-     * after each with the new equilibrium, when all that the next rounds depend on can be kept. Collective. Throws UserError if there is none to be
-     * found, among others since the body has come apart under loads that nothing bears any more; u
-     * is the last equilibrium then. So it does where full kinematics end with the body inside out.
+     * From the equilibrium u to that at time t. Bonds break in rounds; after each @p after_round is
+     * called with the new equilibrium, when all that the next rounds depend on can be kept.
+     * Collective. Throws UserError if there is none to be found, among others since the body has
+     * come apart under loads that nothing bears any more; u is the last equilibrium then. So it
+     * does where full kinematics end with the body inside out.
      */
     void step(Vector &u, const double t, const AfterStep &after_round = {});
 
