@@ -50,6 +50,13 @@ namespace PeriDeal
   }
 
 
+  const BreakPlaces &ElasticOperator::break_places() const
+  {
+    static const BreakPlaces none;
+    return brittle() ? break_history()->places : none;
+  }
+
+
   double ElasticOperator::scaled_bound() const
   {
     return sharp_bound(
