@@ -38,7 +38,7 @@ namespace PeriDeal
         else
           for (unsigned int a = 0; a < n; ++a)
             change += at_nodes(data.indices[a]) * data.values.shape_value(a, q);
-        const double strain   = thermal_strain(p, change);
+        const double strain   = this->thermal_strain(p, change);
         const double pressure = (dim * lambda + 2. * mu) * strain;
         const double density  = scene.elasticity.is_static() ? 1. : scene.material.density.value(p);
         data.thermal_energy += 0.5 * dim * pressure * strain * JxW;
@@ -100,7 +100,6 @@ namespace PeriDeal
     if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling && coupling &&
         !scene.cracks.cracks.empty())
       find_crack_factors();
-    initialize_vector(mass);
     volumes.reinit(nodes);
     double energy = 0.;
     for_each_own_cell([&](const Cell &cell, CellData &of_cell) {
@@ -121,7 +120,6 @@ namespace PeriDeal
     stiffness.compress(VectorOperation::add);
     mass.compress(VectorOperation::add);
     volumes.compress(VectorOperation::add);
-    initialize_vector(stiffness_diagonal);
     for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
       if (column == unknowns->local_to_global(i))
         stiffness_diagonal.local_element(i) = value;
@@ -165,8 +163,7 @@ namespace PeriDeal
       add_thermal(of_cell, energy);
     });
     finish_thermal(energy);
-    if (!loads_vary)
-      assemble_loads(constant_loads, 0.);
+    this->keep_constant_loads();
   }
 
 
@@ -223,7 +220,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticElements<dim>::assemble_loads(Vector &loads, const double t) const
+  void ElasticElements<dim>::find_loads(Vector &loads, const double t) const
   {
     loads = thermal_loads;
     loads.zero_out_ghost_values();
@@ -235,20 +232,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticElements<dim>::mechanical_loads(Vector &loads, const double t) const
-  {
-    assemble_loads(loads, t);
-    loads -= thermal_loads;
-  }
-
-
-  template <int dim>
   ForceBalance ElasticElements<dim>::forces(const Vector &u, const double t) const
   {
     Vector loads, reactions;
-    initialize_vector(loads);
-    initialize_vector(reactions);
-    assemble_loads(loads, t);
+    this->initialize_vector(loads);
+    this->initialize_vector(reactions);
+    find_loads(loads, t);
     stiffness.vmult(reactions, u);
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     if (coupling)
@@ -269,8 +258,7 @@ namespace PeriDeal
   template TrilinosWrappers::SparsityPattern ElasticElements<dim>::element_pattern() const;         \
   template void                              ElasticElements<dim>::assemble();                      \
   template void         ElasticElements<dim>::set_temperature_change(const Vector &);               \
-  template void         ElasticElements<dim>::assemble_loads(Vector &, const double) const;         \
-  template void         ElasticElements<dim>::mechanical_loads(Vector &, const double) const;       \
+  template void         ElasticElements<dim>::find_loads(Vector &, const double) const;             \
   template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

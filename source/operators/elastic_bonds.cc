@@ -22,19 +22,6 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  const ElasticCoupling<dim> &ElasticElements<dim>::bonds() const
-  {
-    return *coupling;
-  }
-
-  template <int dim>
-  const std::vector<bool> &ElasticElements<dim>::cut_cells() const
-  {
-    return cut;
-  }
-
-
-  template <int dim>
   void ElasticElements<dim>::find_cut_cells()
   {
     cut.assign(dofs.get_triangulation().n_active_cells(), false);
@@ -48,36 +35,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  double ElasticElements<dim>::temperature_change_at(const unsigned int node) const
-  {
-    const Vector &at_nodes = this->temperature_change();
-    return at_nodes.size() > 0 ? at_nodes.local_element(node) :
-                                 scene.elasticity.temperature_change.value(positions[node]);
-  }
-
-
-  template <int dim>
   bool ElasticElements<dim>::any_thermal() const
   {
     const Expression &change = scene.elasticity.temperature_change;
     return this->temperature_change().size() > 0 || !change.is_constant() ||
            change.value(Point<dim>()) != 0.;
-  }
-
-
-  template <int dim>
-  double ElasticElements<dim>::thermal_strain_at(const unsigned int node) const
-  {
-    return thermal_strain(positions[node], temperature_change_at(node));
-  }
-
-
-  template <int dim>
-  double ElasticElements<dim>::thermal_strain(const Point<dim> &p,
-                                              const double      temperature_change) const
-  {
-    return thermal_strain_factor(scene.material.moduli(p), dim, scene.elasticity.plane) *
-           scene.material.thermal_expansion.value(p) * temperature_change;
   }
 
 
@@ -93,7 +55,7 @@ namespace PeriDeal
         else
           for (const auto i : data.indices)
             change += this->temperature_change()(i) / data.indices.size();
-        const double           strain = thermal_strain(cell->center(), change);
+        const double           strain = this->thermal_strain(cell->center(), change);
         dealii::Vector<double> free(data.thermal.size());
         for (unsigned int a = 0; a < data.indices.size(); ++a)
           for (unsigned int d = 0; d < dim; ++d)
@@ -203,7 +165,8 @@ namespace PeriDeal
               continue;
             const double         factor = bond_factor(i, bond.neighbor);
             const Tensor<1, dim> xi     = positions[bond.neighbor] - positions[i];
-            const double strain = 0.5 * (thermal_strain_at(i) + thermal_strain_at(bond.neighbor));
+            const double         strain =
+              0.5 * (this->thermal_strain_at(i) + this->thermal_strain_at(bond.neighbor));
             const Tensor<1, dim> force = factor * strain * (bond.block * xi);
             for (unsigned int d = 0; d < dim; ++d)
               thermal_loads.local_element(dim * i + d) -= force[d];
@@ -276,11 +239,11 @@ namespace PeriDeal
         const std::string fault = coupling && i % dim == 0 ? coupling->fault_of(i / dim) : "";
         if (!fault.empty())
           message =
-            "The node at " + place_of(i) + fault +
+            "The node at " + this->place_of(i) + fault +
             " Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
         else if (!(stiffness_diagonal.local_element(i) > 1e-13 * largest))
           message =
-            "The node at " + place_of(i) +
+            "The node at " + this->place_of(i) +
             " is isolated: cracks cut all cells around it, and no bond holds it. Use " +
             (coupling ?
                "fewer cracks, or a wider 'Zone' in section 'Coupling' where only a part of the body has bonds." :
@@ -334,15 +297,11 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template const ElasticCoupling<dim> &ElasticElements<dim>::bonds() const;                        \
-  template const std::vector<bool>    &ElasticElements<dim>::cut_cells() const;                    \
-  template void                        ElasticElements<dim>::find_cut_cells();                     \
+  template void ElasticElements<dim>::find_cut_cells();                                            \
   template void ElasticElements<dim>::change_cell(const Cell &, CellData &) const;                 \
   template void ElasticElements<dim>::add_bond_pattern(TrilinosWrappers::SparsityPattern &) const; \
   template void ElasticElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &, const bool)      \
     const;                                                                                         \
-  template double ElasticElements<dim>::thermal_strain(const Point<dim> &, const double) const;    \
-  template double ElasticElements<dim>::thermal_strain_at(const unsigned int) const;               \
   template bool   ElasticElements<dim>::any_thermal() const;                                       \
   template void   ElasticElements<dim>::add_thermal_bonds();                                       \
   template void   ElasticElements<dim>::find_crack_factors();                                      \

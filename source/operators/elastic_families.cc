@@ -68,7 +68,7 @@ namespace PeriDeal
       return;
     std::vector<types::global_dof_index> indices;
     double                               energy = 0.;
-    const auto strain = [&](const unsigned int node) { return thermal_strain_at(node); };
+    const auto strain = [&](const unsigned int node) { return this->thermal_strain_at(node); };
     for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
       coupling->visit_family(i, false, strain, [&](const auto &family) {
         unknowns_of(family, indices);

@@ -69,10 +69,17 @@ namespace PeriDeal
   }
 
 
+  void BreakHistory::exchange(Archive &archive)
+  {
+    archive.exchange("released energy", released);
+    archive.exchange("broken bonds", n_broken);
+    places.exchange(archive);
+  }
+
+
   void ElasticOperator::exchange(Archive &archive, const NodeKeys &keys)
   {
     Operator::exchange(archive, keys);
-    places.exchange(archive);
     bool is_warmed = nodal_change.size() > 0;
     archive.exchange("is warmed", is_warmed);
     if (!is_warmed)
@@ -84,6 +91,13 @@ namespace PeriDeal
     archive.exchange("temperature change", change, keys);
     if (archive.loads())
       set_temperature_change(change);
+  }
+
+
+  const BreakPlaces &ElasticOperator::break_places() const
+  {
+    static const BreakPlaces none;
+    return brittle() ? break_history()->places : none;
   }
 
 

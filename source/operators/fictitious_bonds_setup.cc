@@ -3,7 +3,6 @@
 
 // Which bonds lead beyond the sides.
 
-#include <perideal/base/interleaved.h>
 #include <perideal/bonds/point_bins.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/fictitious_bonds.h>
@@ -19,24 +18,18 @@ namespace PeriDeal
   FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
                                         const std::array<BeyondSide, 2 * dim> &beyond)
     : families(families)
-    , extension(families, beyond)
+    , fictitious(families.nodes())
   {
-    const Nodes<dim> &nodes = families.nodes();
-    int               reach = 0;
+    const Nodes<dim>              &nodes = families.nodes();
+    const FictitiousExtension<dim> extension(families, beyond);
+    int                            reach = 0;
     for (const FamilyMember<dim> &member : families.weights().members())
       for (unsigned int d = 0; d < dim; ++d)
         reach = std::max(reach, member.offset[d]);
-    starts.assign(1, 0);
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        if (extension.distance(nodes.lattice()->index(nodes.position(i))) <= reach)
-          find_bonds_of(i);
-        if (images.size() > starts.back())
-          list.push_back(i);
-        starts.push_back(images.size());
-      }
-    image_of = {};
-    make_room();
+    find_bonds([&](const unsigned int i, Search &search) {
+      if (extension.distance(nodes.lattice()->index(nodes.position(i))) <= reach)
+        find_bonds_of(i, extension, search);
+    });
   }
 
 
@@ -44,36 +37,52 @@ namespace PeriDeal
   FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
                                         const std::vector<BoundaryImage<dim>> &beyond)
     : families(families)
-    , extension(families, {})
+    , fictitious(families.nodes())
   {
-    const Nodes<dim> &nodes = families.nodes();
-    PointBins<dim>    bins(families.weights().reach());
+    PointBins<dim> bins(families.weights().reach());
     for (unsigned int g = 0; g < beyond.size(); ++g)
       bins.add(beyond[g].place, g);
     std::vector<unsigned int> number_of(beyond.size(), numbers::invalid_unsigned_int);
-    starts.assign(1, 0);
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        find_bonds_of(i, beyond, bins, number_of);
-        if (images.size() > starts.back())
-          list.push_back(i);
-        starts.push_back(images.size());
-      }
-    make_room();
+    find_bonds([&](const unsigned int i, Search &search) {
+      find_bonds_of(i, beyond, bins, number_of, search);
+    });
   }
 
 
   template <int dim>
-  void FictitiousBonds<dim>::make_room()
+  template <typename Find>
+  void FictitiousBonds<dim>::find_bonds(const Find &find)
   {
-    if (!parted.empty())
-      state.resize(images.size());
-    for (const std::size_t number : parted)
+    Search search;
+    starts.assign(1, 0);
+    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+      {
+        find(i, search);
+        if (image_of_bond.size() > starts.back())
+          list.push_back(i);
+        starts.push_back(image_of_bond.size());
+      }
+    if (!search.parted.empty())
+      state.resize(image_of_bond.size());
+    for (const std::size_t number : search.parted)
       state.mark(number, BondState::parted, 0.);
-    parted = {};
-    values.resize(dim * origins.size());
-    image_forces.resize(values.size());
-    passed.reinit(interleaved(*families.nodes().partitioner(), dim));
+    fictitious.make_room();
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::add_bond(const unsigned int    image,
+                                      const Tensor<1, dim> &xi,
+                                      const double          weight,
+                                      const bool            cut,
+                                      Search               &search)
+  {
+    const double w = cut ? 0. : weight;
+    if (cut)
+      search.parted.push_back(image_of_bond.size());
+    image_of_bond.push_back(image);
+    moments.push_back(w * xi);
+    springs.push_back(w * xi.norm_square());
   }
 
 
@@ -81,7 +90,8 @@ namespace PeriDeal
   void FictitiousBonds<dim>::find_bonds_of(const unsigned int                     i,
                                            const std::vector<BoundaryImage<dim>> &beyond,
                                            const PointBins<dim>                  &bins,
-                                           std::vector<unsigned int>             &number_of)
+                                           std::vector<unsigned int>             &number_of,
+                                           Search                                &search)
   {
     const Nodes<dim> &nodes    = families.nodes();
     const Point<dim> &center   = nodes.position(i);
@@ -115,27 +125,23 @@ namespace PeriDeal
           continue;
         if (number_of[g] == numbers::invalid_unsigned_int)
           {
-            number_of[g] = origins.size();
-            places.push_back(image.place);
-            planes.push_back(image.planes);
-            volumes.push_back(image.volume);
-            origins.push_back(image.origin);
-            terms.insert(terms.end(), image.terms.begin(), image.terms.end());
-            term_starts.push_back(terms.size());
+            typename FictitiousImages<dim>::Image fields{};
+            fields.place  = image.place;
+            fields.planes = image.planes;
+            fields.volume = image.volume;
+            fields.origin = image.origin;
+            number_of[g]  = fictitious.add(fields, image.terms);
           }
-        const double w =
-          cut ? 0. : nodes.volume(i) * image.volume * families.weights().of_length(xi.norm());
-        if (cut)
-          parted.push_back(images.size());
-        images.push_back(number_of[g]);
-        moments.push_back(w * xi);
-        springs.push_back(w * xi.norm_square());
+        const double weight = families.weights().of_length(xi.norm());
+        add_bond(number_of[g], xi, nodes.volume(i) * image.volume * weight, cut, search);
       }
   }
 
 
   template <int dim>
-  void FictitiousBonds<dim>::find_bonds_of(const unsigned int i)
+  void FictitiousBonds<dim>::find_bonds_of(const unsigned int              i,
+                                           const FictitiousExtension<dim> &extension,
+                                           Search                         &search)
   {
     const Nodes<dim>   &nodes      = families.nodes();
     const Lattice<dim> &lattice    = *nodes.lattice();
@@ -163,12 +169,11 @@ namespace PeriDeal
         Tensor<1, dim> xi;
         for (unsigned int d = 0; d < dim; ++d)
           xi[d] = member.offset[d] * lattice.spacing[d];
-        const double w = cut ? 0. : nodes.volume(i) * volume * member.weight;
-        if (cut)
-          parted.push_back(images.size());
-        images.push_back(image_at(index, site, volume));
-        moments.push_back(w * xi);
-        springs.push_back(w * xi.norm_square());
+        add_bond(image_at(index, site, volume, search),
+                 xi,
+                 nodes.volume(i) * volume * member.weight,
+                 cut,
+                 search);
       }
   }
 
@@ -176,7 +181,8 @@ namespace PeriDeal
   template <int dim>
   unsigned int FictitiousBonds<dim>::image_at(const Index &index,
                                               const Site  &site,
-                                              const double volume)
+                                              const double volume,
+                                              Search      &search)
   {
     const Lattice<dim> &lattice = *families.nodes().lattice();
     std::size_t         key     = 0;
@@ -185,21 +191,17 @@ namespace PeriDeal
         const std::size_t wide = 4 * static_cast<std::size_t>(lattice.n_sites[d]) + 4096;
         key                    = key * wide + (index[d] + wide / 2);
       }
-    const auto [entry, is_new] = image_of.try_emplace(key, origins.size());
-    if (is_new)
-      {
-        sites.push_back(index);
-        places.push_back(lattice.position(index));
-        std::array<types::boundary_id, dim> sides;
-        for (unsigned int d = 0; d < dim; ++d)
-          sides[d] = 2 * d + (2 * index[d] >= lattice.n_sites[d] - 1 ? 1 : 0);
-        planes.push_back(sides);
-        volumes.push_back(volume);
-        origins.push_back(site.origin);
-        terms.insert(terms.end(), site.terms.begin(), site.terms.end());
-        term_starts.push_back(terms.size());
-      }
-    return entry->second;
+    const auto [entry, is_new] = search.image_at.try_emplace(key, fictitious.size());
+    if (!is_new)
+      return entry->second;
+    typename FictitiousImages<dim>::Image fields{};
+    for (unsigned int d = 0; d < dim; ++d)
+      fields.planes[d] = 2 * d + (2 * index[d] >= lattice.n_sites[d] - 1 ? 1 : 0);
+    fields.place  = lattice.position(index);
+    fields.volume = volume;
+    fields.origin = site.origin;
+    fields.site   = index;
+    return fictitious.add(fields, site.terms);
   }
 
 
@@ -247,11 +249,65 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void FictitiousBonds<dim>::add_weights(Vector &q) const
+  {
+    for_each([&](const Bond &bond) {
+      q.local_element(bond.node) += bond.spring / families.nodes().volume(bond.node); // W x^2
+    });
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::find_springs(const NodeLaws<dim> &laws, const bool full)
+  {
+    for (const unsigned int i : list)
+      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+        springs[k] = state.is_whole(k) ? laws.stiffness(i) / springs[k] : 0.;
+    if (!full)
+      return;
+    across.resize(springs.size(), 0.);
+    for (const Tensor<1, dim> &p : moments)
+      lengths.push_back(p.norm());
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::set_thermal_strains(const ThermalStrains &strain)
+  {
+    strains.resize(image_of_bond.size());
+    for_each([&](const Bond &bond) {
+      // What a temperature linear in space does to a free body is no linear displacement. The bond
+      // has no force then if its extension is that of what the image follows from, at r_k from the
+      // node: e = sum f_k (s_k M.r_k - r_k^2/2 ds/dM), the mean of both ends for a mirror image.
+      const Point<dim>     at  = families.nodes().position(bond.node);
+      const Tensor<1, dim> xi  = bond_vector(bond);
+      double               own = strain[bond.node], other = 0., mean = 0., half = 0., rest = 1.;
+      fictitious.for_each_term(bond.image, [&](const Term &term) {
+        Tensor<1, dim> r = families.nodes().position(term.node) - at;
+        for (unsigned int d = 0; d < dim; ++d)
+          r[d] = (term.mirrored >> d) & 1 ? xi[d] : r[d];
+        const double f = term.factor / xi.norm_square(), s = strain[term.node];
+        other += term.factor * s;
+        mean += f * s * (r * xi);
+        half += 0.5 * f * r.norm_square();
+        rest -= f * (r * xi);
+      });
+      // A body narrower than a family mirrors and continues along one axis: no such sum.
+      mean -= half * (other - own);
+      strains[bond.number] = std::abs(rest) > 1e-6 ? 0.5 * (own + other) : mean;
+    });
+  }
+
+
 #define PERIDEAL_INSTANTIATE(dim)                                                          \
   template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                    \
                                                  const std::array<BeyondSide, 2 * dim> &); \
   template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                    \
-                                                 const std::vector<BoundaryImage<dim>> &);
+                                                 const std::vector<BoundaryImage<dim>> &); \
+  template void FictitiousBonds<dim>::add_weights(Vector &) const;                         \
+  template void FictitiousBonds<dim>::find_springs(const NodeLaws<dim> &, const bool);     \
+  template void FictitiousBonds<dim>::set_thermal_strains(const ThermalStrains &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -5,12 +5,12 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/place_text.h>
 #include <perideal/mesh/cell_corners.h>
 #include <perideal/operators/elastic_operator.h>
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 #include <vector>
 
 namespace PeriDeal
@@ -56,12 +56,10 @@ namespace PeriDeal
       worst[0] = 1.;
     const auto all = dealii::Utilities::MPI::all_gather(communicator, worst);
     worst          = *std::min_element(all.begin(), all.end());
-    std::ostringstream text;
-    text << '(';
+    dealii::Point<dim> place;
     for (unsigned int d = 0; d < dim; ++d)
-      text << (d > 0 ? ", " : "") << worst[d + 1];
-    text << ')';
-    result.place = text.str();
+      place[d] = worst[d + 1];
+    result.place = place_text(place);
     return result;
   }
 } // namespace PeriDeal

@@ -3,17 +3,14 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/base/interleaved.h>
-#include <perideal/base/user_error.h>
-#include <perideal/operators/elastic_elements.h>
+#include <perideal/operators/solid_matrices.h>
 #include <perideal/operators/spectrum.h>
 #include <perideal/operators/state_operator.h>
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
-#include "state_lattice.h"
+#include "inversion.h"
 
 namespace PeriDeal
 {
@@ -21,10 +18,25 @@ namespace PeriDeal
 
   template <int dim>
   StateOperator<dim>::StateOperator(Nodes<dim> &nodes, const Scene<dim> &scene)
-    : scene(scene)
-    , bonds(nodes.find_parts(scene.boundary_conditions), scene)
-    , unknowns(interleaved(*nodes.partitioner(), dim))
-    , full(scene.elasticity.kinematics == Kinematics::full)
+    : SolidOperator<dim>(scene)
+    , solid(nodes, scene)
+    , loads(solid, scene)
+    , breakage(solid, loads, scene)
+  {
+    this->set_layout(nodes.partitioner());
+    tau.reinit(nodes.partitioner());
+    find_conditions(nodes);
+    for (unsigned int k = 0; k < mass.locally_owned_size(); ++k)
+      mass.local_element(k) =
+        nodes.volume(k / dim) *
+        (scene.elasticity.is_static() ? 1. : scene.material.density.value(position(k / dim)));
+    find_diagonal();
+    find_thermal_strains();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_conditions(const Nodes<dim> &nodes)
   {
     std::vector<NodeOnSide<dim>> on_sides;
     for (const BoundaryShare &share : nodes.condition_shares())
@@ -40,162 +52,140 @@ namespace PeriDeal
                                                                at_centers,
                                                                nodes.communicator());
     conditions->pin(positions, scene, at_centers);
-    const auto &force = scene.initial_and_source.body_force;
-    loads_vary        = std::any_of(force.begin(), force.end(), [](const Expression &e) {
-      return e.depends_on_time();
-    });
-    for (const VectorCondition &condition : scene.boundary_conditions.traction)
-      for (const auto &value : condition.values)
-        loads_vary = loads_vary || (value && value->depends_on_time());
-    for (Vector *v : {&scratch, &mass, &stiffness_diagonal, &thermal_loads, &constant_loads})
-      initialize_vector(*v);
-    source.reinit(nodes.partitioner());
-    tau.reinit(nodes.partitioner());
-    weighted.reinit(nodes.partitioner());
-    tractions = traction_shares(nodes, scene.boundary_conditions);
-    find_laws();
-    find_bonds();
-    find_critical_stretches();
-    find_diagonal();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::set_temperature_change(const Vector &nodal)
+  {
+    this->keep_temperature_change(nodal);
+    thermal_loads = 0.;
+    find_thermal_strains();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_thermal_strains()
+  {
+    const Nodes<dim> &nodes = solid.families.nodes();
+    solid.thermal.set(
+      nodes.n_local(),
+      [&](const unsigned int i) { return this->thermal_strain_at(i); },
+      nodes.communicator());
     find_thermal_loads();
   }
 
 
   template <int dim>
-  StateOperator<dim>::~StateOperator() = default;
-
-
-  template <int dim>
   void StateOperator<dim>::find_thermal_loads()
   {
-    if (beyond && any_thermal)
-      beyond->set_thermal_strains([&](const unsigned int i) { return laws[i].thermal; });
-    if (any_thermal && !full) // with full kinematics it is in the extensions
+    if (solid.beyond && (solid.thermal.any() || this->temperature_change().size() > 0))
+      solid.beyond->set_thermal_strains(solid.thermal);
+    if (solid.thermal.any() && !nonlinear()) // with full kinematics it is in the extensions
       {
-        const Nodes<dim> &nodes = bonds.nodes();
-        scratch                 = 0.;
-        if (volumetric)
-          find_strained_dilatation_forces(scratch);
+        scratch = 0.;
+        find_tensions(scratch, true);
         const double *const t = tau.begin();
-        for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        for (unsigned int i = 0; i < solid.families.nodes().n_owned(); ++i)
           {
             Tensor<1, dim> force;
-            for_each_bond(i, [&](const Bond &bond) {
-              force += (bond.spring * extension_moment(scratch.begin(), i, bond) + t[i] +
-                        t[bond.neighbor]) *
+            solid.rows.for_each(i, [&](const auto &bond) {
+              force += (bond.spring * solid.kinematics.extension_moment(scratch.begin(), i, bond) +
+                        t[i] + t[bond.neighbor]) *
                        bond.moment;
             });
             for (unsigned int d = 0; d < dim; ++d)
               thermal_loads.local_element(dim * i + d) = force[d];
           }
-        thermal_loads *= -1.;
-        add_strained_image_forces(thermal_loads, scratch);
-        if (beyond)
-          beyond->keep_forces();
-        thermal_loads *= -1.;
-      }
-    if (!loads_vary)
-      find_loads(constant_loads, 0.);
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::find_laws()
-  {
-    const Nodes<dim> &nodes = bonds.nodes();
-    const PlaneState  plane = scene.elasticity.plane;
-    laws.resize(nodes.n_local());
-    double largest = 0., smallest = 1e300, hottest = 0.;
-    for (unsigned int i = 0; i < nodes.n_local(); ++i)
-      {
-        const Point<dim> &p      = nodes.position(i);
-        const Moduli      moduli = scene.material.moduli(p);
-        laws[i].law              = scene.elasticity.model == ElasticModel::bond_based ?
-                                     bond_law(moduli, dim, plane) :
-                                     state_law(moduli, dim, plane);
-        laws[i].thermal          = thermal_strain_factor(moduli, dim, plane) *
-                          scene.material.thermal_expansion.value(p) *
-                          scene.elasticity.temperature_change.value(p);
-        largest  = std::max(largest, laws[i].law.extension);
-        smallest = std::min(smallest, laws[i].law.extension);
-        hottest  = std::max(hottest, std::abs(laws[i].thermal));
-        if (i < nodes.n_owned())
-          for (unsigned int d = 0; d < dim; ++d)
-            mass.local_element(dim * i + d) =
-              nodes.volume(i) *
-              (scene.elasticity.is_static() ? 1. : scene.material.density.value(p));
-      }
-    const MPI_Comm all = nodes.communicator();
-    any_thermal        = Utilities::MPI::max(hottest, all) > 0.;
-    several_phases     = Utilities::MPI::max(largest, all) >
-                     (1. + 1e-12) * Utilities::MPI::min(smallest, all);
-    volumetric = scene.elasticity.model == ElasticModel::state_based && dim > 1;
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::find_dilatation_forces(const Vector &x) const
-  {
-    const Nodes<dim> &nodes = bonds.nodes();
-    const double     *u     = x.begin();
-    if (lattice)
-      lattice->dilatation_forces(tau.begin(), u);
-    for (const unsigned int i : stored_nodes)
-      {
-        Tensor<1, dim> own;
-        for (unsigned int d = 0; d < dim; ++d)
-          own[d] = u[dim * i + d];
-        double sum = 0.;
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+        if (solid.beyond)
           {
-            const double *const   v = u + dim * neighbors[k];
-            const Tensor<1, dim> &p = moments[k];
-            for (unsigned int d = 0; d < dim; ++d)
-              sum += p[d] * (v[d] - own[d]);
+            thermal_loads *= -1.;
+            solid.beyond->add_strained_forces(thermal_loads, scratch, tau);
+            solid.beyond->keep_forces();
+            thermal_loads *= -1.;
           }
-        const StateLaw &law  = laws[i].law;
-        const double    q    = weighted.local_element(i);
-        tau.local_element(i) = law.volumetric * law.dilatation * sum / (q * q * nodes.volume(i));
       }
-    add_images_to_dilatations(x, false);
+    this->keep_constant_loads();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_diagonal()
+  {
+    // The energy is 1/4 sum over directed bonds of s (p . eta)^2 + 1/2 sum m_k (sum p . eta)^2 with
+    // m = c d/(q^2 V).
+    const Nodes<dim>   &nodes = solid.families.nodes();
+    std::vector<double> factor(nodes.n_local(), 0.);
+    for (unsigned int i = 0; i < nodes.n_local() && solid.laws.volumetric; ++i)
+      factor[i] = solid.laws.tension(i, 1.);
+    unsigned int regular = numbers::invalid_unsigned_int; // the first of those that are all alike
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const bool is_regular = solid.rows.is_regular(i);
+        if (is_regular && regular != numbers::invalid_unsigned_int)
+          {
+            for (unsigned int d = 0; d < dim; ++d)
+              stiffness_diagonal.local_element(dim * i + d) =
+                stiffness_diagonal.local_element(dim * regular + d);
+            continue;
+          }
+        Tensor<1, dim> sum, diagonal;
+        solid.rows.for_each(i, [&](const auto &bond) {
+          sum += bond.moment;
+          for (unsigned int d = 0; d < dim; ++d)
+            diagonal[d] += (bond.spring + factor[bond.neighbor]) * bond.moment[d] * bond.moment[d];
+        });
+        for (unsigned int d = 0; d < dim; ++d)
+          stiffness_diagonal.local_element(dim * i + d) = diagonal[d] + factor[i] * sum[d] * sum[d];
+        if (is_regular)
+          regular = i;
+      }
+    if (solid.beyond)
+      solid.beyond->add_to_diagonal(stiffness_diagonal, solid.rows, factor);
+    // Nodes without bonds, all of them broken: any positive number.
+    for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
+      if (!(stiffness_diagonal.local_element(i) > 0.))
+        stiffness_diagonal.local_element(i) =
+          solid.laws[i / dim].extension * std::pow(nodes.volume(i / dim), 1. - 2. / dim);
+    conditions->mask(stiffness_diagonal, 1.);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_tensions(const Vector &u, const bool strained) const
+  {
+    if (!solid.laws.volumetric)
+      return;
+    if (!strained)
+      solid.rows.find_tensions(tau.begin(), u.begin());
+    else
+      for (unsigned int i = 0; i < solid.families.nodes().n_owned(); ++i)
+        {
+          double sum = 0.;
+          solid.rows.for_each(i, [&](const auto &bond) {
+            sum += solid.kinematics.extension_moment(u.begin(), i, bond);
+          });
+          tau.local_element(i) = solid.laws.tension(i, sum);
+        }
+    if (solid.beyond)
+      solid.beyond->add_tensions(tau, u, solid.laws, strained);
     tau.update_ghost_values();
   }
 
 
   template <int dim>
-  void StateOperator<dim>::sum_forces(Vector &y, const Vector &x) const
+  void StateOperator<dim>::sum_forces(Vector &y, const Vector &x, const bool with_dilatations) const
   {
-    const double *u = x.begin();
+    const bool          volumetric = with_dilatations && solid.laws.volumetric;
+    const double *const tensions   = volumetric ? tau.begin() : nullptr;
     if (volumetric)
-      find_dilatation_forces(x);
-    const double *const t = tau.begin();
-    if (lattice)
-      lattice->forces(y.begin(), u, volumetric ? t : nullptr);
-    for (const unsigned int i : stored_nodes)
-      {
-        Tensor<1, dim> own, force;
-        for (unsigned int d = 0; d < dim; ++d)
-          own[d] = u[dim * i + d];
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          {
-            const unsigned int    j       = neighbors[k];
-            const double *const   v       = u + dim * j;
-            const Tensor<1, dim> &p       = moments[k];
-            double                product = 0.;
-            for (unsigned int d = 0; d < dim; ++d)
-              product += p[d] * (v[d] - own[d]);
-            const double size = springs[k] * product + t[i] + t[j];
-            for (unsigned int d = 0; d < dim; ++d)
-              force[d] += size * p[d];
-          }
-        for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * i + d) = -force[d];
-      }
-    if (!beyond)
+      find_tensions(x, false);
+    solid.rows.find_forces(y.begin(), x.begin(), tensions);
+    if (!solid.beyond)
       return;
     if (!volumetric) // else they have been found
-      beyond->find_images(u);
-    beyond->add_forces(y, x, volumetric ? t : nullptr);
+      solid.beyond->images().find(x.begin());
+    solid.beyond->add_forces(y, x, tensions);
   }
 
 
@@ -203,183 +193,74 @@ namespace PeriDeal
   void StateOperator<dim>::multiply(Vector &y, const Vector &x) const
   {
     x.update_ghost_values();
-    sum_forces(y, x);
-    if (full)
-      add_geometric_forces(y, x);
+    sum_forces(y, x, true);
+    if (nonlinear())
+      solid.kinematics.add_geometric_forces(y, x.begin(), breakage.broken_state());
+    if (nonlinear() && solid.beyond)
+      solid.beyond->add_geometric_forces(y, x);
     x.set_ghost_state(false);
   }
 
 
   template <int dim>
-  void StateOperator<dim>::initialize_vector(Vector &vector) const
+  void StateOperator<dim>::damping_force(Vector &y, const Vector &v) const
   {
-    vector.reinit(unknowns);
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::apply(Vector &y, const Vector &x) const
-  {
-    ++this->applications;
-    multiply(y, x);
+    v.update_ghost_values();
+    sum_forces(y, v, false);
+    v.set_ghost_state(false);
     conditions->mask(y);
   }
 
 
   template <int dim>
-  void StateOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
+  void StateOperator<dim>::find_forces(Vector &y, const Vector &u) const
   {
-    unbalanced(r, u, t);
-    conditions->mask(r);
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::unbalanced(Vector &r, const Vector &u, const double t) const
-  {
-    ++this->applications;
-    find_forces(r, u);
-    if (loads_vary)
-      find_loads(scratch, t);
-    r.sadd(-1., 1., loads_vary ? scratch : constant_loads);
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::mechanical_loads(Vector &loads, const double t) const
-  {
-    find_loads(loads, t);
-    loads -= thermal_loads;
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::distribute(Vector &u, const double t) const
-  {
-    conditions->distribute(u, t);
-  }
-
-  template <int dim>
-  void StateOperator<dim>::distribute_homogeneous(Vector &x) const
-  {
-    conditions->mask(x);
-  }
-
-  template <int dim>
-  void StateOperator<dim>::clear_constrained(Vector &y) const
-  {
-    conditions->mask(y);
-  }
-
-  template <int dim>
-  const Vector &StateOperator<dim>::lumped_capacity() const
-  {
-    return mass;
-  }
-
-  template <int dim>
-  const Vector &StateOperator<dim>::diagonal() const
-  {
-    return stiffness_diagonal;
-  }
-
-  template <int dim>
-  bool StateOperator<dim>::depends_on_time() const
-  {
-    return loads_vary || conditions->depends_on_time();
-  }
-
-  template <int dim>
-  bool StateOperator<dim>::has_steady_state() const
-  {
-    return true; // scenes that leave rigid motions free are refused when they are read
-  }
-
-  template <int dim>
-  bool StateOperator<dim>::surrogate_is_exact() const
-  {
-    return false;
-  }
-
-  template <int dim>
-  std::vector<Vector> StateOperator<dim>::near_null_space() const
-  {
-    std::vector<Point<dim>> positions;
-    for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
-      positions.push_back(bonds.nodes().position(i));
-    return rigid_motions(positions, mass);
-  }
-
-  template <int dim>
-  std::string StateOperator<dim>::place_of(const unsigned int local_index) const
-  {
-    const Point<dim>  &p = bonds.nodes().position(local_index / dim);
-    std::ostringstream text;
-    text << '(';
-    for (unsigned int d = 0; d < dim; ++d)
-      text << (d > 0 ? ", " : "") << p[d];
-    text << ')';
-    return text.str();
-  }
-
-  template <int dim>
-  OperatorSize StateOperator<dim>::size() const
-  {
-    const MPI_Comm all = bonds.nodes().communicator();
-    OperatorSize   size;
-    size.unknowns = unknowns->size();
-    size.bonds    = std::llround(Utilities::MPI::sum(n_bonds, all));
-    size.nonzeros =
-      std::llround(Utilities::MPI::sum(static_cast<double>(neighbors.size()) * (dim + 1.), all));
-    size.memory =
-      bonds.memory_consumption() + state.memory_consumption() +
-      neighbors.size() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
-      laws.size() * sizeof(NodeLaw) + starts.size() * sizeof(std::size_t) +
-      stored_nodes.size() * sizeof(unsigned int) + (lattice ? lattice->memory_consumption() : 0) +
-      (beyond ? beyond->memory_consumption() : 0);
-    size.form = lattice ? "lattice" : "stored";
-    return size;
-  }
-
-  template <int dim>
-  unsigned int StateOperator<dim>::n_components() const
-  {
-    return dim;
-  }
-
-  template <int dim>
-  const Families<dim> &StateOperator<dim>::families() const
-  {
-    return bonds;
-  }
-
-
-  template <int dim>
-  template <typename Visit>
-  void StateOperator<dim>::for_each_load(const double t, const Visit &visit) const
-  {
-    const Nodes<dim> &nodes = bonds.nodes();
-    const auto       &force = scene.initial_and_source.body_force;
-    for (unsigned int i = 0; i < nodes.n_owned() && !force.empty(); ++i)
-      for (unsigned int d = 0; d < dim; ++d)
-        visit(numbers::internal_face_boundary_id,
-              dim * i + d,
-              nodes.volume(i) * force[d].value(nodes.position(i), t));
-    for (const TractionShare<dim> &share : tractions)
+    if (!nonlinear())
       {
-        const auto &values = find_condition(scene.boundary_conditions.traction, share.side)->values;
-        for (unsigned int d = 0; d < dim; ++d)
-          visit(share.side, dim * share.node + d, share.area * values[d]->value(share.place, t));
+        multiply(y, u);
+        return;
       }
+    u.update_ghost_values();
+    find_tensions(u, true);
+    solid.kinematics.find_forces(y, u.begin(), tau);
+    if (solid.beyond)
+      solid.beyond->add_strained_forces(y, u, tau);
+    u.set_ghost_state(false);
   }
 
 
   template <int dim>
-  void StateOperator<dim>::find_loads(Vector &loads, const double t) const
+  void StateOperator<dim>::linearize(const Vector &u)
   {
-    loads = thermal_loads;
-    for_each_load(t, [&](const auto, const unsigned int unknown, const double value) {
-      loads.local_element(unknown) += value;
+    if (!nonlinear())
+      return;
+    u.update_ghost_values();
+    find_tensions(u, true);
+    solid.kinematics.linearize(u.begin(), tau);
+    if (solid.beyond)
+      solid.beyond->linearize(u, tau);
+    u.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::largest_stretch(const Vector &u) const
+  {
+    if (!nonlinear())
+      return 0.;
+    u.update_ghost_values();
+    const double largest = solid.kinematics.largest_stretch(u.begin(), breakage.broken_state());
+    u.set_ghost_state(false);
+    return largest;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_loads(Vector &all_loads, const double t) const
+  {
+    all_loads = thermal_loads;
+    loads.for_each(t, [&](const auto, const unsigned int unknown, const double value) {
+      all_loads.local_element(unknown) += value;
     });
   }
 
@@ -387,25 +268,225 @@ namespace PeriDeal
   template <int dim>
   ForceBalance StateOperator<dim>::forces(const Vector &u, const double t) const
   {
-    Vector loads, reactions;
-    initialize_vector(loads);
-    initialize_vector(reactions);
-    find_loads(loads, t);
+    Vector all_loads, reactions;
+    this->initialize_vector(all_loads);
+    this->initialize_vector(reactions);
+    find_loads(all_loads, t);
     find_forces(reactions, u);
-    reactions -= loads;
+    reactions -= all_loads;
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     conditions->add_reactions(reactions, sums);
-    if (beyond)
+    if (solid.beyond)
       {
         // Bonds to mirror images pull at the body; those of the last application are known.
-        for (const auto &[side, force] : beyond->forces_of_planes())
+        for (const auto &[side, force] : solid.beyond->images().forces_of_planes())
           if (force != Tensor<1, dim>())
             sums[side] += force;
       }
-    for_each_load(t, [&](const auto side, const unsigned int unknown, const double value) {
+    loads.for_each(t, [&](const auto side, const unsigned int unknown, const double value) {
       sums[side][unknown % dim] += value;
     });
-    return gather_forces(sums, scene, bonds.nodes().communicator());
+    return gather_forces(sums, scene, solid.families.nodes().communicator());
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::energy(const Vector &u) const
+  {
+    const Nodes<dim> &nodes = solid.families.nodes();
+    u.update_ghost_values();
+    find_tensions(u, solid.kinematics.is_strained());
+    double sum = solid.beyond ? solid.beyond->energy(u) : 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        solid.rows.for_each(i, [&](const auto &bond) {
+          const double product = solid.kinematics.extension_moment(u.begin(), i, bond);
+          sum += 0.25 * bond.spring * product * product;
+        });
+        const StateLaw &law = solid.laws[i];
+        if (solid.laws.volumetric && law.volumetric != 0.)
+          {
+            const double theta =
+              tau.local_element(i) * solid.laws.weighted.local_element(i) / law.volumetric;
+            sum += 0.5 * law.volumetric / law.dilatation * nodes.volume(i) * theta * theta;
+          }
+      }
+    u.set_ghost_state(false);
+    return Utilities::MPI::sum(sum, nodes.communicator());
+  }
+
+
+  template <int dim>
+  NodalTensors<dim> StateOperator<dim>::tensors(const Vector &u) const
+  {
+    u.update_ghost_values();
+    find_tensions(u, solid.kinematics.is_strained());
+    return nodal_tensors(solid, u, tau);
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::largest_row(const Vector &of_dilatations,
+                                         const bool    of_tangent,
+                                         const double  factor) const
+  {
+    const Nodes<dim> &nodes   = solid.families.nodes();
+    const Vector      beyond  = solid.beyond ? solid.beyond->row_sums(of_dilatations) :
+                                               Vector(nodes.partitioner());
+    double            largest = 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        double         row = beyond.local_element(i);
+        Tensor<1, dim> sum;
+        solid.rows.for_each(i, [&](const auto &bond) {
+          row += 2. * bond.spring * bond.moment.norm_square() +
+                 of_dilatations.local_element(bond.neighbor) * bond.moment.norm();
+          sum += bond.moment;
+        });
+        if (of_tangent && nonlinear())
+          solid.rows.for_each_stored(i, [&](const auto &bond) {
+            row += 2. * std::abs(solid.kinematics.stiffness_across(bond));
+          });
+        row += of_dilatations.local_element(i) * sum.norm();
+        largest = std::max(largest, factor * row / mass.local_element(dim * i));
+      }
+    return Utilities::MPI::max(largest, nodes.communicator());
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::damping_bound() const
+  {
+    return largest_row(Vector(solid.families.nodes().partitioner()), false, 1.);
+  }
+
+
+  template <int dim>
+  Spectrum StateOperator<dim>::spectrum() const
+  {
+    // Rows of |K|: twice the springs, and for the dilatations |c_ij| summed over both of their
+    // ends.
+    const Nodes<dim> &nodes = solid.families.nodes();
+    Vector            of_dilatations(nodes.partitioner());
+    for (unsigned int i = 0; i < nodes.n_owned() && solid.laws.volumetric; ++i)
+      {
+        double         length = 0.;
+        Tensor<1, dim> sum;
+        solid.rows.for_each(i, [&](const auto &bond) {
+          length += bond.moment.norm();
+          sum += bond.moment;
+        });
+        length += solid.beyond ? solid.beyond->sum_of_lengths(i) : 0.;
+        length += sum.norm();
+        of_dilatations.local_element(i) = std::abs(solid.laws.tension(i, length));
+      }
+    of_dilatations.update_ghost_values();
+    const double bound = largest_row(of_dilatations, true, std::sqrt(static_cast<double>(dim)));
+    return {bound, sharp_bound(*this, bound, [&](Vector &vector) { this->fill_noise(vector); })};
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    assemble_surrogate(solid,
+                       breakage.broken_state(),
+                       scene,
+                       stiffness_diagonal,
+                       this->held_unknowns(),
+                       matrix);
+  }
+
+  template <int dim>
+  bool StateOperator<dim>::holds(const CellCorner<dim> &corner) const
+  {
+    if (solid.rows.is_on_lattice(corner.node))
+      return true;
+    unsigned int n_found = 0;
+    bool         broken  = false;
+    solid.rows.for_each_stored(corner.node, [&](const auto &bond) {
+      broken = broken || !breakage.broken_state().is_whole(bond.number);
+      if (std::find(corner.others.begin(), corner.others.end(), bond.neighbor) !=
+          corner.others.end())
+        ++n_found;
+    });
+    return !broken && n_found == dim; // no crack of the scene has cut one
+  }
+
+
+  template <int dim>
+  Inversion StateOperator<dim>::inverted(const Vector &u) const
+  {
+    const Nodes<dim> &nodes  = solid.families.nodes();
+    const auto       &layout = *nodes.partitioner();
+    if (corners.empty())
+      corners = cell_corners<dim>(nodes.dof_handler(),
+                                  nodes.n_owned(),
+                                  [&](const types::global_dof_index i) {
+                                    return layout.in_local_range(i) || layout.is_ghost_entry(i) ?
+                                             layout.global_to_local(i) :
+                                             numbers::invalid_unsigned_int;
+                                  });
+    u.update_ghost_values();
+    const Inversion result = find_inverted<dim>(
+      corners,
+      u,
+      [&](const unsigned int node) { return nodes.position(node); },
+      [&](const CellCorner<dim> &corner) { return holds(corner); },
+      nodes.communicator());
+    u.set_ghost_state(false);
+    return result;
+  }
+
+
+  template <int dim>
+  unsigned long long StateOperator<dim>::break_bonds(const Vector &u,
+                                                     const double  t,
+                                                     const double  share)
+  {
+    const unsigned long long before = this->n_broken_bonds();
+    if (!breakage.break_bonds(u, t, share, [&]() { return energy(u); }))
+      return 0;
+    follow_breaks();
+    return this->n_broken_bonds() - before;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::follow_breaks()
+  {
+    find_diagonal();
+    if (solid.thermal.any())
+      find_thermal_loads();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    breakage.exchange(archive, keys);
+    if (archive.loads() && this->brittle())
+      follow_breaks();
+    SolidOperator<dim>::exchange(archive, keys);
+  }
+
+
+  template <int dim>
+  OperatorSize StateOperator<dim>::size() const
+  {
+    const MPI_Comm        all  = solid.families.nodes().communicator();
+    const SolidRows<dim> &rows = solid.rows;
+    OperatorSize          size;
+    size.unknowns = mass.size();
+    size.bonds    = std::llround(Utilities::MPI::sum(rows.n_bonds(), all));
+    size.nonzeros =
+      std::llround(Utilities::MPI::sum(static_cast<double>(rows.n_stored()) * (dim + 1.), all));
+    size.memory = solid.families.memory_consumption() +
+                  breakage.broken_state().memory_consumption() + solid.laws.memory_consumption() +
+                  solid.thermal.memory_consumption() + rows.memory_consumption() +
+                  (solid.beyond ? solid.beyond->memory_consumption() : 0);
+    size.form = rows.has_lattice() ? "lattice" : "stored";
+    return size;
   }
 
 

@@ -115,10 +115,9 @@ namespace PeriDeal
 
       std::vector<OutputField> fields(const double) const override
       {
-        const NodalTensors<dim> tensors = states->tensors(this->displacement);
-        std::vector<double>     theta;
-        states->dilatations(this->displacement, theta);
-        SolidFields<dim> list(node_set->partitioner());
+        const NodalTensors<dim>   tensors = states->tensors(this->displacement);
+        const std::vector<double> theta   = nodal_dilatations(states->bonds(), this->displacement);
+        SolidFields<dim>          list(node_set->partitioner());
         list.add_vector("displacement", this->displacement);
         if (this->stepper)
           list.add_vector("velocity", this->velocity);
@@ -128,7 +127,7 @@ namespace PeriDeal
         list.add("dilatation", [&](const unsigned int i) { return theta[i]; });
         if (states->brittle() || !scene.cracks.cracks.empty())
           {
-            const std::vector<double> damage = states->damage();
+            const std::vector<double> damage = states->breaking().damage();
             list.add("damage", [&](const unsigned int i) { return damage[i]; });
           }
         list.add("node_volume", [&](const unsigned int i) { return node_set->volume(i); });
@@ -162,11 +161,11 @@ namespace PeriDeal
 
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
-        auto list = bond_settings(scene, states->families());
+        auto list = bond_settings(scene, states->bonds().families);
         if (!states->brittle())
           return list;
         double lowest = 1e300, highest = 0.;
-        for (const double s : states->critical_stretches())
+        for (const double s : states->breaking().critical_stretches())
           {
             lowest  = std::min(lowest, s);
             highest = std::max(highest, s);
@@ -183,7 +182,7 @@ namespace PeriDeal
       {
         constexpr double  tolerable = 1e-8;
         const std::string entry     = "'Surface correction = moments' in section 'Peridynamics' ";
-        const unsigned long long n  = states->n_uncorrected_nodes();
+        const unsigned long long n  = states->bonds().rows.n_uncorrected;
         std::vector<std::string> list;
         if (const std::string note = note_on_cut_sides(scene); !note.empty())
           list.push_back(note);
@@ -196,11 +195,11 @@ namespace PeriDeal
           list.push_back(
             entry + "leaves " + std::to_string(n) + " of " + std::to_string(node_set->n_global()) +
             " nodes as they are, whose bonds would get negative factors, as in convex corners and beside the ends of cracks.");
-        if (states->gap_of_moments() > tolerable)
+        if (states->bonds().rows.moments_gap > tolerable)
           list.push_back(
             entry +
             "has not found all factors: moments of families differ from those of a complete one by up to " +
-            number_text(states->gap_of_moments()) + " of them.");
+            number_text(states->bonds().rows.moments_gap) + " of them.");
         return list;
       }
 

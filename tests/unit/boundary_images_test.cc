@@ -206,8 +206,8 @@ TEST(BoundaryImages, uniform_strain_on_irregular_nodes)
   Vector                  y(u), z(u);
   op.multiply(y, u);
   op.multiply(z, b);
-  std::vector<double> theta;
-  op.dilatations(body.values([](const Point<2> &p) { return p - Point<2>(); }), theta);
+  const std::vector<double> theta =
+    nodal_dilatations(op.bonds(), body.values([](const Point<2> &p) { return p - Point<2>(); }));
   const auto tensors = op.tensors(u);
   for (unsigned int i = 0; i < theta.size(); ++i)
     {
@@ -308,8 +308,9 @@ TEST(BoundaryImages, half_a_body_breaks_as_the_whole_one)
           half.op().multiply(of_half, u);
           whole.op().multiply(of_whole, v);
           const double size        = of_whole.linfty_norm();
-          const auto   damage_half = half.states->damage(), damage = whole.states->damage();
-          unsigned int n_pairs = 0;
+          const auto   damage_half = half.states->breaking().damage(),
+                     damage        = whole.states->breaking().damage();
+          unsigned int n_pairs     = 0;
           for (unsigned int i = 0; i < damage_half.size(); ++i)
             for (unsigned int k = 0; k < damage.size(); ++k)
               if (half.position(i)[0] > 1e-9 && half.position(i).distance(whole.position(k)) < 1e-9)

@@ -49,7 +49,7 @@ namespace PeriDeal
                                       {"Peridynamics/Kernel exponent", "1"}} +
                              more,
                            ModelKind::peridynamics);
-      const std::vector<double> &found    = body.states->critical_stretches();
+      const std::vector<double> &found    = body.states->breaking().critical_stretches();
       const Scene<dim>          &scene    = body.scene;
       const double               expected = critical_stretch_constant(1.,
                                                         scene.material.moduli(Point<dim>()),
@@ -79,7 +79,7 @@ namespace PeriDeal
       for (unsigned int i = 0; i < alone.nodes->n_owned(); ++i)
         {
           std::vector<typename Families<dim>::Member> family;
-          alone.states->families().members_of(i, family);
+          alone.states->bonds().families.members_of(i, family);
           for (const auto &bond : family)
             {
               const Tensor<1, dim> xi  = alone.position(bond.neighbor) - alone.position(i);
@@ -114,7 +114,7 @@ namespace PeriDeal
       EXPECT_NEAR(body.op().released_energy(),
                   alone.op().released_energy(),
                   1e-12 * alone.op().released_energy());
-      const std::vector<double> damage = body.states->damage();
+      const std::vector<double> damage = body.states->breaking().damage();
       double                    most   = 0.;
       for (const double d : damage)
         most = std::max(most, d);

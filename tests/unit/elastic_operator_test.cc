@@ -125,14 +125,13 @@ namespace
   {
     const Body<dim>              body(box<dim>() + more, ModelKind::peridynamics);
     const dealii::Tensor<2, dim> g = some_gradient<dim>();
-    const Vector        u = body.values([&](const dealii::Point<dim> &p) { return g * p; });
-    std::vector<double> theta;
-    body.states->dilatations(u, theta);
-    const NodalTensors<dim> tensors = body.states->tensors(u);
-    const auto              strain  = symmetrize(g);
-    const auto              sigma =
+    const Vector              u = body.values([&](const dealii::Point<dim> &p) { return g * p; });
+    const std::vector<double> theta   = nodal_dilatations(body.states->bonds(), u);
+    const NodalTensors<dim>   tensors = body.states->tensors(u);
+    const auto                strain  = symmetrize(g);
+    const auto                sigma =
       stress(body.scene.material.moduli(dealii::Point<dim>()), body.scene.elasticity.plane, strain);
-    const double reach = body.states->families().weights().reach();
+    const double reach = body.states->bonds().families.weights().reach();
     double       worst = 0., n = 0.;
     for (unsigned int i = 0; i < theta.size(); ++i)
       {

@@ -6,6 +6,8 @@
 
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <perideal/operators/solid_matrices.h>
+
 #include <cmath>
 
 #include "elastic_scene_tools.h"
@@ -51,9 +53,9 @@ namespace
     const Vector              u  = body.values(strained<dim>);
     Vector                    y(u);
     op.multiply(y, u);
-    const double   farthest = op.families().weights().reach() + 1e-9, largest = y.linfty_norm();
-    const bool     at_centers = body.scene.domain.nodes == NodePlacement::cell_centers;
-    const auto     tensors    = op.tensors(u);
+    const double farthest = op.bonds().families.weights().reach() + 1e-9, largest = y.linfty_norm();
+    const bool   at_centers = body.scene.domain.nodes == NodePlacement::cell_centers;
+    const auto   tensors    = op.tensors(u);
     Tensor<1, dim> right; // the force on the right side
     for (unsigned int i = 0; i < tensors.stress.size(); ++i)
       {
@@ -159,7 +161,7 @@ namespace
     b.op().unbalanced(of_whole, v, 0.);
     const double size        = of_whole.linfty_norm();
     const auto   stress_half = a.states->tensors(u).stress, stress = b.states->tensors(v).stress;
-    const auto   damage_half = a.states->damage(), damage = b.states->damage();
+    const auto damage_half = a.states->breaking().damage(), damage = b.states->breaking().damage();
     bodies.for_each_pair([&](const unsigned int i, const unsigned int k) {
       for (unsigned int d = 0; d < dim; ++d)
         EXPECT_NEAR(of_half.local_element(dim * i + d),
@@ -234,7 +236,8 @@ TEST(FictitiousBonds, bonds_break_as_in_the_whole_body)
       Vector of_half(u), of_whole(v);
       bodies.half.op().multiply(of_half, u);
       bodies.whole.op().multiply(of_whole, v);
-      const auto damage_half = bodies.half.states->damage(), damage = bodies.whole.states->damage();
+      const auto damage_half = bodies.half.states->breaking().damage(),
+                 damage      = bodies.whole.states->breaking().damage();
       bodies.for_each_pair([&](const unsigned int i, const unsigned int k) {
         for (unsigned int d = 0; d < 2; ++d)
           EXPECT_NEAR(of_half.local_element(2 * i + d), of_whole.local_element(2 * k + d), 1e-12);
@@ -253,9 +256,12 @@ TEST(FictitiousBonds, diagonal_is_that_of_the_matrix)
                                     {"Boundary conditions/Symmetry", "bottom"}},
                          ModelKind::peridynamics);
       dealii::TrilinosWrappers::SparseMatrix matrix;
-      body.states->matrix(matrix);
-      const Vector &diagonal = body.op().diagonal();
-      Vector        free(diagonal);
+      const Vector                          &diagonal = body.op().diagonal();
+      assemble_matrix(body.states->bonds(),
+                      body.states->breaking().broken_state(),
+                      *diagonal.get_partitioner(),
+                      matrix);
+      Vector free(diagonal);
       free = 1.;
       body.op().clear_constrained(free);
       for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)

@@ -70,8 +70,7 @@ namespace
     op.damping_force(y, u);
     answers.emplace_back("damping force", numbers_of(y));
     answers.emplace_back("diagonal", numbers_of(op.diagonal()));
-    std::vector<double> theta;
-    op.dilatations(u, theta);
+    const std::vector<double> theta = nodal_dilatations(op.bonds(), u);
     answers.emplace_back("dilatations", theta);
     const NodalTensors<dim> tensors = op.tensors(u);
     answers.emplace_back("stress", numbers_of<dim>(tensors.stress));
@@ -80,7 +79,7 @@ namespace
     answers.emplace_back("bound of the spectrum", std::vector<double>{op.spectrum().safe});
     answers.emplace_back("damping bound", std::vector<double>{op.damping_bound()});
     answers.emplace_back("bonds", std::vector<double>{static_cast<double>(op.size().bonds)});
-    answers.emplace_back("damage", op.damage());
+    answers.emplace_back("damage", op.breaking().damage());
     answers.back().second.push_back(1.); // a size, where nothing is cut
     return answers;
   }
@@ -107,7 +106,7 @@ namespace
       << what;
     const auto n_stored = [](const Body<dim> &body) {
       return static_cast<double>(
-        dealii::Utilities::MPI::sum(body.states->n_stored_bonds(), MPI_COMM_WORLD));
+        dealii::Utilities::MPI::sum(body.states->bonds().rows.n_stored(), MPI_COMM_WORLD));
     };
     EXPECT_EQ(n_stored(stored), 2. * static_cast<double>(stored.states->size().bonds)) << what;
     EXPECT_LE(n_stored(lattice), stored_share * n_stored(stored)) << what;

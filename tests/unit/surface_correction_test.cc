@@ -141,9 +141,8 @@ namespace
           strain[a][b]   = 1.;
           const Vector u = body.values(
             [&](const dealii::Point<dim> &p) { return dealii::Tensor<1, dim>(strain * p); });
-          std::vector<double> theta;
-          body.states->dilatations(u, theta);
-          const NodalTensors<dim> found = body.states->tensors(u);
+          const std::vector<double> theta = nodal_dilatations(body.states->bonds(), u);
+          const NodalTensors<dim>   found = body.states->tensors(u);
           // The stress of a node in the middle, whose family is complete.
           double                          nearest = 1e300;
           dealii::SymmetricTensor<2, dim> inside;
@@ -166,8 +165,9 @@ namespace
     const unsigned int n_wrong = dealii::Utilities::MPI::sum(
       static_cast<unsigned int>(std::count(wrong.begin(), wrong.end(), true)),
       MPI_COMM_WORLD);
-    EXPECT_LE(n_wrong, body.states->n_uncorrected_nodes()) << dim;
-    EXPECT_LT(body.states->n_uncorrected_nodes(), (dim == 3 ? 0.5 : 0.1) * body.nodes->n_global());
+    EXPECT_LE(n_wrong, body.states->bonds().rows.n_uncorrected) << dim;
+    EXPECT_LT(body.states->bonds().rows.n_uncorrected,
+              (dim == 3 ? 0.5 : 0.1) * body.nodes->n_global());
   }
 } // namespace
 
@@ -193,13 +193,13 @@ TEST(SurfaceCorrection, corners_are_left)
 {
   const Settings moments{{"Peridynamics/Surface correction", "moments"}};
   const Body<1>  bar(box<1>() + moments, ModelKind::peridynamics);
-  EXPECT_EQ(bar.states->n_uncorrected_nodes(), 0u);
+  EXPECT_EQ(bar.states->bonds().rows.n_uncorrected, 0u);
   for (const std::string cells : {"20, 20", "30, 30"})
     {
       const Body<2> square(
         box<2>() + Settings{{"Domain/Upper corner", "1, 1"}, {"Domain/Cells", cells}} + moments,
         ModelKind::peridynamics);
-      EXPECT_EQ(square.states->n_uncorrected_nodes(), 4u);
+      EXPECT_EQ(square.states->bonds().rows.n_uncorrected, 4u);
     }
 }
 

@@ -50,7 +50,7 @@ namespace
                            more,
                          ModelKind::peridynamics);
     const Moduli    moduli = body.scene.material.moduli(dealii::Point<dim>());
-    const double    reach  = body.states->families().weights().reach();
+    const double    reach  = body.states->bonds().families.weights().reach();
     double          n = 0., worst = 0.;
     for (unsigned int a = 0; a < dim; ++a)
       for (unsigned int b = a; b < dim; ++b)
@@ -60,12 +60,11 @@ namespace
           const auto   sigma = stress(moduli, body.scene.elasticity.plane, strain);
           const Vector u     = body.values(
             [&](const dealii::Point<dim> &p) { return dealii::Tensor<1, dim>(strain * p); });
-          const double shear       = lattice.shear,
-                       stretch     = dim == 2 ? 2. - shear : (5. - 3. * shear) / 2.;
-          const double        size = std::max(sigma.norm(), moduli.shear);
-          std::vector<double> theta;
-          body.states->dilatations(u, theta);
-          const NodalTensors<dim> found = body.states->tensors(u);
+          const double shear              = lattice.shear,
+                       stretch            = dim == 2 ? 2. - shear : (5. - 3. * shear) / 2.;
+          const double              size  = std::max(sigma.norm(), moduli.shear);
+          const std::vector<double> theta = nodal_dilatations(body.states->bonds(), u);
+          const NodalTensors<dim>   found = body.states->tensors(u);
           for (unsigned int i = 0; i < theta.size(); ++i)
             {
               bool complete = true;
@@ -188,14 +187,14 @@ namespace
       return v;
     };
     double complete = 0., sum = 0.;
-    for (const auto &member : body.states->families().weights().members())
+    for (const auto &member : body.states->bonds().families.weights().members())
       complete += member.weight * member.r * member.r;
     for (int x = 0; x <= static_cast<int>(n); ++x)
       for (int y = 0; y <= static_cast<int>(n); ++y)
         for (int z = 0; z <= static_cast<int>(n); ++z)
           {
             double q = 0., energy = 0.;
-            for (const auto &member : body.states->families().weights().members())
+            for (const auto &member : body.states->bonds().families.weights().members())
               {
                 dealii::Tensor<1, 3> xi;
                 for (unsigned int d = 0; d < 3; ++d)
@@ -248,14 +247,14 @@ TEST(StateOperator, dilatation_on_rectangular_cells)
   const dealii::Tensor<2, 2> g = some_gradient<2>();
   for (const std::string cells : {"40, 13", "14, 42"})
     {
-      const Body<2>       body(box<2>() + Settings{{"Domain/Upper corner", "1, 1"},
+      const Body<2>             body(box<2>() + Settings{{"Domain/Upper corner", "1, 1"},
                                              {"Domain/Cells", cells},
                                              {"Peridynamics/Horizon ratio", "6"}},
                          ModelKind::peridynamics);
-      std::vector<double> theta;
-      body.states->dilatations(body.values([&](const dealii::Point<2> &p) { return g * p; }),
-                               theta);
-      const double reach = body.states->families().weights().reach();
+      const std::vector<double> theta =
+        nodal_dilatations(body.states->bonds(),
+                          body.values([&](const dealii::Point<2> &p) { return g * p; }));
+      const double reach = body.states->bonds().families.weights().reach();
       double       n     = 0.;
       for (unsigned int i = 0; i < theta.size(); ++i)
         if (std::max(std::abs(body.position(i)[0] - 0.5), std::abs(body.position(i)[1] - 0.5)) <

@@ -8,9 +8,8 @@
 
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/condition_faces.h>
-#include <perideal/operators/displacement_conditions.h>
 #include <perideal/operators/elastic_coupling.h>
-#include <perideal/operators/elastic_operator.h>
+#include <perideal/operators/solid_operator.h>
 
 #include <memory>
 
@@ -40,7 +39,7 @@ namespace PeriDeal
    * Bonds are multiplied by the mean of both ends, cells by that of their vertices.
    */
   template <int dim>
-  class ElasticElements : public ElasticOperator
+  class ElasticElements : public SolidOperator<dim>
   {
   public:
     /** @param dof_handler FE_Q(p) with dofs distributed. Collective. Throws UserError. */
@@ -49,48 +48,54 @@ namespace PeriDeal
                     std::unique_ptr<ElasticCoupling<dim>> coupling = nullptr);
     ~ElasticElements() override;
 
-    void                initialize_vector(Vector &vector) const override;
-    void                apply(Vector &y, const Vector &x) const override;
-    void                residual(Vector &r, const Vector &u, const double t) const override;
-    void                distribute(Vector &u, const double t) const override;
-    void                distribute_homogeneous(Vector &x) const override;
-    void                clear_constrained(Vector &y) const override;
-    const Vector       &lumped_capacity() const override;
-    const Vector       &diagonal() const override;
-    Spectrum            spectrum() const override;
-    bool                depends_on_time() const override;
-    bool                has_steady_state() const override;
-    void                surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
-    bool                surrogate_is_exact() const override;
-    std::vector<Vector> near_null_space() const override;
-    std::string         place_of(const unsigned int local_index) const override;
-    OperatorSize        size() const override;
-    unsigned int        n_components() const override;
-    bool                symmetric() const override;
-    ForceBalance        forces(const Vector &u, const double t) const override;
-    double              energy(const Vector &u) const override;
-    void                multiply(Vector &y, const Vector &x) const override;
-    void                unbalanced(Vector &r, const Vector &u, const double t) const override;
-    void                mechanical_loads(Vector &loads, const double t) const override;
-    void                initialize_nodal_vector(Vector &vector) const override;
-    void                set_temperature_change(const Vector &nodal) override;
-    Inversion           inverted(const Vector &u) const override;
-    void                exchange(Archive &archive, const NodeKeys &keys) override;
+    Spectrum spectrum() const override;
+    void     surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    bool     surrogate_is_exact() const override
+    {
+      return true;
+    }
 
-    /** Place of a node of this process, by local number. */
-    const dealii::Point<dim> &position(const unsigned int node) const;
+    OperatorSize size() const override;
+    bool         symmetric() const override
+    {
+      return !coupling || coupling->symmetric();
+    }
+
+    ForceBalance forces(const Vector &u, const double t) const override;
+    double       energy(const Vector &u) const override;
+    void         multiply(Vector &y, const Vector &x) const override
+    {
+      stiffness.vmult(y, x);
+    }
+
+    void      set_temperature_change(const Vector &nodal) override;
+    Inversion inverted(const Vector &u) const override;
+
+    const dealii::Point<dim> &position(const unsigned int node) const override
+    {
+      return positions[node];
+    }
 
     /** The layout of vectors with one number for each node. */
     const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &node_layout() const;
 
     /** Volume of a node: its share of the lumped integral of 1. */
-    double volume(const unsigned int node) const;
+    double volume(const unsigned int node) const
+    {
+      return volumes.local_element(node);
+    }
 
     /** Only in the model `coupled`. */
-    const ElasticCoupling<dim> &bonds() const;
+    const ElasticCoupling<dim> &bonds() const
+    {
+      return *coupling;
+    }
 
     /** Cells of this process that a crack cuts, by active cell index. */
-    const std::vector<bool> &cut_cells() const;
+    const std::vector<bool> &cut_cells() const
+    {
+      return cut;
+    }
 
     /**
      * K of the body without its cracks and conditions, with the bonds of the zone or without any.
@@ -106,9 +111,17 @@ namespace PeriDeal
     double lowest_remainder() const;
 
   protected:
-    void fill_noise(Vector &vector) const override;
+    void find_loads(Vector &loads, const double t) const override;
 
   private:
+    using SolidOperator<dim>::scene;
+    using SolidOperator<dim>::nodes;
+    using SolidOperator<dim>::unknowns;
+    using SolidOperator<dim>::conditions;
+    using SolidOperator<dim>::mass;
+    using SolidOperator<dim>::stiffness_diagonal;
+    using SolidOperator<dim>::thermal_loads;
+
     struct CellData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
@@ -132,46 +145,27 @@ namespace PeriDeal
                        std::vector<dealii::types::global_dof_index> &indices) const;
     void   add_thermal_families();
     bool   any_thermal() const;
-    double thermal_strain_at(const unsigned int node) const;
     void   count_bonds(const double n_in_families);
     double bond_factor(const unsigned int i, const unsigned int j) const;
-    double temperature_change_at(const unsigned int node) const;
-    double thermal_strain(const dealii::Point<dim> &p, const double temperature_change) const;
     void   add_thermal(const CellData &data, double &energy);
     void   finish_thermal(const double energy);
     void   throw_if_isolated() const;
-    void   assemble_loads(Vector &loads, const double t) const;
     template <typename Visit>
     void for_each_own_cell(const Visit &visit) const;
     template <typename Visit>
     void for_each_load(const double t, const Visit &visit) const;
 
-    const dealii::DoFHandler<dim>        &dofs;
-    const Scene<dim>                     &scene;
-    std::unique_ptr<ElasticCoupling<dim>> coupling; // null: finite elements alone
-    ConditionFaces<dim>                   condition_faces;
-    std::vector<PartUnknown<dim>>         part_unknowns; // of regions and points
-    std::shared_ptr<const dealii::Utilities::MPI::Partitioner> nodes, unknowns;
-    std::vector<dealii::Point<dim>>                            positions;
-    std::unique_ptr<DisplacementConditions<dim>>               conditions;
-    dealii::TrilinosWrappers::SparseMatrix                     stiffness;
-    std::unique_ptr<CellData>                                  cell_data;
-    Vector                                                     mass, volumes, stiffness_diagonal;
-    std::vector<bool>                                          cut; // by active cell index
-    Vector             crack_factors;                               // of nodes; empty: none
-    unsigned long long n_bonds        = 0;
-    double             thermal_energy = 0.; // of a body that is held everywhere
-    bool               loads_vary     = false;
-    Vector             constant_loads, thermal_loads;
-    mutable Vector     scratch;
+    const dealii::DoFHandler<dim>         &dofs;
+    std::unique_ptr<ElasticCoupling<dim>>  coupling; // null: finite elements alone
+    ConditionFaces<dim>                    condition_faces;
+    std::vector<PartUnknown<dim>>          part_unknowns; // of regions and points
+    std::vector<dealii::Point<dim>>        positions;
+    dealii::TrilinosWrappers::SparseMatrix stiffness;
+    std::unique_ptr<CellData>              cell_data;
+    Vector                                 volumes;
+    std::vector<bool>                      cut;           // by active cell index
+    Vector                                 crack_factors; // of nodes; empty: none
+    unsigned long long                     n_bonds        = 0;
+    double                                 thermal_energy = 0.; // of a body that is held everywhere
   };
-
-
-  /**
-   * The rigid motions of nodes at the given places: dim translations, then the rotations. @p layout
-   * sets the vectors' layout.
-   */
-  template <int dim>
-  std::vector<Vector> rigid_motions(const std::vector<dealii::Point<dim>> &positions,
-                                    const Vector                          &layout);
 } // namespace PeriDeal

@@ -60,6 +60,18 @@ namespace PeriDeal
   };
 
 
+  /** What has broken of a body so far. The same on all processes. */
+  struct BreakHistory
+  {
+    double             released = 0.; // strain energy
+    unsigned long long n_broken = 0;  // bonds
+    BreakPlaces        places;
+
+    /** Collective. */
+    void exchange(Archive &archive);
+  };
+
+
   /**
    * A body of linear elastic material: M u'' = f(t) - K u, u the displacement. Component c of node
    * i is the unknown dim i + c. K is symmetric and positive semidefinite, its null space the rigid
@@ -159,10 +171,15 @@ namespace PeriDeal
       return {};
     }
 
-    /** Bonds of the body may break. Not collective. */
-    virtual bool brittle() const
+    /** Null: no bonds of the body may break. Not collective. */
+    virtual const BreakHistory *break_history() const
     {
-      return false;
+      return nullptr;
+    }
+
+    bool brittle() const
+    {
+      return break_history() != nullptr;
     }
 
     /**
@@ -180,24 +197,21 @@ namespace PeriDeal
       return 0;
     }
 
-    /** Strain energy that broken bonds have released so far. Not collective. */
-    virtual double released_energy() const
+    /** Strain energy that broken bonds have released so far, and how many. Not collective. */
+    double released_energy() const
     {
-      return 0.;
+      return brittle() ? break_history()->released : 0.;
     }
 
-    virtual unsigned long long n_broken_bonds() const
+    unsigned long long n_broken_bonds() const
     {
-      return 0;
+      return brittle() ? break_history()->n_broken : 0;
     }
 
-    /** The same on all processes. */
-    const BreakPlaces &break_places() const
-    {
-      return places;
-    }
+    /** Where; empty while none have. Not collective. */
+    const BreakPlaces &break_places() const;
 
-    /** Counters, the temperature that was set, and where bonds broke. */
+    /** Counters, and the temperature that was set. */
     void exchange(Archive &archive, const NodeKeys &keys) override;
 
     bool symmetric() const override
@@ -222,8 +236,6 @@ namespace PeriDeal
 
     /** Keeps what temperature_change() gives. Collective. */
     void keep_temperature_change(const Vector &nodal);
-
-    BreakPlaces places;
 
   private:
     Vector nodal_change;

@@ -3,19 +3,24 @@
 
 #pragma once
 
-#include <perideal/base/types.h>
 #include <perideal/bonds/bond_state.h>
-#include <perideal/bonds/boundary_images.h>
+#include <perideal/operators/fictitious_images.h>
+#include <perideal/operators/solid_rows.h>
+#include <perideal/operators/thermal_strains.h>
 
 #include <functional>
-#include <map>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
 {
   template <int dim>
   class PointBins;
+
+
+  /** Numbers of bonds, ascending, and how far each is stretched over the critical stretch. */
+  using Overstretched = std::vector<std::pair<std::size_t, double>>;
 
 
   /**
@@ -28,7 +33,7 @@ namespace PeriDeal
    *
    * A bond whose node is cut off by a crack from one that g follows is none; beyond a plane of
    * symmetry cracks are mirrored. Vectors: u has a value for each component of owned nodes and
-   * ghosts, the latter up to date.
+   * ghosts, the latter up to date. tau = c theta/q of the nodes is zero without dilatations.
    */
   template <int dim>
   class FictitiousBonds
@@ -52,17 +57,10 @@ namespace PeriDeal
     /** Add sum W x^2/V_i to q of the owned nodes. */
     void add_weights(Vector &q) const;
 
-    /**
-     * Make the springs those of b_i/q_i at the owned nodes; @p full keeps what full kinematics
-     * need.
-     */
-    void find_springs(const std::function<double(const unsigned int)> &stiffness, const bool full);
+    /** Make the springs those of b_i/q_i; @p full keeps what full kinematics need. */
+    void find_springs(const NodeLaws<dim> &laws, const bool full);
 
-    /** @param strain of owned nodes and ghosts */
-    void set_thermal_strains(const std::function<double(const unsigned int)> &strain);
-
-    /** Owned nodes that have such bonds. */
-    const std::vector<unsigned int> &nodes() const;
+    void set_thermal_strains(const ThermalStrains &strain);
 
     /** Visit the unbroken and broken ones of an owned node: visit(bond). */
     template <typename Visit>
@@ -70,7 +68,7 @@ namespace PeriDeal
     {
       if (!starts.empty())
         for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          visit(Bond{k, i, images[k], moments[k], springs[k], state.is_whole(k)});
+          visit(Bond{k, i, image_of_bond[k], moments[k], springs[k], state.is_whole(k)});
     }
 
     template <typename Visit>
@@ -80,144 +78,176 @@ namespace PeriDeal
         for_each_of(i, visit);
     }
 
-    /** Find u_g for the functions below, until the next call. */
-    void find_images(const double *u) const;
+    /** The fictitious nodes. Their displacements have to be found for the next four functions. */
+    const FictitiousImages<dim> &images() const
+    {
+      return fictitious;
+    }
+
+    /** See FictitiousImages. */
+    void keep_forces()
+    {
+      fictitious.keep_forces();
+    }
 
     /** u_g - u_i. */
     dealii::Tensor<1, dim> change(const Bond &bond, const double *u) const;
-    dealii::Tensor<1, dim> bond_vector(const Bond &bond) const;
-
-    /** W x, also in the deformed body. */
-    double length(const Bond &bond) const;
+    dealii::Tensor<1, dim> bond_vector(const Bond &bond) const
+    {
+      return fictitious[bond.image].place - families.nodes().position(bond.node);
+    }
 
     /** W x e, thermal extension taken off. */
     double extension_moment(const Bond &bond, const double *u) const;
 
-    /** Y, with full kinematics W x Y/|Y|, else the moment. */
-    dealii::Tensor<1, dim> direction(const Bond &bond, const double *u) const;
-
     /**
-     * Beginning a sum of forces; then pull() for each force of a bond on its image, and pass_on()
-     * to add what the nodes get of them. The last one is collective.
+     * K x of what does not depend on dilatations, and with tau of owned nodes (or null) of what
+     * does: adds to y. Collective.
      */
-    void begin_forces() const;
-    void pull(const Bond &bond, const dealii::Tensor<1, dim> &force) const
+    void add_forces(Vector &y, const Vector &x, const double *tau) const;
+
+    /** W x, also in the deformed body; and the tangent's stiffness across the bond. */
+    double length(const Bond &bond) const
     {
-      for (unsigned int d = 0; d < dim; ++d)
-        image_forces[dim * bond.image + d] += force[d];
+      return lengths.empty() ? bond.moment.norm() : lengths[bond.number];
     }
-    void pass_on(Vector &y) const;
+
+    double stiffness_across(const Bond &bond) const
+    {
+      return across.empty() ? 0. : across[bond.number];
+    }
+
+    /** Add to c theta/q; @p strained: for thermal strains and with full kinematics. */
+    void add_tensions(Vector              &tau,
+                      const Vector        &u,
+                      const NodeLaws<dim> &laws,
+                      const bool           strained) const;
+
+    /** -F of the deformed or warmer body. Collective. */
+    void add_strained_forces(Vector &y, const Vector &u, const Vector &tau) const;
 
     /**
-     * Let forces_of_planes() count the present forces to all later ones: those of thermal strains,
-     * which are loads.
+     * The tangent of the deformed body: directions, and a stiffness across the bond, whose forces
+     * add_geometric_forces() adds. The latter is collective.
      */
-    void keep_forces();
+    void linearize(const Vector &u, const Vector &tau);
+    void add_geometric_forces(Vector &y, const Vector &x) const;
+
+    /** Without what dilatations store; on this process. */
+    double energy(const Vector &u) const;
+
+    /**
+     * Add what these bonds change of the diagonal of K, whose dilatations of node i have the factor
+     * c d/(q^2 V) in @p factor. Collective.
+     */
+    void add_to_diagonal(Vector                    &diagonal,
+                         const SolidRows<dim>      &rows,
+                         const std::vector<double> &factor) const;
+
+    /**
+     * What these bonds add to the sums over rows of |K|, by node, if the dilatation of a node has
+     * so much that counts with |W xi| in each row. Collective.
+     */
+    Vector row_sums(const Vector &of_dilatations) const;
+
+    /** Sum of W x and of the factors of all nodes that follow. */
+    double sum_of_lengths(const unsigned int i) const;
 
     /** The image is that of the node itself in a plane of symmetry alone. */
     bool is_own_image(const Bond &bond) const;
 
     /**
-     * What planes of symmetry have added to the sum of all forces since begin_forces(), by side; on
-     * this process.
-     */
-    std::map<dealii::types::boundary_id, dealii::Tensor<1, dim>> forces_of_planes() const;
-
-    /**
-     * K x of what does not depend on dilatations, and with tau of owned nodes of what does: adds to
-     * y. Collective.
-     */
-    void add_forces(Vector &y, const Vector &x, const double *tau) const;
-
-    /** Visit what an image follows from: visit(node, factors of the components). */
-    template <typename Visit>
-    void for_each_term(const unsigned int image, const Visit &visit) const
-    {
-      for (std::size_t k = term_starts[image]; k < term_starts[image + 1]; ++k)
-        visit(terms[k].node, terms[k].of_component);
-    }
-
-    /**
-     * Sum of W x and of the factors of all nodes that follow: how much a displacement of 1 may
-     * count.
-     */
-    double sum_of_lengths(const unsigned int i) const;
-
-    /** Of the largest factor of each of these. */
-    double sum_of_factors(const unsigned int image) const;
-
-    /** The tangent of the deformed body: directions, and a stiffness across the bond. */
-    void   set_tangent(const Bond &bond, const dealii::Tensor<1, dim> &moment, const double across);
-    double stiffness_across(const Bond &bond) const;
-
-    /**
      * Beyond planes of symmetry bonds break as those of the whole body; a bond that lies in the
      * plane counts at no end.
      */
-    bool         may_break(const Bond &bond) const;
-    unsigned int n_ends(const Bond &bond) const;
-    void         break_bond(const std::size_t number, const BondState::Mark mark, const double t);
+    bool may_break(const Bond &bond) const
+    {
+      return fictitious.is_mirrored_alone(bond.image);
+    }
 
-    /** The node of the body that an image is one of, and its volume. */
-    unsigned int origin(const unsigned int image) const;
-    double       volume(const unsigned int image) const;
+    unsigned int n_ends(const Bond &bond) const;
+
+    /** @param critical stretches of owned nodes and ghosts */
+    Overstretched find_overstretched(const double *u, const std::vector<double> &critical) const;
+
+    /** Visit the bonds of a list: visit(bond, ratio). */
+    template <typename Visit>
+    void for_each_in(const Overstretched &bonds, const Visit &visit) const
+    {
+      std::size_t next = 0; // both are in the same order
+      for_each([&](const Bond &bond) {
+        if (next < bonds.size() && bonds[next].first == bond.number)
+          visit(bond, bonds[next++].second);
+      });
+    }
+
+    void break_bond(const std::size_t number, const BondState::Mark mark, const double t);
 
     /**
      * Break those bonds of a node that others, broken by now, would have to hold: of its neighbours
-     * @p lost in the body. Returns whether there were any.
+     * @p lost in the body.
      */
-    bool break_dependent(const unsigned int               node,
+    void break_dependent(const unsigned int               node,
                          const std::vector<unsigned int> &lost,
                          const double                     t);
 
     /** What has broken. @param keys of the owned nodes. Collective. */
     void exchange(Archive &archive, const NodeKeys &keys);
 
-    std::size_t size() const;
     std::size_t memory_consumption() const;
 
   private:
+    void release(const std::size_t number); // bears nothing any more
     using Site  = typename FictitiousExtension<dim>::Site;
     using Index = typename FictitiousExtension<dim>::Index;
     using Term  = typename Site::Term;
 
-    void         find_bonds_of(const unsigned int i);
-    void         find_bonds_of(const unsigned int                     i,
-                               const std::vector<BoundaryImage<dim>> &beyond,
-                               const PointBins<dim>                  &bins,
-                               std::vector<unsigned int>             &number_of);
-    void         make_room();
-    void         release(const std::size_t number);
-    unsigned int image_at(const Index &index, const Site &site, const double volume);
+    /** While bonds are found. */
+    struct Search
+    {
+      std::unordered_map<std::size_t, unsigned int> image_at; // by the key of its site
+      std::vector<std::size_t>                      parted;   // bonds
+    };
+
+    void find_bonds_of(const unsigned int              i,
+                       const FictitiousExtension<dim> &extension,
+                       Search                         &search);
+    void find_bonds_of(const unsigned int                     i,
+                       const std::vector<BoundaryImage<dim>> &beyond,
+                       const PointBins<dim>                  &bins,
+                       std::vector<unsigned int>             &number_of,
+                       Search                                &search);
+    template <typename Find>
+    void         find_bonds(const Find &find);
+    void         add_bond(const unsigned int            image,
+                          const dealii::Tensor<1, dim> &xi,
+                          const double                  weight,
+                          const bool                    cut,
+                          Search                       &search);
+    unsigned int image_at(const Index &index,
+                          const Site  &site,
+                          const double volume,
+                          Search      &search);
     bool         is_cut(const unsigned int                                     i,
                         const std::vector<Term>                               &of_image,
                         const std::function<dealii::Point<dim>(const Term &)> &twice_planes) const;
     bool         is_separated(const unsigned int        i,
                               const Term               &term,
                               const dealii::Point<dim> &twice_planes) const;
-    bool         are_images_of_one(const unsigned int lost,
-                                   const unsigned int image,
-                                   const Term        &term) const;
 
-    const Families<dim>                                     &families;
-    const FictitiousExtension<dim>                           extension;
-    std::unordered_map<std::size_t, unsigned int>            image_of; // while bonds are found
-    std::vector<unsigned int>                                list;
-    std::vector<std::size_t>                                 starts; // of all owned nodes, or empty
-    std::vector<unsigned int>                                images;
-    std::vector<std::size_t>                                 parted; // while bonds are found
-    BondState                                                state;
-    std::vector<dealii::Tensor<1, dim>>                      moments;
-    std::vector<double>                                      springs, lengths, across, strains;
-    std::vector<Index>                                       sites; // of the images, on a lattice
-    std::vector<dealii::Point<dim>>                          places;
-    std::vector<std::array<dealii::types::boundary_id, dim>> planes; // that images may lie beyond
-    std::vector<double>                                      volumes;
-    std::vector<unsigned int>                                origins;
-    std::vector<std::size_t>                                 term_starts{0};
-    std::vector<Term>                                        terms;
-    mutable std::vector<double>                              values, image_forces;
-    std::vector<double>                                      kept_forces;
-    mutable Vector                                           passed;
+    /** Y, with full kinematics W x Y/|Y|, else the moment. */
+    dealii::Tensor<1, dim> direction(const Bond &bond, const double *u) const;
+
+    /** A force of a bond: y less it, and the opposite one to the image. */
+    void subtract_force(Vector &y, const Bond &bond, const dealii::Tensor<1, dim> &force) const;
+
+    const Families<dim>                &families;
+    FictitiousImages<dim>               fictitious;
+    std::vector<unsigned int>           list;   // owned nodes that have such bonds
+    std::vector<std::size_t>            starts; // of all owned nodes, or empty
+    std::vector<unsigned int>           image_of_bond;
+    BondState                           state;
+    std::vector<dealii::Tensor<1, dim>> moments;
+    std::vector<double>                 springs, lengths, across, strains; // springs: first W x^2
   };
 } // namespace PeriDeal

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/base/types.h>
+#include <perideal/bonds/boundary_images.h>
+
+#include <map>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * The fictitious nodes beyond the sides of a solid to which nodes of the body have bonds. The
+   * displacement of each, u_g = P u, is linear in that of nodes of the body; the force on it is
+   * passed on to them through P^T.
+   *
+   * Values and forces are scratch memory: they hold until the next find() and begin_forces().
+   */
+  template <int dim>
+  class FictitiousImages
+  {
+  public:
+    using Term  = typename FictitiousExtension<dim>::Site::Term;
+    using Index = typename FictitiousExtension<dim>::Index;
+
+    struct Image
+    {
+      dealii::Point<dim>                          place;
+      std::array<dealii::types::boundary_id, dim> planes; // that it may lie beyond
+      double                                      volume;
+      unsigned int                                origin; // the node that it is an image of
+      Index                                       site;   // on a lattice
+    };
+
+    explicit FictitiousImages(const Nodes<dim> &nodes);
+
+    /** Returns its number. To be followed by make_room() after the last one. */
+    unsigned int add(const Image &image, const std::vector<Term> &of_image);
+    void         make_room();
+
+    unsigned int size() const
+    {
+      return images.size();
+    }
+
+    const Image &operator[](const unsigned int image) const
+    {
+      return images[image];
+    }
+
+    /** Visit what an image follows from: visit(term). */
+    template <typename Visit>
+    void for_each_term(const unsigned int image, const Visit &visit) const
+    {
+      for (std::size_t k = starts[image]; k < starts[image + 1]; ++k)
+        visit(terms[k]);
+    }
+
+    /** The image mirrors one node, and is continued beyond no side. */
+    bool is_mirrored_alone(const unsigned int image) const
+    {
+      return starts[image + 1] - starts[image] == 1;
+    }
+
+    const Term &first_term(const unsigned int image) const
+    {
+      return terms[starts[image]];
+    }
+
+    /**
+     * Sum of the largest factor of each node that it follows: how much a displacement of 1 may
+     * count.
+     */
+    double sum_of_factors(const unsigned int image) const;
+
+    /** @p lost is the image of the node of a term of @p image, with its mirrors. */
+    bool are_images_of_one(const unsigned int lost,
+                           const unsigned int image,
+                           const Term        &term) const;
+
+    /** Find u_g. @p u has up-to-date ghosts. */
+    void find(const double *u) const;
+
+    const double *value(const unsigned int image) const
+    {
+      return values.data() + dim * image;
+    }
+
+    /** Beginning a sum of forces; then pull() for each, and pass_on() the sums. */
+    void begin_forces() const
+    {
+      std::fill(forces.begin(), forces.end(), 0.);
+    }
+
+    void pull(const unsigned int image, const dealii::Tensor<1, dim> &force) const
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        forces[dim * image + d] += force[d];
+    }
+
+    /** Adds what the nodes get of the forces. Collective. */
+    void pass_on(Vector &y) const;
+
+    /**
+     * Let forces_of_planes() count the present forces to all later ones: those of thermal strains,
+     * which are loads.
+     */
+    void keep_forces()
+    {
+      kept_forces = forces;
+    }
+
+    /**
+     * What planes of symmetry have added to the sum of all forces since begin_forces(), by side; on
+     * this process.
+     */
+    std::map<dealii::types::boundary_id, dealii::Tensor<1, dim>> forces_of_planes() const;
+
+    std::size_t memory_consumption() const;
+
+  private:
+    const Nodes<dim>           &nodes;
+    std::vector<Image>          images;
+    std::vector<std::size_t>    starts{0};
+    std::vector<Term>           terms;
+    mutable std::vector<double> values, forces;
+    std::vector<double>         kept_forces;
+    mutable Vector              passed;
+  };
+} // namespace PeriDeal

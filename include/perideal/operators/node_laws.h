@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/base/types.h>
+#include <perideal/laws/elasticity.h>
+#include <perideal/mesh/nodes.h>
+#include <perideal/scene/scene.h>
+
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * The law of each node of the linear peridynamic solid (StateOperator), and q of its family: what
+   * makes forces of extensions.
+   */
+  template <int dim>
+  class NodeLaws
+  {
+  public:
+    /** @param nodes with their halo. q is to be filled in. Collective. */
+    NodeLaws(const Nodes<dim> &nodes, const Scene<dim> &scene);
+
+    const StateLaw &operator[](const unsigned int node) const
+    {
+      return laws[node];
+    }
+
+    /** b_i/q_i. */
+    double stiffness(const unsigned int i) const
+    {
+      return laws[i].extension / weighted.local_element(i);
+    }
+
+    /** c_i theta_i/q_i, of the sum of W x e over the family. */
+    double tension(const unsigned int i, const double sum) const
+    {
+      const StateLaw &law = laws[i];
+      const double    q   = weighted.local_element(i);
+      return law.volumetric * law.dilatation * sum / (q * q * nodes.volume(i));
+    }
+
+    /** Of several laws that of most nodes, if it is the softest or the stiffest one. Collective. */
+    StateLaw reference() const;
+
+    std::size_t memory_consumption() const
+    {
+      return laws.size() * sizeof(StateLaw);
+    }
+
+    Vector     weighted;               // q_i; ghosts up to date
+    const bool volumetric;             // there are dilatations
+    bool       several_phases = false; // nodes differ in b
+
+  private:
+    const Nodes<dim>     &nodes;
+    std::vector<StateLaw> laws; // owned and ghosts
+  };
+} // namespace PeriDeal

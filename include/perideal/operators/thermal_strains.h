@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** The thermal strains of nodes, owned and ghosts; those of bonds are the means of both ends. */
+  class ThermalStrains
+  {
+  public:
+    /** @param strain of a node by its local number. Collective. */
+    template <typename Strain>
+    void set(const unsigned int n_nodes, const Strain &strain, const MPI_Comm communicator)
+    {
+      double largest = 0.;
+      strains.resize(n_nodes);
+      for (unsigned int i = 0; i < n_nodes; ++i)
+        {
+          strains[i] = strain(i);
+          largest    = std::max(largest, std::abs(strains[i]));
+        }
+      is_any = dealii::Utilities::MPI::max(largest, communicator) > 0.;
+    }
+
+    /** Some node of some process has one. */
+    bool any() const
+    {
+      return is_any;
+    }
+
+    double operator[](const unsigned int node) const
+    {
+      return strains[node];
+    }
+
+    double of_bond(const unsigned int i, const unsigned int j) const
+    {
+      return 0.5 * (strains[i] + strains[j]);
+    }
+
+    std::size_t memory_consumption() const
+    {
+      return strains.size() * sizeof(double);
+    }
+
+  private:
+    std::vector<double> strains;
+    bool                is_any = false;
+  };
+} // namespace PeriDeal

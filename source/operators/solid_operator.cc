@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/interleaved.h>
+#include <perideal/base/place_text.h>
+#include <perideal/laws/elasticity.h>
+#include <perideal/operators/solid_operator.h>
+#include <perideal/operators/spectrum.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    bool loads_depend_on_time(const Scene<dim> &scene)
+    {
+      const auto &force = scene.initial_and_source.body_force;
+      bool        any   = std::any_of(force.begin(), force.end(), [](const Expression &e) {
+        return e.depends_on_time();
+      });
+      for (const VectorCondition &condition : scene.boundary_conditions.traction)
+        for (const auto &value : condition.values)
+          any = any || (value && value->depends_on_time());
+      return any;
+    }
+  } // namespace
+
+
+  template <int dim>
+  SolidOperator<dim>::SolidOperator(const Scene<dim> &scene)
+    : scene(scene)
+    , loads_vary(loads_depend_on_time(scene))
+  {}
+
+
+  template <int dim>
+  void SolidOperator<dim>::set_layout(const Layout &of_nodes)
+  {
+    nodes    = of_nodes;
+    unknowns = interleaved(*nodes, dim);
+    for (Vector *v : {&mass, &stiffness_diagonal, &thermal_loads, &constant_loads, &scratch})
+      initialize_vector(*v);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    conditions->exchange(archive, keys);
+    ElasticOperator::exchange(archive, keys);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::apply(Vector &y, const Vector &x) const
+  {
+    ++this->applications;
+    this->multiply(y, x);
+    conditions->mask(y);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
+  {
+    unbalanced(r, u, t);
+    conditions->mask(r);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::unbalanced(Vector &r, const Vector &u, const double t) const
+  {
+    ++this->applications;
+    find_forces(r, u);
+    if (loads_vary)
+      find_loads(scratch, t);
+    r.sadd(-1., 1., loads_vary ? scratch : constant_loads);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::mechanical_loads(Vector &loads, const double t) const
+  {
+    find_loads(loads, t);
+    loads -= thermal_loads;
+  }
+
+
+  template <int dim>
+  Vector SolidOperator<dim>::held_unknowns() const
+  {
+    Vector held(unknowns);
+    conditions->mask(held, 1.);
+    held.update_ghost_values();
+    return held;
+  }
+
+  template <int dim>
+  std::string SolidOperator<dim>::place_of(const unsigned int local_index) const
+  {
+    return place_text(position(local_index / dim));
+  }
+
+  template <int dim>
+  void SolidOperator<dim>::fill_noise(Vector &vector) const
+  {
+    for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+      vector.local_element(i) = position_noise(position(i / dim)) * (1. + i % dim);
+  }
+
+
+  template <int dim>
+  double SolidOperator<dim>::temperature_change_at(const unsigned int node) const
+  {
+    const Vector &at_nodes = this->temperature_change();
+    return at_nodes.size() > 0 ? at_nodes.local_element(node) :
+                                 scene.elasticity.temperature_change.value(position(node));
+  }
+
+
+  template <int dim>
+  std::vector<Vector> SolidOperator<dim>::near_null_space() const
+  {
+    // Rotations about the middle of the body's nodes, of a size near one.
+    const unsigned int n_nodes = mass.locally_owned_size() / dim;
+    Point<dim>         sum;
+    double             n = n_nodes;
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      sum += position(i);
+    const MPI_Comm communicator = mass.get_mpi_communicator();
+    const auto total = Utilities::MPI::sum(static_cast<const Tensor<1, dim> &>(sum), communicator);
+    const Point<dim> middle(total / Utilities::MPI::sum(n, communicator));
+    double           farthest = 0.;
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      farthest = std::max(farthest, position(i).distance(middle));
+    farthest = Utilities::MPI::max(farthest, communicator);
+    std::vector<Vector> motions;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        motions.emplace_back(unknowns);
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          motions.back().local_element(dim * i + d) = 1.;
+      }
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = a + 1; b < dim; ++b)
+        {
+          motions.emplace_back(unknowns);
+          for (unsigned int i = 0; i < n_nodes; ++i)
+            {
+              const Tensor<1, dim> x                    = (position(i) - middle) / farthest;
+              motions.back().local_element(dim * i + a) = -x[b];
+              motions.back().local_element(dim * i + b) = x[a];
+            }
+        }
+    return motions;
+  }
+
+
+  template class SolidOperator<1>;
+  template class SolidOperator<2>;
+  template class SolidOperator<3>;
+} // namespace PeriDeal

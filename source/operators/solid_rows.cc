@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Which bonds are stored, and which the lattice knows.
+
+#include <perideal/base/place_text.h>
+#include <perideal/base/smallest_eigenvalue.h>
+#include <perideal/base/user_error.h>
+#include <perideal/operators/bond_form.h>
+#include <perideal/operators/solid_rows.h>
+#include <perideal/operators/surface_factors.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "state_lattice.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * What a node that bonds do not hold needs: a longer horizon, if this one spans few cells of
+     * its size, else other cracks.
+     */
+    std::string advice_on_horizon(const double horizon, const double volume, const unsigned int dim)
+    {
+      constexpr double few = 2.5, enough = 3.; // cells in a horizon
+      const double     size = std::pow(volume, 1. / dim);
+      if (horizon >= few * size)
+        return "Check the cracks in section 'Cracks': they leave it too few bonds.";
+      std::ostringstream text;
+      text.precision(3);
+      text << "Cells there are as large as " << size
+           << ", and 'Horizon' in section 'Peridynamics' is " << horizon << ": take "
+           << enough * size << " or more, or smaller cells there.";
+      return text.str();
+    }
+
+
+    template <int dim>
+    bool may_leave_out_bonds(const Families<dim> &families, const Scene<dim> &scene)
+    {
+      std::string reason;
+      if (!families.neighbors().has_unique_sites())
+        reason = "the nodes are not on a lattice with one node per site";
+      else if (scene.elasticity.kinematics == Kinematics::full)
+        reason = "with 'Kinematics = full' each bond has its own direction";
+      else if (scene.material.fracture_energy || scene.material.critical_stretch)
+        reason = "bonds may break";
+      else if (scene.peridynamics.corrects_elastic_bonds())
+        reason = "with 'Surface correction' bonds have factors of their own";
+      // Bonds of bars take little, and differences of displacements round less than convolutions.
+      return takes_lattice_form(scene.peridynamics.form, reason, dim > 1);
+    }
+  } // namespace
+
+
+  template <int dim>
+  SolidRows<dim>::SolidRows(const Families<dim> &families,
+                            NodeLaws<dim>       &laws,
+                            const Scene<dim>    &scene)
+    : families(families)
+    , laws(laws)
+    , horizon(scene.horizon())
+  {
+    const Nodes<dim> &nodes     = families.nodes();
+    const bool        leave_out = may_leave_out_bonds(families, scene);
+    const double      q         = leave_out ? complete_weighted() : 0.;
+    Family            family;
+    std::string       message;
+    if (leave_out)
+      list_lattice_bonds();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const bool complete = leave_out && has_complete_family(i);
+        if (complete && !families.near_crack(i))
+          n_whole += 0.5 * static_cast<double>(lattice_bonds.size()); // at each end
+        else
+          {
+            families.members_of(i, family);
+            if (leave_out)
+              on_lattice[i] = std::none_of(family.begin(), family.end(), [](const auto &bond) {
+                return bond.cut || bond.weight == 0.;
+              });
+            store(i, family, message);
+          }
+        if (complete && on_lattice[i])
+          laws.weighted.local_element(i) = q; // to the last bit
+        starts.push_back(neighbors.size());
+        if (!leave_out || !on_lattice[i])
+          stored_nodes.push_back(i);
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+  }
+
+
+  template <int dim>
+  SolidRows<dim>::~SolidRows() = default;
+
+
+  template <int dim>
+  void SolidRows<dim>::list_lattice_bonds()
+  {
+    const Nodes<dim> &nodes = families.nodes();
+    on_lattice.assign(nodes.n_owned(), true);
+    for (const FamilyMember<dim> &member : families.weights().members())
+      {
+        LatticeBond bond;
+        bond.offset = member.offset;
+        for (unsigned int d = 0; d < dim; ++d)
+          bond.moment[d] = member.weight * (member.offset[d] * nodes.lattice()->spacing[d]);
+        bond.weight = member.weight * member.r * member.r;
+        lattice_bonds.push_back(bond);
+      }
+  }
+
+
+  template <int dim>
+  bool SolidRows<dim>::has_complete_family(const unsigned int i) const
+  {
+    const Nodes<dim> &nodes  = families.nodes();
+    const double      volume = nodes.lattice()->cell_volume();
+    if (nodes.volume(i) != volume)
+      return false;
+    const auto site = nodes.lattice()->index(nodes.position(i));
+    for (const FamilyMember<dim> &member : families.weights().members())
+      {
+        const unsigned int j = families.neighbors().node_at(site + member.offset);
+        if (j == numbers::invalid_unsigned_int || nodes.volume(j) != volume)
+          return false;
+      }
+    return true;
+  }
+
+
+  template <int dim>
+  double SolidRows<dim>::complete_weighted() const
+  {
+    double q = 0.;
+    for (const FamilyMember<dim> &member : families.weights().members())
+      q += families.nodes().lattice()->cell_volume() * member.weight * member.r * member.r;
+    return q;
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::store(const unsigned int i, const Family &family, std::string &message)
+  {
+    const Nodes<dim>       &nodes  = families.nodes();
+    const bool              stored = !is_on_lattice(i);
+    SymmetricTensor<2, dim> shape;
+    double                  q = 0.;
+    for (const auto &bond : family)
+      {
+        if (bond.cut || bond.weight == 0.)
+          continue;
+        AssertIndexRange(bond.neighbor, nodes.n_local()); // no fictitious nodes
+        const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
+        const double         w  = bond.weight;
+        q += w * xi.norm_square() / nodes.volume(i);
+        shape += w * symmetrize(outer_product(xi, xi));
+        n_whole += 0.5; // at each end
+        if (!stored)
+          continue;
+        neighbors.push_back(bond.neighbor);
+        moments.push_back(w * xi);
+        springs.push_back(w * xi.norm_square());
+      }
+    laws.weighted.local_element(i) = q;
+    if (!message.empty())
+      return;
+    if (!(q > 0.))
+      message =
+        "The node at " + place_text(nodes.position(i)) + " is isolated: no bond of it is left. ";
+    else if (smallest_eigenvalue(shape) < 1e-9 * trace(shape))
+      message = "All bonds of the node at " + place_text(nodes.position(i)) +
+                " lie in one line or plane, across which nothing holds it. ";
+    if (!message.empty())
+      message += advice_on_horizon(horizon, nodes.volume(i), dim);
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::correct_surface(const Scene<dim> &scene)
+  {
+    // Springs still are W x^2.
+    const SurfaceFactors factors =
+      surface_factors(families, scene.peridynamics, {starts, neighbors, springs});
+    std::string message;
+    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+      if (message.empty() && laws.volumetric &&
+          laws[i].extension + laws[i].volumetric * laws[i].dilatation * factors.ratio[i] <= 0.)
+        message =
+          "'Surface correction' in section 'Peridynamics': with this Poisson ratio the energy of the node at " +
+          place_text(families.nodes().position(i)) +
+          " would not be positive. Use 'moments' or 'none'.";
+    throw_on_all_if_any(families.nodes().communicator(), message);
+    for (std::size_t k = 0; k < neighbors.size(); ++k)
+      {
+        moments[k] *= factors.dilatation[k];
+        springs[k] *= factors.dilatation[k] * factors.dilatation[k] / factors.extension[k];
+      }
+    laws.weighted = factors.q;
+    n_uncorrected = factors.n_left;
+    moments_gap   = factors.gap;
+    laws.weighted.update_ghost_values();
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::find_springs(const Scene<dim> &scene)
+  {
+    if (scene.peridynamics.corrects_elastic_bonds())
+      correct_surface(scene);
+    for (const unsigned int i : stored_nodes)
+      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+        springs[k] = (laws.stiffness(i) + laws.stiffness(neighbors[k])) / springs[k]; // W x^2
+    if (!lattice_bonds.empty())
+      make_lattice();
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::make_lattice()
+  {
+    const StateLaw                           law = laws.reference();
+    const double                             q   = complete_weighted();
+    typename StateLattice<dim>::Coefficients coefficients;
+    coefficients.stiffness  = law.extension / q;
+    coefficients.dilatation = laws.volumetric ? law.volumetric * law.dilatation / (q * q) : 0.;
+    for (unsigned int i = 0; i < families.nodes().n_local(); ++i)
+      {
+        const double own = laws.weighted.local_element(i);
+        coefficients.stiffnesses.push_back(laws.stiffness(i));
+        if (laws.volumetric && i < families.nodes().n_owned())
+          coefficients.dilatations.push_back(laws[i].volumetric * laws[i].dilatation / (own * own));
+      }
+    lattice = std::make_unique<StateLattice<dim>>(families, coefficients, on_lattice);
+  }
+
+
+  template <int dim>
+  bool SolidRows<dim>::is_regular(const unsigned int i) const
+  {
+    return lattice && on_lattice[i] && lattice->is_regular(i);
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::find_tensions(double *tau, const double *u) const
+  {
+    if (lattice)
+      lattice->dilatation_forces(tau, u);
+    for (const unsigned int i : stored_nodes)
+      {
+        Tensor<1, dim> own;
+        for (unsigned int d = 0; d < dim; ++d)
+          own[d] = u[dim * i + d];
+        double sum = 0.;
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            const double *const   v = u + dim * neighbors[k];
+            const Tensor<1, dim> &p = moments[k];
+            for (unsigned int d = 0; d < dim; ++d)
+              sum += p[d] * (v[d] - own[d]);
+          }
+        tau[i] = laws.tension(i, sum);
+      }
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::find_forces(double *y, const double *u, const double *tau) const
+  {
+    if (lattice)
+      lattice->forces(y, u, tau);
+    const auto sum_row = [&](const unsigned int i, const auto &tension) {
+      Tensor<1, dim> own, force;
+      for (unsigned int d = 0; d < dim; ++d)
+        own[d] = u[dim * i + d];
+      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+        {
+          const double *const   v       = u + dim * neighbors[k];
+          const Tensor<1, dim> &p       = moments[k];
+          double                product = 0.;
+          for (unsigned int d = 0; d < dim; ++d)
+            product += p[d] * (v[d] - own[d]);
+          const double size = tension(springs[k] * product, neighbors[k]);
+          for (unsigned int d = 0; d < dim; ++d)
+            force[d] += size * p[d];
+        }
+      for (unsigned int d = 0; d < dim; ++d)
+        y[dim * i + d] = -force[d];
+    };
+    for (const unsigned int i : stored_nodes)
+      if (tau != nullptr)
+        sum_row(i, [tau, own = tau[i]](const double of_spring, const unsigned int j) {
+          return of_spring + own + tau[j];
+        });
+      else
+        sum_row(i, [](const double of_spring, const unsigned int) { return of_spring; });
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::release(const std::size_t number)
+  {
+    springs[number] = 0.;
+    moments[number] = Tensor<1, dim>();
+    n_whole -= 0.5;
+  }
+
+
+  template <int dim>
+  std::size_t SolidRows<dim>::memory_consumption() const
+  {
+    return neighbors.size() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
+           starts.size() * sizeof(std::size_t) + stored_nodes.size() * sizeof(unsigned int) +
+           (lattice ? lattice->memory_consumption() : 0);
+  }
+
+
+  template class SolidRows<1>;
+  template class SolidRows<2>;
+  template class SolidRows<3>;
+} // namespace PeriDeal
