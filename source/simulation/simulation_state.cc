@@ -127,6 +127,11 @@ namespace PeriDeal
     wall_time_before = saved.header().wall_time;
     progress.line("resumed at t = " + number_text(saved.header().time) + ", after " +
                   readable_duration(wall_time_before));
+    for (const std::string &note : output->files().notes) // also at the end, with all others
+      {
+        progress.note(note);
+        record->notes.push_back(note);
+      }
     output->files().has_resumed();
   }
 

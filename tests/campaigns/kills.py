@@ -148,7 +148,7 @@ def judge(case, end, number, memory, may_be_silent):
 
 def follow(case, path, scene, ranks, fresh):
     """A run in the same folder. What is wrong with it."""
-    end = run(["run", path, "-q", "-s", f"Time/End time={SCENES[scene][3]}"], case, ranks, 180)
+    end = run(["run", path, "-q", "--overwrite", "-s", f"Time/End time={SCENES[scene][3]}"], case, ranks, 180)
     if end.kind != COMPLETE:
         return f"the run that follows: {end.kind}: {end.detail}"
     results = os.path.join(case.folder, "results")

@@ -91,7 +91,7 @@ namespace
       like.fill();
       for (unsigned int k = 0; k < u.locally_owned_size(); ++k)
         ASSERT_EQ(u.local_element(k), like.u.local_element(k));
-      EXPECT_EQ(std::map<KeyedPairs::Key, double>(zipped()), like.zipped());
+      EXPECT_EQ(zipped(), like.zipped());
       EXPECT_EQ(number, like.number);
       EXPECT_EQ(count, like.count);
       EXPECT_EQ(text, like.text);

@@ -1,0 +1,273 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Runs that are stopped and go on give what an uninterrupted run gives.
+
+    resume.py heat | cracks | motion | loading      stopped by the limit of their wall time, after the first step and later
+    resume.py ranks                                 the same, resumed on another number of processes
+    resume.py mistakes                              nothing to resume, other scenes, damaged files
+    resume.py signals                               stopped by SIGTERM and SIGKILL at random moments, on 1 and 2 processes (long)
+
+With explicit steppers all tables and fields are the same to the last bit; elsewhere tables differ by 1e-11 of the largest value of their column at
+most, which is what solvers with a tolerance of 1e-10 leave.
+"""
+
+import csv
+import glob
+import json
+import math
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+
+from scene_test import SOURCE_DIR, Run, check, check_clean_error, check_message, finish, run_scene
+from scene_test import EXECUTABLE, _environment, _folders, _on_ranks  # signals need the process itself
+
+IMPLICIT = 1e-11
+
+HEAT = {"Domain/Cells": "24, 24"}
+IMAGE = {"Domain/Pixels per cell": "4", "Peridynamics/Horizon ratio": "2", "Elasticity/Solver": "dynamics", "Material/Density": "1",
+         "Time/End time": "1", "Output/Write every": "0.5"}
+SCENES = {
+    "heat": [("heat/convection.prm", {**HEAT, "Time/Stepper": stepper}, tolerance)
+             for stepper, tolerance in (("euler", 0), ("rk4", 0), ("rkc2", 0), ("chebyshev", 0), ("crank nicolson", IMPLICIT),
+                                        ("bdf2", IMPLICIT), ("sdirk2", IMPLICIT))]
+    + [("heat/temperature_dependent.prm", {}, 0)],
+    "cracks": [("coupling/growing_cracks.prm", {}, 0), ("heat/closing_crack.prm", {}, 0),
+               ("coupling/adaptive_zone.prm", {"Domain/Cells": "24, 24"}, 0)],
+    "motion": [("fracture/branching_crack.prm", {"Domain/Cells": "60, 24"}, 0),
+               ("fracture/branching_crack.prm", {"Domain/Cells": "61, 25", "Domain/Nodes": "cell centers", "Elasticity/Kinematics": "full"}, 0),
+               ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],
+    "loading": [("fracture/centre_crack.prm", {"Domain/Cells": "30, 60"}, IMPLICIT), ("elasticity/thermal_stress.prm", {}, IMPLICIT)],
+}
+
+
+def command(scene, folder, overrides, more, ranks):
+    words = [EXECUTABLE, "run", os.path.join(SOURCE_DIR, "prm", scene), "-s", f"Output directory={folder}"]
+    for entry, value in overrides.items():
+        words += ["-s", f"{entry}={value}"]
+    return _on_ranks(words + list(more), ranks)
+
+
+def run(scene, folder, overrides, more=(), ranks=1):
+    """A run in a folder; the exit status is the caller's."""
+    return subprocess.run(command(scene, folder, overrides, more, ranks), env=_environment(), capture_output=True, text=True, timeout=900, check=False)
+
+
+def new_folder():
+    folder = tempfile.mkdtemp(prefix="perideal_resume_")
+    _folders.append(folder)
+    return os.path.join(folder, "results")
+
+
+def tables_of(folder):
+    found = {}
+    for path in sorted(glob.glob(os.path.join(folder, "*.csv"))):
+        with open(path, newline="") as file:
+            found[os.path.basename(path)] = list(csv.reader(file))
+    return found
+
+
+def fields_of(folder):
+    found = {}
+    for path in sorted(glob.glob(os.path.join(folder, "fields", "*.h5"))):
+        with h5py.File(path) as file:
+            file.visititems(lambda name, item, key=os.path.basename(path): found.__setitem__(f"{key}: {name}", item[()].tobytes())
+                            if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def number(word):
+    try:
+        return float(word)
+    except ValueError:
+        return None
+
+
+def group(row):
+    """Values of a group of rows are compared with the largest of all of them: forces with forces, energies with energies."""
+    words = row[2] if len(row) == 4 else ""
+    return next((word for word in ("force", "stress", "energy") if word in words), "other")
+
+
+def difference(rows, others):
+    """The largest of numbers over the largest value of their group and column; infinite where texts differ."""
+    if len(rows) != len(others):
+        return math.inf
+    largest, worst = {}, {}
+    for row, other in zip(rows, others):
+        for column, (word, found) in enumerate(zip(row, other)):
+            a, b = number(word), number(found)
+            if a is None or b is None or math.isnan(a) or math.isnan(b):
+                if word != found:
+                    return math.inf
+                continue
+            key = (group(row), column)
+            largest[key] = max(largest.get(key, 0.), abs(a))
+            worst[key] = max(worst.get(key, 0.), abs(a - b))
+    return max((worst[key] / largest[key] if largest[key] > 0. else math.inf) for key in worst if worst[key] > 0.) if any(worst.values()) else 0.
+
+
+def compare(whole, resumed, tolerance, what):
+    """Tables within the tolerance; fields to the last bit where that is 0."""
+    tables, others = tables_of(whole), tables_of(resumed)
+    check(sorted(tables) == sorted(others), f"{what}: tables {sorted(others)} in place of {sorted(tables)}")
+    found = max((difference(rows, others[name]) for name, rows in tables.items()), default=math.inf)
+    check(found <= tolerance, f"{what}: tables differ by {found:.2e}, allowed {tolerance:.0e}")
+    fields, others = fields_of(whole), fields_of(resumed)
+    check(sorted(fields) == sorted(others), f"{what}: files of fields differ")
+    if tolerance == 0:
+        different = [name for name, values in fields.items() if values != others[name]]
+        check(not different, f"{what}: {len(different)} of {len(fields)} fields differ, first {different[:1]}")
+    return found
+
+
+def check_stopped(result, folder, what):
+    check(result.returncode == 3, f"{what}: exit status {result.returncode}, expected 3\n{result.stderr[-500:]}")
+    check("--resume" in result.stderr, f"{what}: no line that resumes")
+    check(bool(glob.glob(os.path.join(folder, "checkpoints", "*.h5"))), f"{what}: no checkpoint")
+
+
+def check_scene(scene, overrides, tolerance):
+    """Stopped after the first step, after about a third of its time, and then not at all."""
+    overrides = {"Output/Fields": "hdf5", **overrides}
+    whole, resumed = new_folder(), new_folder()
+    start = time.monotonic()
+    result = run(scene, whole, overrides)
+    took = time.monotonic() - start
+    what = f"{scene} {overrides.get('Time/Stepper', '')}"
+    check(result.returncode == 0, f"{what}: exit status {result.returncode}\n{result.stderr[-500:]}")
+    result = run(scene, resumed, {**overrides, "Checkpoint/Wall time limit": "0.001 s"})
+    check_stopped(result, resumed, what)
+    result = run(scene, resumed, {**overrides, "Checkpoint/Wall time limit": f"{0.3 * took:.3f} s"}, ["--resume"])
+    stopped = result.returncode == 3
+    if stopped:
+        result = run(scene, resumed, overrides, ["--resume"])
+    check(result.returncode == 0, f"{what}: resumed, exit status {result.returncode}\n{result.stderr[-500:]}")
+    check(not os.path.exists(os.path.join(resumed, "checkpoints")) or not os.listdir(os.path.join(resumed, "checkpoints")),
+          f"{what}: a complete run leaves checkpoints")
+    found = compare(whole, resumed, tolerance, what)
+    print(f"{what}: stopped {1 + stopped} times, difference {found:.1e}")
+
+
+def check_ranks():
+    """Explicit peridynamics does not ask how many processes there are; others do by round-off."""
+    for scene, overrides, tolerance in (("coupling/growing_cracks.prm", {"Domain/Cells": "24, 24"}, 1e-10),
+                                        ("fracture/branching_crack.prm", {"Domain/Cells": "60, 24", "Time/Time step": "2e-7"}, 1e-10)):
+        whole, resumed = new_folder(), new_folder()
+        check(run(scene, whole, overrides).returncode == 0, scene)
+        check_stopped(run(scene, resumed, {**overrides, "Checkpoint/Wall time limit": "0.1 s"}), resumed, scene)
+        result = run(scene, resumed, overrides, ["--resume"], ranks=2)
+        check(result.returncode == 0, f"{scene} on 2 processes: exit status {result.returncode}\n{result.stderr[-500:]}")
+        found = max(difference(rows, tables_of(resumed)[name]) for name, rows in tables_of(whole).items())
+        check(found <= tolerance, f"{scene}: resumed on 2 processes, tables differ by {found:.2e}")
+        print(f"{scene}: resumed on 2 processes, difference {found:.1e}")
+
+
+def check_mistakes():
+    scene, overrides = "heat/convection.prm", {**HEAT}
+
+    def refused(result, *words):
+        one = Run("", result.returncode, result.stdout, result.stderr)
+        check_clean_error(one, f"expected {words}")
+        check_message(one, *words)
+
+    folder = new_folder()
+    refused(run(scene, folder, overrides, ["--resume"]), "resume")
+    check(not os.path.exists(folder) or not os.listdir(folder), "nothing to resume: a folder is left")
+    stop = {"Checkpoint/Wall time limit": "0.001 s"}
+    check_stopped(run(scene, folder, {**overrides, **stop}), folder, scene)
+    before = {name: os.path.getmtime(name) for name in glob.glob(os.path.join(folder, "**"), recursive=True) if os.path.isfile(name)}
+    refused(run(scene, folder, overrides), "--resume", "--overwrite")
+    refused(run(scene, folder, {**overrides, "Material/Density": "3"}, ["--resume"]), "Density", "Material")
+    refused(run(scene, folder, {**overrides, "Domain/Cells": "25, 24"}, ["--resume"]), "Cells", "Domain")
+    after = {name: os.path.getmtime(name) for name in before if os.path.exists(name)}
+    lost = [name for name in before if name not in after and ".perideal" not in name]
+    check(not lost, f"a refused run has lost {lost}")
+
+    # A torn file is named, the one before is taken.
+    check(run(scene, folder, {**overrides, **stop}, ["--resume"]).returncode == 3, "a second stop")
+    files = sorted(glob.glob(os.path.join(folder, "checkpoints", "*.h5")), key=lambda name: int(os.path.basename(name)[:-3]))
+    check(len(files) == 2, f"{len(files)} checkpoints are kept, expected 2")
+    with open(files[1], "r+b") as file:
+        file.truncate(os.path.getsize(files[1]) // 2)
+    result = run(scene, folder, overrides, ["--resume"])
+    check(result.returncode == 0, f"resumed from the one before: {result.stderr[-500:]}")
+    check(os.path.basename(files[1]) in result.stdout + result.stderr, "the torn file is not named")
+    whole = new_folder()
+    check(run(scene, whole, overrides).returncode == 0, "whole")
+    compare(whole, folder, 0, "after a torn file")
+
+    # What may differ.
+    folder = new_folder()
+    check_stopped(run(scene, folder, {**overrides, **stop}), folder, scene)
+    result = run(scene, folder, {**overrides, "Title": "Another", "Checkpoint/Keep": "5"}, ["--resume"])
+    check(result.returncode == 0, f"another title: {result.stderr[-500:]}")
+
+
+def run_with_signals(kind, took, scene, settings, ranks):
+    """A run that is ended at up to 5 random moments and goes on each time: its folder and how often it did."""
+    folder, more, n_stops = new_folder(), [], 0
+    for attempt in range(8):
+        process = subprocess.Popen(command(scene, folder, settings, more, ranks), env=_environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            process.wait(random.uniform(0.2, 0.9) * took if attempt < 5 else 900)
+        except subprocess.TimeoutExpired:
+            if kind == signal.SIGKILL and ranks > 1:
+                subprocess.run(["pkill", "-KILL", "-f", folder], check=False)
+            process.send_signal(kind)
+            process.wait(120)
+        if complete(folder):
+            return folder, n_stops
+        resumes = bool(glob.glob(os.path.join(folder, "checkpoints", "*.h5")))
+        n_stops += resumes
+        more = ["--resume"] if resumes else ["--overwrite"]
+    check(False, f"{scene} on {ranks}, {kind.name}: exit status {process.returncode}")
+    return folder, n_stops
+
+
+def complete(folder):
+    """By its summary: mpirun has an exit status of its own where it is told to end."""
+    path = os.path.join(folder, "summary.json")
+    if not os.path.exists(path):
+        return False
+    with open(path) as file:
+        return json.load(file)["status"] == "complete"
+
+
+def check_signals():
+    """At random moments, on 1 and 2 processes."""
+    random.seed(4)
+    for scene, overrides, tolerance in [one for part in SCENES.values() for one in part]:
+        for ranks in (1, 2):
+            settings = {"Output/Fields": "hdf5", **overrides}
+            whole = new_folder()
+            start = time.monotonic()
+            check(run(scene, whole, settings, ranks=ranks).returncode == 0, scene)
+            took = time.monotonic() - start
+            for kind in (signal.SIGTERM, signal.SIGKILL):
+                settings["Checkpoint/Every"] = "0.05 s" if kind == signal.SIGKILL else "0"
+                folder, n_stops = run_with_signals(kind, took, scene, settings, ranks)
+                found = compare(whole, folder, tolerance, f"{scene} on {ranks}, {kind.name}")
+                print(f"{scene} {overrides.get('Time/Stepper', '')} on {ranks}, {kind.name}: stopped {n_stops} times, difference {found:.1e}", flush=True)
+
+
+if __name__ == "__main__":
+    part = sys.argv[1] if len(sys.argv) == 2 else ""
+    if part in SCENES:
+        for one in SCENES[part]:
+            check_scene(*one)
+    elif part == "ranks":
+        check_ranks()
+    elif part == "mistakes":
+        check_mistakes()
+    elif part == "signals":
+        check_signals()
+    else:
+        sys.exit(__doc__)
+    finish()
