@@ -291,7 +291,7 @@ namespace PeriDeal
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
     if (!bonds_apart)
-      DoFTools::make_sparsity_pattern(dofs, pattern, constraints, false);
+      DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
     if (coupling)
       add_bond_pattern(pattern);
     pattern.compress();
@@ -319,9 +319,9 @@ namespace PeriDeal
           scale_beside_cracks(data);
           data.stiffness.add(1., data.convection);
           if (!empty)
-            add_to(stiffness, data.stiffness, data.indices);
+            hanging.add_to(stiffness, data.stiffness, data.indices);
           if (!capacity_is_diagonal())
-            add_to(mass, data.mass, data.indices);
+            hanging.add_to(mass, data.mass, data.indices);
           for (unsigned int a = 0; a < data.indices.size(); ++a)
             for (unsigned int b = 0; b < data.indices.size(); ++b)
               capacity(data.indices[a]) += data.mass(a, b);
@@ -338,9 +338,9 @@ namespace PeriDeal
     if (!capacity_is_diagonal())
       mass.compress(VectorOperation::add);
     capacity.compress(VectorOperation::add);
-    condense(capacity);
-    if (any_hanging) // any value that is positive
-      set_hanging(capacity, capacity.l2_norm() / std::sqrt(capacity.size()));
+    hanging.condense(capacity);
+    if (hanging.any()) // any value that is positive
+      hanging.set(capacity, capacity.l2_norm() / std::sqrt(capacity.size()));
   }
 
 
@@ -401,7 +401,7 @@ namespace PeriDeal
       loads.local_element(unknown.node) += unknown.share * flux.value.value(unknown.position, t);
     });
     loads.compress(VectorOperation::add);
-    condense(loads);
+    hanging.condense(loads);
   }
 
 

@@ -142,7 +142,7 @@ namespace PeriDeal
     IndexSet        relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
-    DoFTools::make_sparsity_pattern(dofs, pattern, constraints, false);
+    DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
     pattern.compress();
     matrix.reinit(pattern);
     for (const auto &cell : dofs.active_cell_iterators())
@@ -151,7 +151,7 @@ namespace PeriDeal
           assemble_cell(cell, *cell_data, false);
           scale_beside_cracks(*cell_data);
           cell_data->stiffness.add(1., cell_data->convection);
-          add_to(matrix, cell_data->stiffness, cell_data->indices);
+          hanging.add_to(matrix, cell_data->stiffness, cell_data->indices);
         }
     matrix.compress(VectorOperation::add);
   }

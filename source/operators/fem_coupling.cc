@@ -251,7 +251,7 @@ namespace PeriDeal
     IndexSet        relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
-    DoFTools::make_sparsity_pattern(dofs, pattern, constraints, false);
+    DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
     const auto                               &layout = *coupling->families().nodes().partitioner();
     std::vector<typename Coupling<dim>::Bond> bonds;
     std::vector<types::global_dof_index>      columns;
@@ -285,7 +285,7 @@ namespace PeriDeal
           if (with_bonds)
             coupling->finish_cell(cell, data.stiffness);
           cell->get_dof_indices(data.indices);
-          add_to(matrix, data.stiffness, data.indices);
+          hanging.add_to(matrix, data.stiffness, data.indices);
         }
     matrix.compress(VectorOperation::add);
   }

@@ -94,7 +94,7 @@ namespace PeriDeal
     if (!capacity_depends_on_solution())
       {
         Operator::heat_between(y, u, v);
-        set_hanging(y, 0.); // the nodes they follow from have all of it
+        hanging.set(y, 0.); // the nodes they follow from have all of it
         return;
       }
     CellData            &data = *cell_data;
@@ -130,7 +130,7 @@ namespace PeriDeal
     u.set_ghost_state(false);
     v.set_ghost_state(false);
     y.compress(VectorOperation::add);
-    condense(y);
+    hanging.condense(y);
   }
 
 
@@ -162,7 +162,7 @@ namespace PeriDeal
                 });
             }
     sums.compress(VectorOperation::add);
-    condense(sums);
+    hanging.condense(sums);
     for (unsigned int i = 0; i < sums.locally_owned_size(); ++i)
       if (sums.local_element(i) != 0.)
         convection_sums.emplace_back(i, sums.local_element(i));
@@ -222,8 +222,8 @@ namespace PeriDeal
       {
         for (unsigned int i = 0; i < capacity.locally_owned_size(); ++i)
           heat += capacity.local_element(i) * u.local_element(i);
-        for (const HangingNode &node : hanging)
-          heat -= capacity.local_element(node.dof) * u.local_element(node.dof);
+        for (const unsigned int node : hanging.owned())
+          heat -= capacity.local_element(node) * u.local_element(node);
         return heat;
       }
     CellData           &data = *cell_data;

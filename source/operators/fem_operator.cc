@@ -26,6 +26,7 @@ namespace PeriDeal
     : dofs(dof_handler)
     , scene(scene)
     , coupling(std::move(coupling))
+    , hanging(dofs, *new_vector().get_partitioner())
     , history(scene.crack_history())
     , cracks_of(history.representative(start))
     , cracks(make_crack_geometries(history.pieces(cracks_of)))
@@ -36,7 +37,6 @@ namespace PeriDeal
       this->coupling->set_cracks_of(cracks_of);
     check_material();
     find_cut_cells();
-    find_hanging();
     find_prescribed();
     bonds_apart = this->coupling && this->coupling->has_form();
     assemble();
@@ -82,7 +82,7 @@ namespace PeriDeal
                 scene.boundary_conditions.side_of(dirichlet[k].id) == cell->face(f)->boundary_id())
               for (unsigned int i = 0; i < indices.size(); ++i)
                 if (fe.has_support_on_face(i, f) && layout.in_local_range(indices[i]) &&
-                    !(any_hanging && constraints.is_constrained(indices[i])))
+                    !hanging.is_hanging(indices[i]))
                   {
                     const Point<dim> p =
                       MappingQ1<dim>().transform_unit_to_real_cell(cell, fe.unit_support_point(i));
@@ -94,8 +94,7 @@ namespace PeriDeal
     for (const PartUnknown<dim> &unknown : part_unknowns)
       for (unsigned int k = 0; k < dirichlet.size(); ++k)
         if (dirichlet[k].id == unknown.id &&
-            !(any_hanging &&
-              constraints.is_constrained(layout.get_partitioner()->local_to_global(unknown.node))))
+            !hanging.is_hanging(layout.get_partitioner()->local_to_global(unknown.node)))
           hold(unknown.node, k, unknown.position);
     std::vector<unsigned long long> n_held(dirichlet.size(), 0);
     for (const auto &[dof, entry] : found)
@@ -111,8 +110,7 @@ namespace PeriDeal
                        dofs.get_communicator());
     for (const Prescribed &entry : prescribed)
       held.push_back(entry.dof);
-    for (const HangingNode &node : hanging)
-      held.push_back(node.dof);
+    held.insert(held.end(), hanging.owned().begin(), hanging.owned().end());
     std::sort(held.begin(), held.end());
     any_prescribed = Utilities::MPI::max(prescribed.empty() ? 0 : 1, dofs.get_communicator()) > 0;
   }
@@ -129,8 +127,8 @@ namespace PeriDeal
     for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
       row_sums[row] += std::abs(value);
     });
-    for (const HangingNode &node : hanging)
-      row_sums[node.dof] = 0.;
+    for (const unsigned int node : hanging.owned())
+      row_sums[node] = 0.;
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
       {
         if (!(stiffness_diagonal.local_element(i) > 0.))
@@ -159,6 +157,40 @@ namespace PeriDeal
     IndexSet relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     vector.reinit(dofs.locally_owned_dofs(), relevant, dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  Vector FEMOperator<dim>::new_vector() const
+  {
+    Vector vector;
+    initialize_vector(vector);
+    return vector;
+  }
+
+
+  template <int dim>
+  const HangingNodes<dim> &FEMOperator<dim>::hanging_nodes() const
+  {
+    return hanging;
+  }
+
+  template <int dim>
+  void FEMOperator<dim>::interpolate_hanging(Vector &v) const
+  {
+    hanging.interpolate(v);
+  }
+
+  template <int dim>
+  void FEMOperator<dim>::condense(Vector &loads) const
+  {
+    hanging.condense(loads);
+  }
+
+  template <int dim>
+  void FEMOperator<dim>::set_hanging(Vector &v, const double value) const
+  {
+    hanging.set(v, value);
   }
 
 
@@ -222,7 +254,7 @@ namespace PeriDeal
   {
     for (const Prescribed &entry : prescribed)
       u.local_element(entry.dof) = entry.condition->value.value(entry.position, t);
-    interpolate_hanging(u);
+    hanging.interpolate(u);
   }
 
   template <int dim>

@@ -149,11 +149,11 @@ namespace PeriDeal
           if (data.stiffness.linfty_norm() == 0.)
             continue;
           if (!(bonds_apart && coupling->leaves_nothing(near[k])))
-            add_to(stiffness, data.stiffness, data.indices);
+            hanging.add_to(stiffness, data.stiffness, data.indices);
           for (const auto i : data.indices)
             {
               event->touched.insert(layout.global_to_local(i));
-              if (const auto *masters = constraints.get_constraint_entries(i))
+              if (const auto *masters = hanging.constraints().get_constraint_entries(i))
                 for (const auto &master : *masters)
                   event->touched.insert(layout.global_to_local(master.first));
             }

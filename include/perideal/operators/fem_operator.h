@@ -4,13 +4,13 @@
 #pragma once
 
 #include <deal.II/dofs/dof_handler.h>
-#include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <perideal/mesh/cell_search.h>
 #include <perideal/operators/condition_faces.h>
 #include <perideal/operators/coupling.h>
+#include <perideal/operators/hanging_nodes.h>
 #include <perideal/operators/operator.h>
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/scene.h>
@@ -116,16 +116,11 @@ namespace PeriDeal
      */
     double heat(const Vector &u) const;
 
-    /** Set the owned hanging nodes of v to what follows from their neighbours. Collective. */
+    const HangingNodes<dim> &hanging_nodes() const;
+
+    /** As the functions of hanging_nodes(). */
     void interpolate_hanging(Vector &v) const;
-
-    /**
-     * Give what owned hanging nodes have of an integral, a load for instance, to the nodes they
-     * follow from. Collective.
-     */
     void condense(Vector &loads) const;
-
-    /** Set the entries of v for owned hanging nodes. Not collective. */
     void set_hanging(Vector &v, const double value) const;
 
     /**
@@ -140,16 +135,6 @@ namespace PeriDeal
       unsigned int         dof; // local index
       dealii::Point<dim>   position;
       const SideCondition *condition;
-    };
-
-    /**
-     * An owned node on the side of a larger cell, and the nodes whose weighted mean it has (local
-     * numbers).
-     */
-    struct HangingNode
-    {
-      unsigned int                                 dof;
-      std::vector<std::pair<unsigned int, double>> masters;
     };
 
     struct CellData;
@@ -171,10 +156,7 @@ namespace PeriDeal
     };
 
     void     find_prescribed();
-    void     find_hanging();
-    void     add_to(dealii::TrilinosWrappers::SparseMatrix             &matrix,
-                    const dealii::FullMatrix<double>                   &of_cell,
-                    const std::vector<dealii::types::global_dof_index> &indices) const;
+    Vector   new_vector() const;
     void     find_diagonal();
     void     extract_remainder();
     void     add_remainder(Vector            &y,
@@ -246,6 +228,7 @@ namespace PeriDeal
     const dealii::DoFHandler<dim>         &dofs;
     const Scene<dim>                      &scene;
     std::unique_ptr<Coupling<dim>>         coupling; // null: finite elements alone
+    const HangingNodes<dim>                hanging;
     const CrackHistory<dim>                history;
     double                                 cracks_of; // representative time of the cracks in K
     std::vector<CrackGeometry<dim>>        cracks;
@@ -268,17 +251,14 @@ namespace PeriDeal
     std::vector<std::pair<unsigned int, double>>
            convection_sums; // coefficient times area of each unknown that has some
     double free_loads = 0.; // the sum of constant_loads that are not prescribed unknowns'
-    std::vector<HangingNode>          hanging;             // likewise
-    std::vector<unsigned int>         held;                // both: unknowns that are not free
-    bool                              any_hanging = false; // on any process
-    dealii::AffineConstraints<double> constraints;         // of hanging nodes
-    std::vector<bool>                 cut;                 // by active cell index
-    Vector                            crack_factors;
-    bool                              loads_vary = false, any_prescribed = false;
-    double                            gershgorin = 0.;
-    mutable Spectrum                  bounds;
-    mutable Vector                    noise_values; // of noise()
-    std::unique_ptr<CellSearch<dim>>  search;       // made for the first event
+    std::vector<unsigned int>        held; // with hanging nodes: not free
+    std::vector<bool>                cut;  // by active cell index
+    Vector                           crack_factors;
+    bool                             loads_vary = false, any_prescribed = false;
+    double                           gershgorin = 0.;
+    mutable Spectrum                 bounds;
+    mutable Vector                   noise_values; // of noise()
+    std::unique_ptr<CellSearch<dim>> search;       // made for the first event
     mutable bool pairs_stiffer = false; // some cut cell's pairs conduct more than the cell
   };
 } // namespace PeriDeal
