@@ -8,7 +8,6 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/user_error.h>
-#include <perideal/mesh/cut_cells.h>
 #include <perideal/operators/spectrum.h>
 
 #include <algorithm>
@@ -30,20 +29,7 @@ namespace PeriDeal
   template <int dim>
   const std::vector<bool> &ElasticElements<dim>::cut_cells() const
   {
-    return cut;
-  }
-
-
-  template <int dim>
-  void ElasticElements<dim>::find_cut_cells()
-  {
-    cut.assign(dofs.get_triangulation().n_active_cells(), false);
-    if (scene.cracks.mesh == CrackMesh::faces)
-      return;
-    const auto cracks = make_open_geometries(scene.cracks.pieces(0.));
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (!cell->is_artificial())
-        cut[cell->active_cell_index()] = is_removed(cell, cracks);
+    return cut_by_cracks.flags();
   }
 
 
@@ -101,7 +87,7 @@ namespace PeriDeal
         data.stiffness.vmult(data.thermal, free);
         data.thermal_energy = 0.5 * (free * data.thermal);
       }
-    double factor = cut[cell->active_cell_index()] ? 0. : 1.;
+    double factor = cut_by_cracks.is_cut(cell) ? 0. : 1.;
     if (crack_factors.size() > 0)
       {
         double sum = 0.;
@@ -221,7 +207,7 @@ namespace PeriDeal
     CellData &data = *cell_data;
     std::vector<typename ElasticCoupling<dim>::Bond> bonds;
     for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && cut[cell->active_cell_index()])
+      if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
         {
           cell->get_dof_indices(data.indices);
           for (const auto i : data.indices)
@@ -336,7 +322,6 @@ namespace PeriDeal
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
   template const ElasticCoupling<dim> &ElasticElements<dim>::bonds() const;                        \
   template const std::vector<bool>    &ElasticElements<dim>::cut_cells() const;                    \
-  template void                        ElasticElements<dim>::find_cut_cells();                     \
   template void ElasticElements<dim>::change_cell(const Cell &, CellData &) const;                 \
   template void ElasticElements<dim>::add_bond_pattern(TrilinosWrappers::SparsityPattern &) const; \
   template void ElasticElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &, const bool)      \

@@ -29,6 +29,11 @@ namespace PeriDeal
     : dofs(dof_handler)
     , scene(scene)
     , coupling(std::move(given_coupling))
+    , cut_by_cracks(dofs,
+                    {scene.cracks.mesh == CrackMesh::faces,
+                     true,
+                     scene.cracks.contact_conductance,
+                     [&scene] { return scene.horizon(); }})
     , condition_faces(dofs, scene.boundary_conditions)
   {
     IndexSet relevant;
@@ -50,7 +55,7 @@ namespace PeriDeal
     initialize_vector(scratch);
     initialize_vector(constant_loads);
     initialize_vector(thermal_loads);
-    find_cut_cells();
+    cut_by_cracks.set(scene.cracks.pieces(0.), 0.);
     assemble();
     if (!loads_vary)
       assemble_loads(constant_loads, 0.);

@@ -9,8 +9,6 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/user_error.h>
-#include <perideal/laws/crack_conductance.h>
-#include <perideal/mesh/cut_cells.h>
 #include <perideal/operators/fem_operator.h>
 
 #include <algorithm>
@@ -22,20 +20,6 @@
 namespace PeriDeal
 {
   using namespace dealii;
-
-  template <int dim>
-  void FEMOperator<dim>::find_cut_cells()
-  {
-    cut.assign(dofs.get_triangulation().n_active_cells(), false);
-    if (scene.cracks.mesh == CrackMesh::faces)
-      return;
-    const bool removes = scene.cracks.mesh == CrackMesh::removed;
-    const auto open    = make_open_geometries(history.pieces(cracks_of));
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (!cell->is_artificial())
-        cut[cell->active_cell_index()] = removes ? is_removed(cell, open) : is_cut(cell, cracks);
-  }
-
 
   template <int dim>
   void FEMOperator<dim>::check_material() const
@@ -64,67 +48,6 @@ namespace PeriDeal
               }
           }
     throw_on_all_if_any(dofs.get_communicator(), message);
-  }
-
-
-  template <int dim>
-  double FEMOperator<dim>::kept_fraction(const Cell                                &cell,
-                                         const unsigned int                         a,
-                                         const unsigned int                         b,
-                                         std::vector<std::pair<unsigned int, int>> *crossed) const
-  {
-    const Tensor<1, dim> xi      = cell->vertex(b) - cell->vertex(a);
-    const bool           contact = scene.cracks.contact_conductance >= 0.;
-    double               kept    = 1.;
-    for (std::size_t k = 0; k < cracks.size();)
-      {
-        double fraction = 1.; // several pieces of a crack between two vertices are one crossing
-        const unsigned int crack = cracks[k].crack;
-        bool               seen  = false;
-        for (; k < cracks.size() && cracks[k].crack == crack; ++k)
-          {
-            if (!cracks[k].separates(cell->vertex(a), cell->vertex(b)))
-              continue;
-            if (crossed != nullptr && !seen)
-              crossed->emplace_back(crack,
-                                    cracks[k].signed_distance(cell->vertex(a)) > 0. ? 1 : -1);
-            seen = true;
-            if (!contact && (transmission == 0. || transmission >= 1.)) // needs no horizon
-              {
-                fraction = std::min(fraction, transmission);
-                continue;
-              }
-            const double kappa = center_conductivity(cell);
-            const double H     = contact ? scene.cracks.contact_conductance :
-                                           contact_conductance_of_transmission(
-                                         transmission,
-                                         kappa,
-                                         scene.horizon(),
-                                         scene.horizon() / cell->minimum_vertex_distance());
-            fraction =
-              std::min(fraction, contact_fraction(H, std::abs(xi * cracks[k].normal()), kappa));
-          }
-        kept *= fraction;
-      }
-    return kept;
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::keep_unseparated_pairs(const Cell &cell, CellData &data) const
-  {
-    FullMatrix<double> original = data.stiffness;
-    data.stiffness              = 0.;
-    for (const unsigned int a : cell->vertex_indices())
-      for (unsigned int b = 0; b < a; ++b)
-        {
-          const double w = std::max(0., -original(a, b)) * kept_fraction(cell, a, b, nullptr);
-          pairs_stiffer  = pairs_stiffer || original(a, b) > 1e-12 * original(a, a);
-          data.stiffness(a, b) -= w;
-          data.stiffness(b, a) -= w;
-          data.stiffness(a, a) += w;
-          data.stiffness(b, b) += w;
-        }
   }
 
 
@@ -166,13 +89,11 @@ namespace PeriDeal
     assemble_whole_cell(cell, data, with_bonds);
     data.convection      = 0.;
     const unsigned int n = data.indices.size();
-    if (cut[cell->active_cell_index()])
-      {
-        if (scene.cracks.mesh == CrackMesh::removed)
-          data.stiffness = 0.;
-        else
-          keep_unseparated_pairs(cell, data);
-      }
+    if (cut_by_cracks.is_cut(cell))
+      cut_by_cracks.cut_matrix(
+        cell,
+        [&] { return center_conductivity(cell); },
+        data.stiffness);
     if (coupling && with_bonds)
       coupling->finish_cell(cell, data.stiffness);
     for (const unsigned int f : cell->face_indices())
@@ -221,7 +142,7 @@ namespace PeriDeal
     CellData &data   = *cell_data;
     Vector   &marked = factors.marked, &trace = factors.trace, &expected = factors.expected;
     for (const Cell &cell : cells)
-      if (cell->is_locally_owned() && cut[cell->active_cell_index()])
+      if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
         {
           cell->get_dof_indices(data.indices);
           for (const auto i : data.indices)
@@ -470,13 +391,7 @@ namespace PeriDeal
                                                            const double,                \
                                                            Balance &) const;            \
   template struct FEMOperator<dim>::CellData;                                           \
-  template void   FEMOperator<dim>::fill();                                             \
-  template void   FEMOperator<dim>::find_cut_cells();                                   \
-  template double FEMOperator<dim>::kept_fraction(                                      \
-    const typename DoFHandler<dim>::active_cell_iterator &,                             \
-    const unsigned int,                                                                 \
-    const unsigned int,                                                                 \
-    std::vector<std::pair<unsigned int, int>> *) const;                                 \
+  template void FEMOperator<dim>::fill();                                               \
   template bool FEMOperator<dim>::assemble_whole_cell(                                  \
     const typename DoFHandler<dim>::active_cell_iterator &,                             \
     CellData &,                                                                         \

@@ -29,14 +29,17 @@ namespace PeriDeal
     , hanging(dofs, *new_vector().get_partitioner())
     , history(scene.crack_history())
     , cracks_of(history.representative(start))
-    , cracks(make_crack_geometries(history.pieces(cracks_of)))
-    , transmission(history.transmission(cracks_of))
+    , cut_by_cracks(dofs,
+                    {scene.cracks.mesh == CrackMesh::faces,
+                     scene.cracks.mesh == CrackMesh::removed,
+                     scene.cracks.contact_conductance,
+                     [&scene] { return scene.horizon(); }})
     , condition_faces(dofs, scene.boundary_conditions)
   {
     if (this->coupling && start > 0.)
       this->coupling->set_cracks_of(cracks_of);
     check_material();
-    find_cut_cells();
+    cut_by_cracks.set(history.pieces(cracks_of), history.transmission(cracks_of));
     find_prescribed();
     bonds_apart = this->coupling && this->coupling->has_form();
     assemble();
@@ -478,7 +481,7 @@ namespace PeriDeal
   template <int dim>
   const std::vector<bool> &FEMOperator<dim>::cut_cells() const
   {
-    return cut;
+    return cut_by_cracks.flags();
   }
 
   template <int dim>

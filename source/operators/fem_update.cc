@@ -7,7 +7,6 @@
 
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
-#include <perideal/mesh/cut_cells.h>
 #include <perideal/operators/fem_operator.h>
 #include <perideal/operators/spectrum.h>
 
@@ -131,12 +130,7 @@ namespace PeriDeal
         coupling->set_cracks_of(time);
         recount_bonds = true;
       }
-    cracks             = make_crack_geometries(history.pieces(time));
-    transmission       = history.transmission(time);
-    const bool removes = scene.cracks.mesh == CrackMesh::removed;
-    const auto open    = make_open_geometries(history.pieces(time));
-    for (const Cell &cell : near)
-      cut[cell->active_cell_index()] = removes ? is_removed(cell, open) : is_cut(cell, cracks);
+    cut_by_cracks.set(near, history.pieces(time), history.transmission(time));
     if (scaled)
       find_crack_factors(near, owned_unknowns_of(cells_near(cuts, joins, 0.)), event->factors);
     const auto &layout = *capacity.get_partitioner();
@@ -200,9 +194,8 @@ namespace PeriDeal
           stiffness_diagonal.local_element(i) = 1.;
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
-    // Pairs of a cell with positive entries off the diagonal (of unequal sides) conduct more than
-    // it did as a whole.
-    const bool stiffer = Utilities::MPI::max(pairs_stiffer ? 1 : 0, dofs.get_communicator()) > 0;
+    const bool stiffer =
+      Utilities::MPI::max(cut_by_cracks.pairs_are_stiffer() ? 1 : 0, dofs.get_communicator()) > 0;
     if (stiffer || zone_moves || crack_factors.size() > 0 || history.may_close())
       {
         // Rates can have grown. Where cells are only cut, the old bounds still hold.
@@ -288,7 +281,7 @@ namespace PeriDeal
     std::vector<std::pair<unsigned int, int>> crossed;
     u.update_ghost_values();
     for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && cut[cell->active_cell_index()])
+      if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
         {
           assemble_cell(cell, data);
           scale_beside_cracks(data);
@@ -296,7 +289,12 @@ namespace PeriDeal
             for (unsigned int b = 0; b < a; ++b)
               {
                 crossed.clear();
-                kept_fraction(cell, a, b, &crossed);
+                cut_by_cracks.kept_fraction(
+                  cell,
+                  a,
+                  b,
+                  [&] { return center_conductivity(cell); },
+                  &crossed);
                 for (const auto &[crack, side] : crossed)
                   balance.cracks[crack] +=
                     side * -data.stiffness(a, b) * (u(data.indices[b]) - u(data.indices[a]));

@@ -8,6 +8,7 @@
 
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/condition_faces.h>
+#include <perideal/operators/cut_cells.h>
 #include <perideal/operators/displacement_conditions.h>
 #include <perideal/operators/elastic_coupling.h>
 #include <perideal/operators/elastic_operator.h>
@@ -119,7 +120,6 @@ namespace PeriDeal
     void   assemble();
     void   assemble_cell(CellData &data) const;
     void   change_cell(const Cell &cell, CellData &data) const;
-    void   find_cut_cells();
     void   find_crack_factors();
     void   add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
     void   add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
@@ -148,6 +148,7 @@ namespace PeriDeal
     const dealii::DoFHandler<dim>        &dofs;
     const Scene<dim>                     &scene;
     std::unique_ptr<ElasticCoupling<dim>> coupling; // null: finite elements alone
+    CutCells<dim>                         cut_by_cracks;
     ConditionFaces<dim>                   condition_faces;
     std::vector<PartUnknown<dim>>         part_unknowns; // of regions and points
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> nodes, unknowns;
@@ -156,8 +157,7 @@ namespace PeriDeal
     dealii::TrilinosWrappers::SparseMatrix                     stiffness;
     std::unique_ptr<CellData>                                  cell_data;
     Vector                                                     mass, volumes, stiffness_diagonal;
-    std::vector<bool>                                          cut; // by active cell index
-    Vector             crack_factors;                               // of nodes; empty: none
+    Vector             crack_factors; // of nodes; empty: none
     unsigned long long n_bonds        = 0;
     double             thermal_energy = 0.; // of a body that is held everywhere
     bool               loads_vary     = false;

@@ -10,9 +10,9 @@
 #include <perideal/mesh/cell_search.h>
 #include <perideal/operators/condition_faces.h>
 #include <perideal/operators/coupling.h>
+#include <perideal/operators/cut_cells.h>
 #include <perideal/operators/hanging_nodes.h>
 #include <perideal/operators/operator.h>
-#include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/scene.h>
 
 #include <functional>
@@ -177,11 +177,6 @@ namespace PeriDeal
                              Vector                          &trace) const;
     void     add_bond_heat(const Vector &u, Balance &balance) const;
     void     count_bonds() const;
-    void     find_cut_cells();
-    double   kept_fraction(const Cell                                &cell,
-                           const unsigned int                         a,
-                           const unsigned int                         b,
-                           std::vector<std::pair<unsigned int, int>> *crossed) const;
     void     scale_beside_cracks(CellData &data) const;
     void     update_rows(const bool zone_moves);
     void     add_crack_heat(const Vector &u, Balance &balance) const;
@@ -199,7 +194,6 @@ namespace PeriDeal
                                          const double                                 wide) const;
     std::vector<unsigned int> owned_unknowns_of(const std::vector<Cell> &cells) const;
     void                      prepare_event();
-    void                      keep_unseparated_pairs(const Cell &cell, CellData &data) const;
     void                      assemble_loads(Vector &loads, const double t) const;
     void                      find_convection_sums();
 
@@ -231,8 +225,7 @@ namespace PeriDeal
     const HangingNodes<dim>                hanging;
     const CrackHistory<dim>                history;
     double                                 cracks_of; // representative time of the cracks in K
-    std::vector<CrackGeometry<dim>>        cracks;
-    double                                 transmission;
+    CutCells<dim>                          cut_by_cracks;
     dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
     Vector                                 capacity, stiffness_diagonal, constant_loads;
     mutable Vector                         scratch;
@@ -252,13 +245,11 @@ namespace PeriDeal
            convection_sums; // coefficient times area of each unknown that has some
     double free_loads = 0.; // the sum of constant_loads that are not prescribed unknowns'
     std::vector<unsigned int>        held; // with hanging nodes: not free
-    std::vector<bool>                cut;  // by active cell index
     Vector                           crack_factors;
     bool                             loads_vary = false, any_prescribed = false;
     double                           gershgorin = 0.;
     mutable Spectrum                 bounds;
     mutable Vector                   noise_values; // of noise()
     std::unique_ptr<CellSearch<dim>> search;       // made for the first event
-    mutable bool pairs_stiffer = false; // some cut cell's pairs conduct more than the cell
   };
 } // namespace PeriDeal
