@@ -125,82 +125,54 @@ namespace PeriDeal
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial())
         cells.push_back(cell);
-    initialize_vector(crack_factors);
-    std::vector<unsigned int> nodes(crack_factors.locally_owned_size());
+    const Vector layout = new_vector();
+    crack_factors.start(layout);
+    std::vector<unsigned int> nodes(layout.locally_owned_size());
     std::iota(nodes.begin(), nodes.end(), 0);
-    FactorData factors(crack_factors);
-    find_crack_factors(cells, nodes, factors);
+    CrackSideFactors::Sums sums(layout);
+    find_crack_factors(cells, nodes, sums);
   }
 
 
   template <int dim>
   void FEMOperator<dim>::find_crack_factors(const std::vector<Cell>         &cells,
                                             const std::vector<unsigned int> &nodes,
-                                            FactorData                      &factors)
+                                            CrackSideFactors::Sums          &sums)
   {
-    // Crack-side scaling: g_i = d kappa V_i / (-(1/2) sum_j K_ij r_ij^2) on vertices of cut cells.
-    CellData &data   = *cell_data;
-    Vector   &marked = factors.marked, &trace = factors.trace, &expected = factors.expected;
+    CellData &data = *cell_data;
     for (const Cell &cell : cells)
       if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
         {
           cell->get_dof_indices(data.indices);
-          for (const auto i : data.indices)
-            marked(i) = 1.;
+          sums.mark(data.indices);
         }
-    marked.compress(VectorOperation::max);
+    sums.marked.compress(VectorOperation::max);
     if (coupling)
-      mark_broken_bonds(nodes, marked);
-    marked.update_ghost_values();
+      mark_broken_bonds(nodes, sums);
+    sums.marked.update_ghost_values();
     for (const Cell &cell : cells)
       if (cell->is_locally_owned())
         {
           cell->get_dof_indices(data.indices);
-          if (std::none_of(data.indices.begin(), data.indices.end(), [&](const auto i) {
-                return marked(i) > 0.;
-              }))
+          if (!sums.any_marked(data.indices))
             continue;
           assemble_cell(cell, data);
-          const double share =
-            dim * center_conductivity(cell) * cell->measure() / data.indices.size();
-          for (unsigned int a = 0; a < data.indices.size(); ++a)
-            {
-              expected(data.indices[a]) += share;
-              for (unsigned int b = 0; b < data.indices.size(); ++b)
-                trace(data.indices[a]) -=
-                  0.5 * data.stiffness(a, b) * (cell->vertex(b) - cell->vertex(a)).norm_square();
-            }
+          sums.add(cell, data.indices, data.stiffness, dim * center_conductivity(cell));
         }
-    trace.compress(VectorOperation::add);
-    expected.compress(VectorOperation::add);
+    sums.compress();
     if (coupling)
-      add_bond_traces(nodes, marked, trace);
-    for (const unsigned int i : nodes)
-      crack_factors.local_element(i) =
-        marked.local_element(i) > 0. && trace.local_element(i) > 0. ?
-          std::clamp(expected.local_element(i) / trace.local_element(i), 0.5, 4.) :
-          1.;
-    crack_factors.update_ghost_values();
-    const std::vector<unsigned int> around = owned_unknowns_of(cells);
-    for (Vector *v : {&marked, &trace, &expected})
-      {
-        v->zero_out_ghost_values();
-        for (const auto *list : {&around, &nodes})
-          for (const unsigned int i : *list)
-            v->local_element(i) = 0.;
-      }
+      add_bond_traces(nodes, sums);
+    crack_factors.find(nodes, sums);
+    sums.clear(owned_unknowns_of(cells));
+    sums.clear(nodes);
   }
 
 
   template <int dim>
   void FEMOperator<dim>::scale_beside_cracks(CellData &data) const
   {
-    if (crack_factors.size() == 0)
-      return;
-    double mean = 0.;
-    for (const auto i : data.indices)
-      mean += crack_factors(i) / data.indices.size();
-    data.stiffness *= mean;
+    if (!crack_factors.empty())
+      data.stiffness *= crack_factors.of_cell(data.indices);
   }
 
 
@@ -403,7 +375,7 @@ namespace PeriDeal
   template void FEMOperator<dim>::find_crack_factors();                                 \
   template void FEMOperator<dim>::find_crack_factors(const std::vector<Cell> &,         \
                                                      const std::vector<unsigned int> &, \
-                                                     FactorData &);                     \
+                                                     CrackSideFactors::Sums &);         \
   template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                \
   template void FEMOperator<dim>::check_material() const;                               \
   template void FEMOperator<dim>::assemble();                                           \

@@ -114,11 +114,11 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::set_form_factors()
   {
-    if (crack_factors.size() == 0)
+    if (crack_factors.empty())
       return;
     std::vector<double> factors(coupling->families().nodes().n_local());
     for (unsigned int i = 0; i < factors.size(); ++i)
-      factors[i] = crack_factors.local_element(i);
+      factors[i] = crack_factors.at(i);
     coupling->set_form_factors(std::move(factors));
   }
 

@@ -43,20 +43,6 @@ namespace PeriDeal
   };
 
 
-  /** Memory of find_crack_factors(). Zero outside of it. */
-  template <int dim>
-  struct FEMOperator<dim>::FactorData
-  {
-    explicit FactorData(const Vector &layout)
-      : marked(layout.get_partitioner())
-      , trace(layout.get_partitioner())
-      , expected(layout.get_partitioner())
-    {}
-
-    Vector marked, trace, expected;
-  };
-
-
   /** Memory of update(), so that an event costs what changes and not what there is. */
   template <int dim>
   struct FEMOperator<dim>::EventData
@@ -68,9 +54,9 @@ namespace PeriDeal
       , bound(layout)
     {}
 
-    RowSet     touched, held; // rows of K that the event changes; that are not free
-    FactorData factors;
-    LocalBound bound;
+    RowSet                 touched, held; // rows of K that the event changes; that are not free
+    CrackSideFactors::Sums factors;
+    LocalBound             bound;
   };
 
 

@@ -64,11 +64,7 @@ namespace PeriDeal
         for (const auto &bond : bonds)
           if (bond.weight != 0.)
             rows[k].emplace_back(bond.neighbor,
-                                 crack_factors.size() == 0 ?
-                                   bond.weight :
-                                   0.5 * bond.weight *
-                                     (crack_factors.local_element(nodes[k]) +
-                                      crack_factors.local_element(bond.neighbor)));
+                                 bond.weight * crack_factors.of_bond(nodes[k], bond.neighbor));
       }
     return rows;
   }
@@ -127,7 +123,7 @@ namespace PeriDeal
 
   template <int dim>
   void FEMOperator<dim>::mark_broken_bonds(const std::vector<unsigned int> &nodes,
-                                           Vector                          &marked) const
+                                           CrackSideFactors::Sums          &sums) const
   {
     std::vector<typename Coupling<dim>::Bond> bonds;
     const Families<dim>                      &families = coupling->families();
@@ -136,23 +132,22 @@ namespace PeriDeal
         {
           coupling->bonds_of(i, bonds);
           if (std::any_of(bonds.begin(), bonds.end(), [](const auto &bond) { return bond.cut; }))
-            marked.local_element(i) = 1.;
+            sums.marked.local_element(i) = 1.;
         }
   }
 
 
   template <int dim>
   void FEMOperator<dim>::add_bond_traces(const std::vector<unsigned int> &nodes,
-                                         const Vector                    &marked,
-                                         Vector                          &trace) const
+                                         CrackSideFactors::Sums          &sums) const
   {
     std::vector<typename Coupling<dim>::Bond> bonds;
     for (const unsigned int i : nodes)
-      if (marked.local_element(i) > 0.)
+      if (sums.marked.local_element(i) > 0.)
         {
           coupling->bonds_of(i, bonds);
           for (const auto &bond : bonds)
-            trace.local_element(i) +=
+            sums.trace.local_element(i) +=
               0.5 * bond.weight *
               coupling->families().neighbors().bond_vector(i, bond.neighbor).norm_square();
         }
@@ -173,10 +168,7 @@ namespace PeriDeal
           for (const auto &bond : bonds)
             if (bond.cut && bond.weight > 0.)
               {
-                const double factor = crack_factors.size() == 0 ?
-                                        1. :
-                                        0.5 * (crack_factors.local_element(i) +
-                                               crack_factors.local_element(bond.neighbor));
+                const double factor = crack_factors.of_bond(i, bond.neighbor);
                 families.cracks().crossed_cracks(i, bond.neighbor, crossed);
                 for (const auto &[crack, side] : crossed) // each bond is seen from both of its ends
                   balance.cracks[crack] += 0.5 * side * factor * bond.weight *
@@ -298,11 +290,10 @@ namespace PeriDeal
   template void FEMOperator<dim>::add_bonds(const std::vector<unsigned int> &, const BondRows &); \
   template void FEMOperator<dim>::change_bonds(const std::vector<unsigned int> &,                 \
                                                const BondRows &);                                 \
-  template void FEMOperator<dim>::mark_broken_bonds(const std::vector<unsigned int> &, Vector &)  \
-    const;                                                                                        \
+  template void FEMOperator<dim>::mark_broken_bonds(const std::vector<unsigned int> &,            \
+                                                    CrackSideFactors::Sums &) const;              \
   template void FEMOperator<dim>::add_bond_traces(const std::vector<unsigned int> &,              \
-                                                  const Vector &,                                 \
-                                                  Vector &) const;                                \
+                                                  CrackSideFactors::Sums &) const;                \
   template void FEMOperator<dim>::add_bond_heat(const Vector &, Balance &) const;                 \
   template void FEMOperator<dim>::visit_conductances(                                             \
     const std::function<void(const unsigned int, const unsigned int, const double)> &) const;     \

@@ -103,7 +103,7 @@ namespace PeriDeal
                    dofs.get_communicator());
     cracks_of           = time;
     CellData    &data   = *cell_data;
-    const bool   scaled = crack_factors.size() > 0;
+    const bool   scaled = !crack_factors.empty();
     const double reach  = coupling ? coupling->families().weights().reach() : 0.;
     // The factors of crack-side scaling change at the vertices of the cells whose own matrix does,
     // and of all cells around these.
@@ -196,7 +196,7 @@ namespace PeriDeal
     throw_on_all_if_any(dofs.get_communicator(), message);
     const bool stiffer =
       Utilities::MPI::max(cut_by_cracks.pairs_are_stiffer() ? 1 : 0, dofs.get_communicator()) > 0;
-    if (stiffer || zone_moves || crack_factors.size() > 0 || history.may_close())
+    if (stiffer || zone_moves || !crack_factors.empty() || history.may_close())
       {
         // Rates can have grown. Where cells are only cut, the old bounds still hold.
         gershgorin = std::max(gershgorin, Utilities::MPI::max(bound, dofs.get_communicator()));
@@ -241,7 +241,7 @@ namespace PeriDeal
     // Bonds change the cells that they pass.
     const double      reach = coupling ? coupling->families().weights().reach() : 0.;
     std::vector<Cell> near;
-    search->find(cuts, wide + (crack_factors.size() > 0 ? reach : 0.), near);
+    search->find(cuts, wide + (!crack_factors.empty() ? reach : 0.), near);
     search->find(joins, wide + reach, near);
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());

@@ -8,6 +8,7 @@
 
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/condition_faces.h>
+#include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/cut_cells.h>
 #include <perideal/operators/displacement_conditions.h>
 #include <perideal/operators/elastic_coupling.h>
@@ -133,7 +134,6 @@ namespace PeriDeal
     bool   any_thermal() const;
     double thermal_strain_at(const unsigned int node) const;
     void   count_bonds(const double n_in_families);
-    double bond_factor(const unsigned int i, const unsigned int j) const;
     double temperature_change_at(const unsigned int node) const;
     double thermal_strain(const dealii::Point<dim> &p, const double temperature_change) const;
     void   add_thermal(const CellData &data, double &energy);
@@ -157,12 +157,12 @@ namespace PeriDeal
     dealii::TrilinosWrappers::SparseMatrix                     stiffness;
     std::unique_ptr<CellData>                                  cell_data;
     Vector                                                     mass, volumes, stiffness_diagonal;
-    Vector             crack_factors; // of nodes; empty: none
-    unsigned long long n_bonds        = 0;
-    double             thermal_energy = 0.; // of a body that is held everywhere
-    bool               loads_vary     = false;
-    Vector             constant_loads, thermal_loads;
-    mutable Vector     scratch;
+    CrackSideFactors                                           crack_factors;
+    unsigned long long                                         n_bonds = 0;
+    double         thermal_energy = 0.; // of a body that is held everywhere
+    bool           loads_vary     = false;
+    Vector         constant_loads, thermal_loads;
+    mutable Vector scratch;
   };
 
 

@@ -10,6 +10,7 @@
 #include <perideal/mesh/cell_search.h>
 #include <perideal/operators/condition_faces.h>
 #include <perideal/operators/coupling.h>
+#include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/cut_cells.h>
 #include <perideal/operators/hanging_nodes.h>
 #include <perideal/operators/operator.h>
@@ -138,7 +139,6 @@ namespace PeriDeal
     };
 
     struct CellData;
-    struct FactorData;
     struct EventData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
@@ -171,10 +171,10 @@ namespace PeriDeal
     void     add_bonds(const std::vector<unsigned int> &nodes, const BondRows &rows);
     void     change_bonds(const std::vector<unsigned int> &nodes, const BondRows &old);
     void     change_form(const std::vector<unsigned int> &nodes);
-    void     mark_broken_bonds(const std::vector<unsigned int> &nodes, Vector &marked) const;
+    void     mark_broken_bonds(const std::vector<unsigned int> &nodes,
+                               CrackSideFactors::Sums          &sums) const;
     void     add_bond_traces(const std::vector<unsigned int> &nodes,
-                             const Vector                    &marked,
-                             Vector                          &trace) const;
+                             CrackSideFactors::Sums          &sums) const;
     void     add_bond_heat(const Vector &u, Balance &balance) const;
     void     count_bonds() const;
     void     scale_beside_cracks(CellData &data) const;
@@ -211,7 +211,7 @@ namespace PeriDeal
     void for_each_part_flux(const Visit &visit) const;
     void find_crack_factors(const std::vector<Cell>         &cells,
                             const std::vector<unsigned int> &nodes,
-                            FactorData                      &factors);
+                            CrackSideFactors::Sums          &sums);
     void find_gershgorin();
     void mask(Vector &y, const double value = 0.) const;
     void mask(Vector            &y,
@@ -245,7 +245,7 @@ namespace PeriDeal
            convection_sums; // coefficient times area of each unknown that has some
     double free_loads = 0.; // the sum of constant_loads that are not prescribed unknowns'
     std::vector<unsigned int>        held; // with hanging nodes: not free
-    Vector                           crack_factors;
+    CrackSideFactors                 crack_factors;
     bool                             loads_vary = false, any_prescribed = false;
     double                           gershgorin = 0.;
     mutable Spectrum                 bounds;
