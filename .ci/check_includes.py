@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Check the order of the house: who includes whom, how long files and comments are, and that each file names its licence.
+"""Check the order of the house: who includes whom, who knows no physics, how long files and comments are, and that each file names its licence.
 
 Prints one line for each finding and ends with exit status 1 if there is any.
 """
@@ -15,7 +15,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # From the bottom up. A room may include itself and the rooms of lower storeys; rooms of one storey
 # do not know each other.
 STOREYS = [["base"], ["scene"], ["mesh", "laws"], ["bonds"], ["operators"], ["solvers", "analysis"], ["output"],
-           ["simulation"], ["study"]]
+           ["problems"], ["simulation"], ["study"]]
 STOREY = {room: number for number, rooms in enumerate(STOREYS) for room in rooms}
 
 MAX_HEADER, MAX_SOURCE = 300, 500
@@ -26,6 +26,10 @@ COPYRIGHT = "Copyright (C) 2026 the PeriDeal authors"
 # Laws are functions of numbers: no mesh, no processes, no parameters.
 LAWS_DEAL_II = {"deal.II/base/point.h", "deal.II/base/tensor.h", "deal.II/base/symmetric_tensor.h",
                 "deal.II/base/exceptions.h", "deal.II/base/numbers.h"}
+
+# Rooms that are to know neither which physics they serve nor its words: identifiers and strings, comments apart.
+WITHOUT_PHYSICS = ("simulation", "output")
+PHYSICS = re.compile(r"Physics::|heat|thermal|elastic|displacement|temperature|moisture|electric", re.I)
 
 # The start of a comment, or a string, in which there is none.
 COMMENT = re.compile(r"""//|/\*|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])+'""")
@@ -111,6 +115,17 @@ def check_comments(path, lines):
             yield f"{path}:{number}: the comment ends at column {len(line)}; at most {MAX_COMMENT}"
 
 
+def check_words(path, lines):
+    """Rooms without physics name none."""
+    if room_of(path) not in WITHOUT_PHYSICS:
+        return
+    text = re.sub(r"/\*.*?\*/", lambda match: "\n" * match.group().count("\n"), "\n".join(lines), flags=re.S)
+    for number, line in enumerate(text.split("\n"), 1):
+        found = PHYSICS.search(re.sub(r"//.*", "", line))
+        if found:
+            yield f"{path}:{number}: '{found.group()}' is a word of a physics, which {room_of(path)} must not know"
+
+
 def check_room(path):
     room = room_of(path)
     if room is not None and room not in STOREY:
@@ -145,13 +160,14 @@ def main():
                 room_findings = list(check_room(path))
                 findings += room_findings or check_includes(path, lines)
                 findings += check_comments(path, lines)
+                findings += check_words(path, lines)
     findings += check_lists()
     for finding in findings:
         print(finding)
     if findings:
         print(f"{len(findings)} findings in {n_files} files (.ci/check_includes.py).")
         return 1
-    print(f"Include directions, lengths, comments and licence headers: {n_files} files in order.")
+    print(f"Include directions, words, lengths, comments and licence headers: {n_files} files in order.")
     return 0
 
 

@@ -17,7 +17,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 # Rooms that are to know neither which physics nor which model they serve.
 WITHOUT_PHYSICS = ("source/simulation", "include/perideal/simulation", "source/output", "include/perideal/output")
-PHYSICS = re.compile(r"physics|heat|thermal|elastic|displacement|temperature|moisture", re.I)
+PHYSICS = re.compile(r"Physics::|heat|thermal|elastic|displacement|temperature|moisture", re.I)
 COMPARISON = re.compile(r"[=!]=\s*([A-Z]\w+)::[a-z]\w*|\bcase\s+([A-Z]\w+)::")
 
 
@@ -95,11 +95,13 @@ def largest_classes():
 def comparisons():
     """{room: {enumeration: number}} of the sources."""
     found = {}
+    enumerations = {name for path in files("source/**/*.cc", "source/**/*.h", "include/**/*.h") for name in re.findall(r"\benum(?: class)? (\w+)", code_of(path))}
     for path in files("source/**/*.cc", "source/**/*.h"):
         room = found.setdefault(path.split("/")[1], {})
         for match in COMPARISON.finditer(code_of(path)):
             name = match.group(1) or match.group(2)
-            room[name] = room.get(name, 0) + 1
+            if name in enumerations:
+                room[name] = room.get(name, 0) + 1
     return found
 
 

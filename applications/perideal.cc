@@ -8,7 +8,6 @@
 #include <perideal/base/user_error.h>
 #include <perideal/output/field_writer.h>
 #include <perideal/scene/lists.h>
-#include <perideal/simulation/elastic_simulation.h>
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
 #include <perideal/study/study.h>
@@ -60,16 +59,11 @@ namespace
     parse_scene(text, scene);
     if (action == Action::estimate || (action == Action::check && is_large(scene, communicator)))
       return print_estimate(scene, communicator, quiet);
-    const auto compute = [&](auto &&simulation) {
-      if (action == Action::check)
-        simulation.dry_run();
-      else
-        simulation.run();
-    };
-    if (scene.general.physics == Physics::elasticity)
-      compute(ElasticSimulation<dim>(scene, text, communicator, quiet));
+    Simulation<dim> simulation(scene, text, communicator, quiet);
+    if (action == Action::check)
+      simulation.dry_run();
     else
-      compute(Simulation<dim>(scene, text, communicator, quiet));
+      simulation.run();
   }
 
 

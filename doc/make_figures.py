@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Make the pictures of the README and of doc/ from real runs, and the README's table of scenes.
+"""Make the pictures of the README and of doc/ from real runs, and the tables of scenes of doc/scenes.md and the README.
 
     python3 doc/make_figures.py [--program PERIDEAL] [--all] [SCENE.prm ...]
     python3 doc/make_figures.py --work-precision
@@ -9,8 +9,8 @@
 Runs each scene (all below prm/ but those of prm/failures and those as published, if none is named), draws its report, and keeps of it
 doc/figures/NAME.png: the last temperature (displacement, stress), scaled to a thumbnail. For prm/quick_start.prm the
 figure is kept in full width too, as doc/figures/quick_start_wide.png. A picture that is newer
-than its scene is left as it is, unless --all is given. The table names every scene below prm/ with
-its title and the first sentence of its comment, up to a colon or bracket; --table writes the table only.
+than its scene is left as it is, unless --all is given. The tables name every scene below prm/ (six of them in the README) with
+its title and the first sentence of its comment, up to a colon or bracket; --table writes the tables only.
 --work-precision makes the charts of accuracy against cost of doc/coupling.md instead, and prints what
 `perideal study work_precision` says.
 """
@@ -35,6 +35,8 @@ CHARTS = (("prm/coupling/insulated_crack.prm",
            ["-s", "Time/Steady=true", "--cells", LADDER, "--reference", "240, 240 | 480, 480 | 960, 960"],
            {"error_over_work": "work_precision_insulated_crack", "error_over_wall_time": "work_precision_insulated_crack_time"}),
           ("prm/coupling/oblique_crack.prm", ["--cells", LADDER], {"error_over_work": "work_precision_oblique_crack"}))
+OF_README = ("quick_start.prm", "coupling/growing_cracks.prm", "elasticity/coupled_crack.prm", "elasticity/thermal_stress.prm",
+             "fracture/branching_crack.prm", "papers/le_2014/longitudinal.prm")
 BEGIN, END = "<!-- scenes: written by doc/make_figures.py -->\n", "<!-- end of scenes -->\n"
 
 
@@ -110,26 +112,30 @@ def description(scene):
             re.split(r": | \(", text, maxsplit=1)[0].rstrip(".") + ".")
 
 
-def write_table():
-    """The table of scenes in the README, between its marks."""
-    rows = ["| scene | |\n", "|---|---|\n"]
-    for scene in sorted((ROOT / "prm").rglob("*.prm"),
-                        key=lambda s: (s.parent != ROOT / "prm", s.as_posix())):
-        if scene.parent.name == "failures" or published_twin(scene):
-            continue  # the former are in doc/failures.md, the latter beside the scene in our settings
-        title, text = description(scene)
-        where = os.path.relpath(scene, ROOT)
-        published = scene.with_name(scene.stem + "_paper.prm")
-        if published.exists():
-            text += f" [As published]({os.path.relpath(published, ROOT)})."
-        shown = FIGURES / f"{figure_name(scene)}.png"
-        image = f'<br><img src="doc/figures/{shown.name}" height="100" alt="{title}">' \
-            if shown.exists() else ""
-        rows.append(f"| [{figure_name(scene)}]({where}){image} | **{title}.** {text} |\n")
-    page = ROOT / "README.md"
+def row_of(scene, start):
+    """A line of a table in a page of the folder start."""
+    title, text = description(scene)
+    published = scene.with_name(scene.stem + "_paper.prm")
+    if published.exists():
+        text += f" [As published]({os.path.relpath(published, start)})."
+    shown = FIGURES / f"{figure_name(scene)}.png"
+    image = f'<br><img src="{os.path.relpath(shown, start)}" height="100" alt="{title}">' if shown.exists() else ""
+    return f"| [{figure_name(scene)}]({os.path.relpath(scene, start)}){image} | **{title}.** {text} |\n"
+
+
+def write_between_marks(page, rows):
+    """The table, between its marks."""
     text = page.read_text(encoding="utf-8")
     begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
-    page.write_text(text[:begin] + "\n" + "".join(rows) + "\n" + text[end:], encoding="utf-8")
+    page.write_text(text[:begin] + "\n| scene | |\n|---|---|\n" + "".join(rows) + "\n" + text[end:], encoding="utf-8")
+
+
+def write_tables():
+    """All scenes in doc/scenes.md, some of them in the README."""
+    scenes = [scene for scene in sorted((ROOT / "prm").rglob("*.prm"), key=lambda s: (s.parent != ROOT / "prm", s.as_posix()))
+              if scene.parent.name != "failures" and not published_twin(scene)]  # the former are in doc/failures.md, the latter beside the others
+    write_between_marks(ROOT / "doc" / "scenes.md", [row_of(scene, ROOT / "doc") for scene in scenes])
+    write_between_marks(ROOT / "README.md", [row_of(ROOT / "prm" / name, ROOT) for name in OF_README])
 
 
 def make_charts(program):
@@ -148,14 +154,14 @@ def main():
     parser.add_argument("scenes", nargs="*", type=Path)
     parser.add_argument("--program", default=str(ROOT / "build/release/applications/perideal"))
     parser.add_argument("--all", action="store_true", help="also those that are up to date")
-    parser.add_argument("--table", action="store_true", help="only the table in the README")
+    parser.add_argument("--table", action="store_true", help="only the tables of scenes")
     parser.add_argument("--work-precision", action="store_true", help="only the charts of accuracy against cost")
     options = parser.parse_args()
     if options.work_precision:
         make_charts(options.program)
         return 0
     if options.table:
-        write_table()
+        write_tables()
         return 0
     scenes = [s.resolve() for s in options.scenes] or sorted(
         s for s in (ROOT / "prm").rglob("*.prm") if s.parent.name != "failures" and not published_twin(s))
@@ -174,7 +180,7 @@ def main():
         save(image, figure_name(scene), height=THUMBNAIL_HEIGHT)
         if scene.stem == "quick_start":
             save(image, "quick_start_wide", width=WIDE_WIDTH)
-    write_table()
+    write_tables()
     return 1 if failed else 0
 
 

@@ -3,15 +3,17 @@
 
 #include <deal.II/base/point.h>
 
+#include <perideal/analysis/exact_solid.h>
 #include <perideal/analysis/exact_solution.h>
 #include <perideal/analysis/heat_series.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/expression.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <functional>
+
+#include "solution_text.h"
 
 namespace PeriDeal
 {
@@ -19,9 +21,6 @@ namespace PeriDeal
 
   namespace
   {
-    const std::string where = "'Solution' in section 'Reference'";
-
-
     /** A solution that depends on x alone. */
     class BarSolution : public ExactSolution
     {
@@ -37,12 +36,12 @@ namespace PeriDeal
         , series(series)
       {}
 
-      double value(const double *x, const double t) const override
+      double value(const double *x, const double t, const unsigned int) const override
       {
         return series((x[0] - lower) / length, rate * t).value;
       }
 
-      bool gradient(const double *x, const double t, double *g) const override
+      bool gradient(const double *x, const double t, const unsigned int, double *g) const override
       {
         std::fill(g, g + dim, 0.);
         g[0] = series((x[0] - lower) / length, rate * t).slope / length;
@@ -66,17 +65,17 @@ namespace PeriDeal
         : context(context)
       {
         AssertThrow(context.dim == 2,
-                    UserError(where +
+                    UserError(solution_entry +
                               ": 'bobaru 2012 example 1' is two-dimensional, but 'Dimension' is " +
                               std::to_string(context.dim) + "."));
       }
 
-      double value(const double *x, const double t) const override
+      double value(const double *x, const double t, const unsigned int) const override
       {
         return 40. * along(0, x, t).value * along(1, x, t).value;
       }
 
-      bool gradient(const double *x, const double t, double *g) const override
+      bool gradient(const double *x, const double t, const unsigned int, double *g) const override
       {
         const ValueAndSlope a = along(0, x, t), b = along(1, x, t);
         g[0] = 40. * a.slope * b.value;
@@ -114,7 +113,7 @@ namespace PeriDeal
         , rate(rate)
       {}
 
-      double value(const double *x, const double t) const override
+      double value(const double *x, const double t, const unsigned int) const override
       {
         double product = std::exp(-rate * t);
         for (unsigned int d = 0; d < dim; ++d)
@@ -122,7 +121,7 @@ namespace PeriDeal
         return product;
       }
 
-      bool gradient(const double *x, const double t, double *g) const override
+      bool gradient(const double *x, const double t, const unsigned int, double *g) const override
       {
         for (unsigned int a = 0; a < dim; ++a)
           {
@@ -147,10 +146,10 @@ namespace PeriDeal
     public:
       ExpressionSolution(const std::string &text, const unsigned int dim)
         : dim(dim)
-        , expression(text, where)
+        , expression(text, solution_entry)
       {}
 
-      double value(const double *x, const double t) const override
+      double value(const double *x, const double t, const unsigned int) const override
       {
         Point<3> p;
         for (unsigned int d = 0; d < dim; ++d)
@@ -158,7 +157,7 @@ namespace PeriDeal
         return expression.value<3>(p, t);
       }
 
-      bool gradient(const double *, const double, double *) const override
+      bool gradient(const double *, const double, const unsigned int, double *) const override
       {
         return false;
       }
@@ -169,44 +168,11 @@ namespace PeriDeal
     };
 
 
-    /** Lower case, without blanks at the ends, single blanks inside. */
-    std::string tidy(const std::string &text)
-    {
-      std::string result;
-      for (const char c : text)
-        if (!std::isspace(static_cast<unsigned char>(c)))
-          result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        else if (!result.empty() && result.back() != ' ')
-          result += ' ';
-      if (!result.empty() && result.back() == ' ')
-        result.pop_back();
-      return result;
-    }
-
-
-    /**
-     * `lattice harmonic(1, 2)` taken apart: the name before the parenthesis and what stands in it.
-     */
-    struct Call
-    {
-      std::string name, arguments;
-      bool        has_arguments;
-    };
-
-
-    Call take_apart(const std::string &text)
-    {
-      const std::size_t open = text.find('(');
-      if (open == std::string::npos || text.back() != ')')
-        return {text, "", false};
-      return {tidy(text.substr(0, open)), text.substr(open + 1, text.size() - open - 2), true};
-    }
-
-
-    std::array<double, 3> wave_numbers(const Call &call, const ExactSolutionContext &context)
+    std::array<double, 3> wave_numbers(const SolutionCall         &call,
+                                       const ExactSolutionContext &context)
     {
       const std::string wrong =
-        where + ": '" + call.name + "' needs " + std::to_string(context.dim) +
+        solution_entry + ": '" + call.name + "' needs " + std::to_string(context.dim) +
         " positive whole number" + (context.dim == 1 ? "" : "s") +
         ", one per dimension, for example '" + call.name + "(1" + (context.dim > 1 ? ", 1" : "") +
         (context.dim > 2 ? ", 1" : "") + ")', but found '" + call.arguments + "'.";
@@ -230,7 +196,7 @@ namespace PeriDeal
     }
 
 
-    std::unique_ptr<ExactSolution> make_harmonic(const Call                 &call,
+    std::unique_ptr<ExactSolution> make_harmonic(const SolutionCall         &call,
                                                  const ExactSolutionContext &context)
     {
       const std::array<double, 3> k    = wave_numbers(call, context);
@@ -240,7 +206,7 @@ namespace PeriDeal
           AssertThrow(
             !context.family.empty(),
             UserError(
-              where +
+              solution_entry +
               ": 'lattice harmonic' needs peridynamic nodes on a lattice; 'nonlocal harmonic' and "
               "'classical harmonic' do not."));
           rate = lattice_decay_rate(context.family, k, context.storage);
@@ -250,7 +216,7 @@ namespace PeriDeal
           AssertThrow(
             context.horizon > 0.,
             UserError(
-              where +
+              solution_entry +
               ": 'nonlocal harmonic' needs a horizon; give 'Horizon ratio' or 'Horizon' in section "
               "'Peridynamics'."));
           rate = nonlocal_decay_rate(context.dim,
@@ -293,16 +259,6 @@ namespace PeriDeal
         };
       return std::make_unique<BarSolution>(context, series);
     }
-
-
-    /** Words and numbers without operators: somebody meant a name, and not a formula. */
-    bool reads_like_a_name(const std::string &text)
-    {
-      return !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) &&
-             std::all_of(text.begin(), text.end(), [](const char c) {
-               return std::isalnum(static_cast<unsigned char>(c)) || c == ' ';
-             });
-    }
   } // namespace
 
 
@@ -328,36 +284,30 @@ namespace PeriDeal
            ExcMessage("The context needs both corners of the box."));
     const auto       &names = exact_solution_names();
     const std::string clean = tidy(text);
-    AssertThrow(!clean.empty(), UserError(where + " is empty."));
-    const Call call     = take_apart(clean);
-    const bool known    = std::find(names.begin(), names.end(), call.name) != names.end();
-    const bool harmonic = known && call.name.find("harmonic") != std::string::npos;
+    AssertThrow(!clean.empty(), UserError(solution_entry + " is empty."));
+    const SolutionCall call     = take_apart(clean);
+    const bool         known    = std::find(names.begin(), names.end(), call.name) != names.end();
+    const bool         harmonic = known && call.name.find("harmonic") != std::string::npos;
     AssertThrow(!known || context.no_named.empty(),
-                UserError(where + ": '" + call.name + "' " + context.no_named +
+                UserError(solution_entry + ": '" + call.name + "' " + context.no_named +
                           " Give an expression of x, y, z and t instead."));
     if (harmonic)
       return make_harmonic(call, context);
     if (known)
       {
         AssertThrow(!call.has_arguments,
-                    UserError(where + ": '" + call.name + "' takes no arguments."));
+                    UserError(solution_entry + ": '" + call.name + "' takes no arguments."));
         return make_series(call.name, context);
       }
+    refuse_name_of_others(call, exact_solid_names(), "bodies that deform", names);
     try
       {
         return std::make_unique<ExpressionSolution>(text, context.dim);
       }
     catch (const UserError &)
       {
-        if (!reads_like_a_name(call.name))
-          throw;
-        const std::string nearest = nearest_name(call.name, names);
-        // A misspelt function, as in 'sinn(x)', is a mistake in a formula.
-        if (nearest.empty() && call.has_arguments)
-          throw;
-        throw UserError(where + ": there is no exact solution '" + call.name + "'" +
-                        (nearest.empty() ? "" : "; did you mean '" + nearest + "'?") +
-                        " Known are " + join_names(names) + ", and expressions of x, y, z and t.");
+        refuse_unknown_name(call, names, "expressions of x, y, z and t");
+        throw;
       }
   }
 } // namespace PeriDeal

@@ -329,6 +329,34 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool BoundaryFacets<dim>::are_alike(const Tensor<1, dim> &a, const Tensor<1, dim> &b)
+  {
+    return a * b > alike;
+  }
+
+
+  template <int dim>
+  std::vector<typename BoundaryFacets<dim>::Foot> BoundaryFacets<dim>::at(const Point<dim> &p) const
+  {
+    std::vector<Foot> all, result;
+    bins.visit_near(p, [&](const unsigned int f) {
+      const Foot foot = foot_on(p, f);
+      if (foot.distance < 1e-9 * reach)
+        all.push_back(foot);
+    });
+    std::sort(all.begin(), all.end(), [](const Foot &a, const Foot &b) {
+      return a.facet < b.facet;
+    });
+    for (const Foot &foot : all)
+      if (std::none_of(result.begin(), result.end(), [&](const Foot &other) {
+            return are_alike(normal(other.facet), normal(foot.facet));
+          }))
+        result.push_back(foot);
+    return result;
+  }
+
+
+  template <int dim>
   bool BoundaryFacets<dim>::nearest(const Point<dim>     &p,
                                     const Tensor<1, dim> &normal,
                                     Foot                 &foot) const

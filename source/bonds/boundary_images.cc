@@ -27,17 +27,16 @@ namespace PeriDeal
       /** Add the images of a node through the sides that go on. */
       void find(const unsigned int m, std::vector<BoundaryImage<dim>> &images) const
       {
-        const std::vector<Foot> feet          = facets.feet(nodes.position(m));
-        const unsigned int      n             = std::min<std::size_t>(feet.size(), 2 * dim);
-        const unsigned int      set_of_corner = reentrant_corner(feet);
-        const double            share         = share_of_corner(feet, set_of_corner);
+        const std::vector<Foot> feet   = facets.feet(nodes.position(m));
+        const unsigned int      n      = std::min<std::size_t>(feet.size(), 2 * dim);
+        const Corner            corner = reentrant_corner(nodes.position(m), feet);
         for (unsigned int set = 1; set < (1u << n); ++set)
           {
-            const unsigned int common = set & set_of_corner;
+            const unsigned int common = set & corner.set;
             if (common == 0)
               add(m, feet, set, 1., images);
             else if ((common & (common - 1)) == 0) // a single one of these sides
-              add(m, feet, set, share, images);
+              add(m, feet, set, corner.share, images);
           }
       }
 
@@ -52,6 +51,21 @@ namespace PeriDeal
         Point<dim>                                              place;
         std::vector<std::pair<types::global_dof_index, double>> weights;
         std::vector<Point<dim>>                                 places;
+      };
+
+      /** A side where it meets a node, or its mirror image beyond a plane of symmetry. */
+      struct Side
+      {
+        Tensor<1, dim>              normal;
+        std::array<Point<dim>, dim> corners; // of its facet
+        bool                        is_mirrored;
+      };
+
+      /** The sides of feet, a bit for each, of a reentrant corner in which the node lies. */
+      struct Corner
+      {
+        unsigned int set   = 0;
+        double       share = 1.; // of the node's volume, for an image through one of them
       };
 
       Part part_of(const Foot &foot, const double factor) const
@@ -104,52 +118,89 @@ namespace PeriDeal
         images.push_back(image);
       }
 
-      /** The sides of a reentrant corner in which the node itself lies, a bit for each. */
-      unsigned int reentrant_corner(const std::vector<Foot> &feet) const
+      /** The sides that meet where a node is: those of feet, then others, then mirrored ones. */
+      std::vector<Side> sides_at(const Point<dim> &p, const std::vector<Foot> &feet) const
       {
-        const auto at_node  = [&](const Foot &foot) { return foot.distance < 1e-9 * reach; };
-        const auto is_ahead = [&](const Foot &of, const Foot &other) {
-          for (unsigned int k = 0; k < dim; ++k)
-            {
-              const Tensor<1, dim> to_corner = facets.corner(other.facet, k) - of.point;
-              if (to_corner * facets.normal(of.facet) > 1e-3 * to_corner.norm())
-                return true;
-            }
-          return false;
+        std::vector<Side> sides;
+        const auto        add_side = [&](const Side &side) {
+          if (std::none_of(sides.begin(), sides.end(), [&](const Side &other) {
+                return BoundaryFacets<dim>::are_alike(other.normal, side.normal);
+              }))
+            sides.push_back(side);
         };
-        unsigned int set = 0;
-        for (unsigned int a = 0; a < feet.size() && a < 2 * dim && at_node(feet[a]); ++a)
-          for (unsigned int b = 0; b < a; ++b)
-            if (is_ahead(feet[a], feet[b]) && is_ahead(feet[b], feet[a]))
-              set |= (1u << a) | (1u << b);
-        return set;
+        const auto add_facet = [&](const Foot &foot) {
+          Side side{facets.normal(foot.facet), {}, false};
+          for (unsigned int k = 0; k < dim; ++k)
+            side.corners[k] = facets.corner(foot.facet, k);
+          add_side(side);
+        };
+        for (unsigned int a = 0; a < feet.size() && a < 2 * dim && is_at_node(feet[a]); ++a)
+          add_facet(feet[a]);
+        if (sides.empty())
+          return sides;
+        for (const Foot &foot : facets.at(p))
+          add_facet(foot);
+        for (const SymmetryPlane &plane : facets.planes())
+          if (std::abs(p[plane.axis] - plane.at) < 1e-9 * reach)
+            for (std::size_t k = 0, n = sides.size(); k < n; ++k)
+              {
+                Side side = sides[k];
+                side.normal[plane.axis] *= -1.;
+                for (Point<dim> &corner : side.corners)
+                  corner[plane.axis] = 2. * plane.at - corner[plane.axis];
+                side.is_mirrored = true;
+                add_side(side);
+              }
+        return sides;
+      }
+
+      bool is_at_node(const Foot &foot) const
+      {
+        return foot.distance < 1e-9 * reach;
       }
 
       /**
-       * Beyond n sides of a reentrant corner the body lacks a part v of the surroundings of its
+       * Beyond the sides of a reentrant corner the body lacks a part v of the surroundings of its
        * node: 1/2 beyond one side, times (2 pi - b)/pi for each other at an angle b in the body.
-       * The image through each side is v/(n (1 - v)) of the node.
+       * The image through each of n sides is v/(n (1 - v)) of the node; beside a plane of symmetry
+       * node and images are half of those of the whole body.
        */
-      double share_of_corner(const std::vector<Foot> &feet, const unsigned int set) const
+      Corner reentrant_corner(const Point<dim> &p, const std::vector<Foot> &feet) const
       {
-        double       missing = 1.;
+        const std::vector<Side> sides    = sides_at(p, feet);
+        const auto              is_ahead = [&](const Side &of, const Side &other) {
+          return std::any_of(other.corners.begin(), other.corners.end(), [&](const auto &corner) {
+            return (corner - p) * of.normal > 1e-3 * corner.distance(p);
+          });
+        };
+        std::vector<bool> is_of_corner(sides.size(), false);
+        for (std::size_t a = 0; a < sides.size(); ++a)
+          for (std::size_t b = 0; b < a; ++b)
+            if (is_ahead(sides[a], sides[b]) && is_ahead(sides[b], sides[a]))
+              is_of_corner[a] = is_of_corner[b] = true;
+        Corner       corner;
+        double       missing = 0.5;
         unsigned int n       = 0;
-        for (unsigned int a = 0; a < feet.size(); ++a)
-          if ((set >> a) & 1)
+        for (std::size_t a = 0; a < sides.size(); ++a)
+          if (is_of_corner[a])
             {
-              double part = n == 0 ? 0.5 : 1.;
-              for (unsigned int b = 0; b < a; ++b)
-                if ((set >> b) & 1)
-                  part = std::min(part,
-                                  1. - std::acos(std::clamp(facets.normal(feet[a].facet) *
-                                                              facets.normal(feet[b].facet),
-                                                            -1.,
-                                                            1.)) /
-                                         numbers::PI);
+              double part = 1.;
+              for (std::size_t b = 0; b < a; ++b)
+                if (is_of_corner[b])
+                  part = std::min(part, 1. - angle(sides[a].normal, sides[b].normal) / numbers::PI);
               missing *= part;
-              ++n;
+              n += !sides[a].is_mirrored;
+              if (a < feet.size() && a < 2 * dim && is_at_node(feet[a]))
+                corner.set |= 1u << a;
             }
-        return n == 0 ? 1. : missing / ((1. - missing) * n);
+        if (n > 0)
+          corner.share = missing / ((1. - missing) * n);
+        return corner;
+      }
+
+      static double angle(const Tensor<1, dim> &a, const Tensor<1, dim> &b)
+      {
+        return std::acos(std::clamp(a * b, -1., 1.));
       }
 
       /**
@@ -165,8 +216,8 @@ namespace PeriDeal
               std::clamp(facets.normal(foot.facet) * facets.normal(other.facet), -1., 1.);
             if (cosine < -0.9)
               return 0.; // both sides of a thin body
-            const double angle = numbers::PI - std::acos(cosine);
-            share              = std::min(share, std::clamp(2. * numbers::PI / angle - 3., 0., 1.));
+            const double inside = numbers::PI - std::acos(cosine);
+            share = std::min(share, std::clamp(2. * numbers::PI / inside - 3., 0., 1.));
           }
         return share < 1e-9 ? 0. : share;
       }

@@ -95,8 +95,9 @@ namespace PeriDeal
                                       scene.peridynamics.treatment,
                                       scene.peridynamics.nodal_volume,
                                       of_bonds.reach_in_sites());
+    // Some processes may have none.
     AssertThrow(
-      unique || outside.empty(),
+      unique || Utilities::MPI::max(outside.empty() ? 0 : 1, nodes.communicator()) == 0,
       UserError(
         "'Boundary treatment' in section 'Peridynamics': fictitious layers need a lattice without doubled "
         "nodes; use 'Mesh = pairs' in section 'Cracks', or 'none'."));

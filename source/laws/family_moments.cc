@@ -51,10 +51,10 @@ namespace PeriDeal
   template <int dim>
   FourthMoments<dim> fourth_moments(const Tensor<1, dim> &xi)
   {
-    static const FourthMoments<dim> roots = roots_of_multiplicity<dim>();
-    const Tensor<1, dim>            n     = xi / xi.norm();
-    FourthMoments<dim>              m;
-    unsigned int                    k = 0;
+    [[maybe_unused]] static const FourthMoments<dim> roots = roots_of_multiplicity<dim>(); // 1D
+    const Tensor<1, dim>                             n     = xi / xi.norm();
+    FourthMoments<dim>                               m;
+    unsigned int                                     k = 0;
     for_each_moment<dim>([&](const auto a, const auto b, const auto c, const auto d) {
       m[k] = roots[k] * n[a] * n[b] * n[c] * n[d];
       ++k;

@@ -379,6 +379,22 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void require_cells_everywhere(const Triangulation<dim> &mesh)
+  {
+    const MPI_Comm communicator = mesh.get_communicator();
+    unsigned int   n_own_cells  = 0;
+    for (const auto &cell : mesh.active_cell_iterators())
+      n_own_cells += cell->is_locally_owned() ? 1 : 0;
+    AssertThrow(Utilities::MPI::min(n_own_cells, communicator) > 0,
+                UserError("A mesh of " + std::to_string(mesh.n_global_active_cells()) +
+                          " cells leaves some of the " +
+                          std::to_string(Utilities::MPI::n_mpi_processes(communicator)) +
+                          " processes without any. Use fewer processes or more 'Cells' (section "
+                          "'Domain')."));
+  }
+
+
   template std::unique_ptr<Triangulation<1>> build_mesh(const Scene<1> &,
                                                         const MPI_Comm,
                                                         std::vector<std::string> &);
@@ -388,4 +404,7 @@ namespace PeriDeal
   template std::unique_ptr<Triangulation<3>> build_mesh(const Scene<3> &,
                                                         const MPI_Comm,
                                                         std::vector<std::string> &);
+  template void                              require_cells_everywhere(const Triangulation<1> &);
+  template void                              require_cells_everywhere(const Triangulation<2> &);
+  template void                              require_cells_everywhere(const Triangulation<3> &);
 } // namespace PeriDeal

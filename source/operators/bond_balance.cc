@@ -70,7 +70,7 @@ namespace PeriDeal
           convection_diagonal[k].second *
           (convections[k].condition->value.value(convections[k].place, t) - u.local_element(i));
       }
-    if (scene.peridynamics.flux_treatment != FluxTreatment::natural)
+    if (!scene.peridynamics.natural_fluxes())
       for (const BoundaryShare &share : nodes.condition_shares())
         if (const auto *flux =
               BoundaryConditions<dim>::find(scene.boundary_conditions.flux, share.id);
@@ -198,7 +198,7 @@ namespace PeriDeal
   template <int dim>
   double BondOperator<dim>::through_slaves(const double t) const
   {
-    if (scene.peridynamics.flux_treatment == FluxTreatment::natural)
+    if (scene.peridynamics.natural_fluxes())
       return 0.;
     const Nodes<dim> &nodes = bonds.nodes();
     double            sum   = 0.;

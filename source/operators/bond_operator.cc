@@ -55,17 +55,12 @@ namespace PeriDeal
   void BondOperator<dim>::choose_form(const OperatorForm wanted)
   {
     std::string reason;
-    const bool  suits = lattice_form_suits(bonds, reason);
-    AssertThrow(
-      wanted != OperatorForm::lattice || suits,
-      UserError("'Operator form = lattice' in section 'Peridynamics' is not possible here: " +
-                reason + ". Use 'auto' or 'stored'."));
-    const bool lattice = wanted == OperatorForm::lattice ||
-                         (wanted == OperatorForm::automatic && suits);
-    form = lattice ? make_lattice_form(bonds) : make_stored_form(bonds);
-    note = lattice ? "lattice stencil, no stored bonds but corrections" :
-           suits   ? "stored bonds, as asked" :
-                     "stored bonds, because " + reason;
+    const bool  suits   = lattice_form_suits(bonds, reason);
+    const bool  lattice = takes_lattice_form(wanted, suits ? "" : reason, true);
+    form                = lattice ? make_lattice_form(bonds) : make_stored_form(bonds);
+    note                = lattice ? "lattice stencil, no stored bonds but corrections" :
+                          suits   ? "stored bonds, as asked" :
+                                    "stored bonds, because " + reason;
   }
 
 
@@ -99,7 +94,7 @@ namespace PeriDeal
   template <int dim>
   void BondOperator<dim>::find_side_loads()
   {
-    const bool        natural    = scene.peridynamics.flux_treatment == FluxTreatment::natural;
+    const bool        natural    = scene.peridynamics.natural_fluxes();
     const auto       &conditions = scene.boundary_conditions;
     const Nodes<dim> &nodes      = bonds.nodes();
     for (const BoundaryShare &share : nodes.condition_shares())

@@ -355,7 +355,8 @@ namespace PeriDeal
   template <int dim>
   std::size_t FictitiousBonds<dim>::memory_consumption() const
   {
-    return images.capacity() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
+    return state.memory_consumption() +
+           images.capacity() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
            (lengths.capacity() + across.capacity() + strains.capacity()) * sizeof(double) +
            starts.capacity() * sizeof(std::size_t) + terms.capacity() * sizeof(Term) +
            sites.capacity() * sizeof(Index) +

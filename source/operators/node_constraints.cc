@@ -133,8 +133,7 @@ namespace PeriDeal
   template <int dim>
   void NodeConstraints<dim>::find_slaves(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene)
   {
-    const FluxTreatment treatment = scene.peridynamics.flux_treatment;
-    if (treatment == FluxTreatment::natural)
+    if (scene.peridynamics.natural_fluxes())
       return;
     AssertThrow(
       scene.domain.shape == Shape::box && bonds.neighbors().has_unique_sites(),
@@ -142,7 +141,7 @@ namespace PeriDeal
         "'Flux treatment' in section 'Peridynamics' must be 'natural' unless the body is a box "
         "without doubled nodes."));
     std::string message;
-    if (treatment == FluxTreatment::layer_extrapolation)
+    if (scene.peridynamics.flux_treatment == FluxTreatment::layer_extrapolation)
       for (const SideCondition &condition : scene.boundary_conditions.flux)
         message = extrapolate_layer(bonds, condition.id, scene);
     else

@@ -7,6 +7,7 @@
 
 #include <perideal/base/smallest_eigenvalue.h>
 #include <perideal/base/user_error.h>
+#include <perideal/operators/bond_form.h>
 #include <perideal/operators/state_operator.h>
 
 #include <algorithm>
@@ -45,8 +46,7 @@ namespace PeriDeal
   template <int dim>
   bool StateOperator<dim>::may_leave_out_bonds() const
   {
-    const OperatorForm wanted = scene.peridynamics.form;
-    std::string        reason;
+    std::string reason;
     if (!bonds.neighbors().has_unique_sites())
       reason = "the nodes are not on a lattice with one node per site";
     else if (full)
@@ -55,13 +55,8 @@ namespace PeriDeal
       reason = "bonds may break";
     else if (scene.peridynamics.corrects_elastic_bonds())
       reason = "with 'Surface correction' bonds have factors of their own";
-    AssertThrow(
-      wanted != OperatorForm::lattice || reason.empty(),
-      UserError("'Operator form = lattice' in section 'Peridynamics' is not possible here: " +
-                reason + ". Use 'auto' or 'stored'."));
     // Bonds of bars take little, and differences of displacements round less than convolutions.
-    return wanted == OperatorForm::lattice ||
-           (wanted == OperatorForm::automatic && dim > 1 && reason.empty());
+    return takes_lattice_form(scene.peridynamics.form, reason, dim > 1);
   }
 
 

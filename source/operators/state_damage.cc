@@ -164,6 +164,8 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
         {
+          if (!state.is_whole(k))
+            continue;
           // W x e and W x^2; the same digits at both ends of a bond.
           const unsigned int   j     = neighbors[k];
           const Tensor<1, dim> xi    = bonds.neighbors().bond_vector(i, j);

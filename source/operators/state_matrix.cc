@@ -101,7 +101,7 @@ namespace PeriDeal
         std::size_t k = 1;
         for_each_bond(i, [&](const Bond &bond) {
           Tensor<2, dim> block = bond.spring * outer_product(bond.moment, bond.moment);
-          if (full && bond.length > 0.)
+          if (full && bond.whole)
             block += across[starts[i] + k - 1] *
                      (Tensor<2, dim>(unit_symmetric_tensor<dim>()) -
                       outer_product(bond.moment, bond.moment) / (bond.length * bond.length));

@@ -365,10 +365,9 @@ namespace PeriDeal
   int replace_file(const std::string &name, const std::string &text)
   {
     const std::string part = name + ".part";
-    const int         file = open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file < 0)
-      return errno;
-    int problem = 0;
+    set_unfinished_file(part);
+    const int file    = open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    int       problem = file < 0 ? errno : 0;
     for (std::size_t done = 0; done < text.size() && problem == 0;)
       {
         const ssize_t n = write(file, text.data() + done, text.size() - done);
@@ -377,12 +376,13 @@ namespace PeriDeal
         else if (n == 0 || errno != EINTR)
           problem = n == 0 ? ENOSPC : errno;
       }
-    if (close(file) != 0 && problem == 0) // where a quota or a network speaks up
+    if (file >= 0 && close(file) != 0 && problem == 0) // where a quota or a network speaks up
       problem = errno;
     if (problem == 0 && rename(part.c_str(), name.c_str()) != 0)
       problem = errno;
-    if (problem != 0)
+    if (problem != 0 && file >= 0)
       unlink(part.c_str());
+    set_unfinished_file("");
     return problem;
   }
 

@@ -329,7 +329,8 @@ namespace PeriDeal
       "",
       "temperature",
       "Exact solution to compare with: a formula of x, y, z, t, or a name (doc/theory.md lists them) "
-      "such as `bobaru 2012 example 1` or `lattice harmonic(1, 1)`.");
+      "such as `bobaru 2012 example 1` or `lattice harmonic(1, 1)`. Of bodies that deform a formula for each component of the displacement, "
+      "separated by commas, or a name such as `kirsch(1)` or `cantilever(1)`.");
   }
 
 

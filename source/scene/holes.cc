@@ -157,7 +157,7 @@ namespace PeriDeal
         // Some cell has to have its centre in the hole.
         const auto          box = hole.box();
         std::array<long, 2> from{}, to{};
-        for (unsigned int d = 0; d < std::min(dim, 2); ++d)
+        for (int d = 0; d < std::min(dim, 2); ++d)
           {
             from[d] = std::max(0L, static_cast<long>((box.first[d] - lower[d]) / h[d] - 1.));
             to[d]   = std::min(static_cast<long>(cells[d]) - 1,

@@ -10,10 +10,22 @@ namespace PeriDeal
     const std::vector<PhysicsNames> &all_names()
     {
       static const std::vector<PhysicsNames> names = {
-        {"heat", "temperature", "heat_flux", "heat content", "heat flow", "heat"},
-        {"moisture", "wetness", "moisture_flux", "weight", "moisture flow", "moisture"},
-        {"electricity", "potential", "current_density", "charge", "current", "charge"},
-        {"elasticity", "displacement", "stress", "strain energy", "force", "force"}};
+        {"heat", "temperature", "heat_flux", "heat content", "heat flow", "heat", "conductivity"},
+        {"moisture",
+         "wetness",
+         "moisture_flux",
+         "weight",
+         "moisture flow",
+         "moisture",
+         "diffusivity"},
+        {"electricity",
+         "potential",
+         "current_density",
+         "charge",
+         "current",
+         "charge",
+         "conductivity"},
+        {"elasticity", "displacement", "stress", "strain energy", "force", "force", ""}};
       return names;
     }
   } // namespace

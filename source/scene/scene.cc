@@ -384,11 +384,10 @@ namespace PeriDeal
       (general.physics == Physics::elasticity && elasticity.is_static() && !is_loaded_slowly());
     solver.parse();
     output.parse(time.end_time, time.steady);
-    output.make_grid(domain.shape == Shape::box, domain.lower, domain.upper);
-    if (general.physics == Physics::elasticity && !output.grid.empty())
-      entry_error(
-        output.where("Grid"),
-        "is for what diffuses; with 'Physics = elasticity' use 'Fields', 'Line' and 'Probes'.");
+    const bool layers = domain.has_extra_layers();
+    output.make_grid(domain.shape == Shape::box,
+                     layers ? domain.body_lower : domain.lower,
+                     layers ? domain.body_upper : domain.upper);
     reference.parse();
     units.parse();
 

@@ -217,9 +217,8 @@ namespace PeriDeal
       for (const auto &[pair, entries] : summary["comparisons"].items())
         add_difference(lines, pair, entries, unit);
     add_errors(lines, summary);
-    const bool moist = summary.value("physics", "") == "moisture";
     add_of_models(lines,
-                  moist ? "effective diffusivity" : "effective conductivity",
+                  "effective " + summary["names"].value("property", ""),
                   summary,
                   [](const json &model) {
                     return model.contains("effective conductivity") ?

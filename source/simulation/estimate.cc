@@ -6,6 +6,7 @@
 #include <perideal/base/memory.h>
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
+#include <perideal/problems/problem_factory.h>
 #include <perideal/simulation/estimate.h>
 
 #include <algorithm>
@@ -86,7 +87,7 @@ namespace PeriDeal
     {
       RunEstimate result;
       result.cells          = number_of_cells(scene);
-      const double per_node = scene.general.physics == Physics::elasticity ? dim : 1;
+      const double per_node = n_components_of(scene);
       const double family   = has_bonds(scene) ? family_size(scene) : 0.;
       result.memory         = 32. * family;
       for (const ModelKind model : scene.general.models)
@@ -208,9 +209,7 @@ namespace PeriDeal
     const OutputEstimate output =
       estimate_output(scene, cells, components, Utilities::MPI::n_mpi_processes(communicator));
     std::vector<std::string> lines;
-    const bool breaks = scene.material.fracture_energy || scene.material.critical_stretch;
-    const bool more   = breaks && scene.general.physics == Physics::elasticity &&
-                      scene.elasticity.is_static();
+    const bool               more = may_solve_again(scene);
     lines.push_back(
       "time: " +
       (computing >= 0. ?
@@ -274,8 +273,9 @@ namespace PeriDeal
         model.bonds               = growth(a.bonds, b.bonds);
         model.applications        = growth.power(a.applications, b.applications);
         model.time_of_application = growth(a.time_of_application, b.time_of_application);
-        model.time_of_solution    = growth(a.time_of_solution, b.time_of_solution);
-        model.components          = b.components;
+        if (a.time_of_solution > 0. && b.time_of_solution > 0.) // else not known
+          model.time_of_solution = growth(a.time_of_solution, b.time_of_solution);
+        model.components = b.components;
         components.push_back(b.components);
       }
     const OutputEstimate output = estimate_output(scene,
@@ -285,6 +285,21 @@ namespace PeriDeal
     result.memory         = std::max(result.memory, growth(one.memory, two.memory) + output.memory);
     result.time_of_output = output.time;
     return result;
+  }
+
+
+  template <int dim>
+  ModelEstimate estimate_model(const Scene<dim>  &scene,
+                               const std::string &model,
+                               const MPI_Comm     communicator,
+                               double            &memory)
+  {
+    const RunEstimate estimate = estimate_run(scene, communicator);
+    memory                     = std::max(memory, estimate.memory);
+    const auto found           = std::find_if(estimate.models.begin(),
+                                    estimate.models.end(),
+                                    [&](const auto &one) { return one.name == model; });
+    return found == estimate.models.end() ? ModelEstimate() : *found;
   }
 
 
@@ -350,7 +365,7 @@ namespace PeriDeal
     double most(const Scene<dim> &scene, const double nodes, const double n_bonds)
     {
       constexpr double most_of_node = 20000., most_of_bond = 100.;
-      const double     factor = scene.general.physics == Physics::elasticity ? dim : 1.;
+      const double     factor = n_components_of(scene);
       return factor * (most_of_node * nodes + most_of_bond * factor * n_bonds);
     }
 
@@ -370,7 +385,7 @@ namespace PeriDeal
     if (scene.domain.shape == Shape::mesh_file)
       return false; // no larger than its file
     const double nodes = number_of_cells(scene), n_bonds = bonds_of_full_families(scene);
-    const double factor = scene.general.physics == Physics::elasticity ? dim : 1.;
+    const double factor = n_components_of(scene);
     return nodes * factor > many_nodes || n_bonds * factor > 100. * many_nodes ||
            most(scene, nodes, n_bonds) > 0.5 * available_memory(communicator);
   }
@@ -415,6 +430,10 @@ namespace PeriDeal
                                                    const std::vector<double> &,       \
                                                    const MPI_Comm);                   \
   template RunEstimate              estimate_run(const Scene<dim> &, const MPI_Comm); \
+  template ModelEstimate            estimate_model(const Scene<dim> &,                \
+                                                   const std::string &,               \
+                                                   const MPI_Comm,                    \
+                                                   double &);                         \
   template bool                     is_large(const Scene<dim> &, const MPI_Comm);     \
   template void                     require_memory(const Scene<dim> &, const MPI_Comm);
   PERIDEAL_INSTANTIATE(1)

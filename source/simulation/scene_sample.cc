@@ -8,15 +8,12 @@
 #include <perideal/base/memory.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/mesh_builder.h>
+#include <perideal/problems/problem_factory.h>
+#include <perideal/problems/run_context.h>
 #include <perideal/scene/lists.h>
-#include <perideal/simulation/elastic_run.h>
-#include <perideal/simulation/simulation.h>
-#include <perideal/solvers/floating_part.h>
-#include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 namespace PeriDeal
 {
@@ -92,145 +89,31 @@ namespace PeriDeal
 
   namespace
   {
-    /** Of the processor, so that other programs on the machine do not count. */
-    class Watch
-    {
-    public:
-      double seconds() const
-      {
-        return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-      }
-
-    private:
-      const std::clock_t start = std::clock();
-    };
-
-
-    double time_of_application(const Operator &op)
-    {
-      Vector x, y;
-      op.initialize_vector(x);
-      op.initialize_vector(y);
-      op.apply(y, x);
-      constexpr unsigned int n_trials = 20;
-      const Watch            watch;
-      for (unsigned int k = 0; k < n_trials; ++k)
-        op.apply(y, x);
-      return watch.seconds() / n_trials;
-    }
-
-
-    /** -1 where the solver does not get there: the run will say why. */
-    double time_of_linear_equilibrium(const SolverControlParameters &control,
-                                      ElasticOperator               &op,
-                                      const double                   t,
-                                      const bool                     must_be_held)
-    {
-      const Watch solving;
-      Vector      u, r, change;
-      for (Vector *const v : {&u, &r, &change})
-        op.initialize_vector(*v);
-      op.distribute(u, t);
-      op.residual(r, u, t);
-      LinearSolver solver(op, control.tolerance, control.max_iterations, control.direct_up_to);
-      if (must_be_held && r.l2_norm() > 0.)
-        check_no_loose_part(op, solver.surrogate(), r);
-      try
-        {
-          solver.solve(0., 1., change, r);
-        }
-      catch (const UserError &) // on all processes
-        {
-          return -1.;
-        }
-      return solving.seconds();
-    }
-
-
-    /**
-     * Components of the fields of a model of what diffuses, with its difference from the others.
-     */
     template <int dim>
-    double components_of(const Simulation<dim> &simulation, const unsigned int model)
+    void take_problems(const Scene<dim>                          &scene,
+                       const std::shared_ptr<Triangulation<dim>> &mesh,
+                       Sample                                    &sample)
     {
-      return static_cast<double>(simulation.components_written(model));
-    }
-
-
-    /** About as many as a run takes, whose first step is this one. */
-    template <int dim>
-    double steps_of_motion(const Scene<dim> &scene, ElasticOperator &op)
-    {
-      StepperOptions options;
-      options.time_step        = scene.time.time_step;
-      options.solver_tolerance = scene.solver.tolerance;
-      options.max_iterations   = scene.solver.max_iterations;
-      options.direct_up_to     = scene.solver.direct_up_to;
-      const double step = make_motion_stepper(scene.time.stepper, op, options)->current_step();
-      return step > 0. ? scene.time.end_time / step : 0.;
-    }
-
-
-    template <int dim>
-    void take_heat(const Scene<dim>                          &scene,
-                   const std::shared_ptr<Triangulation<dim>> &mesh,
-                   const MPI_Comm                             communicator,
-                   Sample                                    &sample)
-    {
-      const SceneText text{"", "", communicator};
-      const Watch     building;
-      Simulation<dim> simulation(scene, text, communicator, true);
-      simulation.build_on(mesh);
-      sample.time_to_build += building.seconds();
-      const Watch solving;
-      if (scene.time.steady)
-        simulation.advance_to(0.);
+      ResultRecord     record;
+      Progress         quiet(mesh->get_communicator(), true);
+      const RunContext context{quiet, record, {}};
+      Problems<dim>    problems;
       for (unsigned int k = 0; k < sample.models.size(); ++k)
         {
-          const ModelRun<dim> &run   = simulation.model(k);
-          ModelEstimate       &model = sample.models[k];
-          const OperatorSize   size  = run.op().size();
-          model.unknowns             = static_cast<double>(size.unknowns);
-          model.bonds                = static_cast<double>(size.bonds);
-          model.time_of_application  = time_of_application(run.op());
-          model.components           = components_of(simulation, k);
-          if (scene.time.steady)
-            model.time_of_solution = solving.seconds() / sample.models.size();
-          else if (run.stepper)
-            model.applications = run.stepper->expected_applications(scene.time.end_time);
+          const double start = processor_seconds();
+          problems.push_back(make_problem(scene.general.models[k], *mesh, scene));
+          const Problem<dim> &problem = *problems.back();
+          ModelEstimate      &model   = sample.models[k];
+          const OperatorSize  size    = problem.op().size();
+          model.unknowns              = static_cast<double>(size.unknowns);
+          model.bonds                 = static_cast<double>(size.bonds);
+          sample.time_to_build += processor_seconds() - start;
+          model.time_of_application = time_of_application(problem.op());
         }
-    }
-
-
-    template <int dim>
-    void take_elasticity(const Scene<dim>                          &scene,
-                         const std::shared_ptr<Triangulation<dim>> &mesh,
-                         Sample                                    &sample)
-    {
-      std::vector<std::unique_ptr<ElasticRun<dim>>> runs;
-      for (unsigned int k = 0; k < sample.models.size(); ++k)
+      for (unsigned int k = 0; k < problems.size(); ++k)
         {
-          const Watch building;
-          runs.push_back(make_elastic_run(scene.general.models[k], *mesh, scene));
-          ElasticOperator   &op    = runs.back()->op();
-          ModelEstimate     &model = sample.models[k];
-          const OperatorSize size  = op.size();
-          model.unknowns           = static_cast<double>(size.unknowns);
-          model.bonds              = static_cast<double>(size.bonds);
-          sample.time_to_build += building.seconds();
-          model.time_of_application = time_of_application(op);
-          runs.back()->op().initialize_vector(runs.back()->displacement);
-          for (const OutputField &field : runs.back()->fields())
-            model.components += field.components.size();
-          if (!scene.elasticity.is_static())
-            model.applications = steps_of_motion(scene, op);
-          if (!scene.elasticity.is_static() || scene.elasticity.solver != ElasticSolver::linear)
-            continue;
-          model.time_of_solution =
-            time_of_linear_equilibrium(scene.solver,
-                                       op,
-                                       scene.time.steady ? 0. : scene.time.end_time,
-                                       false);
+          problems[k]->take_sample(context, sample.models[k]);
+          sample.models[k].components = components_written(*problems[k], problems.size());
         }
     }
   } // namespace
@@ -246,14 +129,11 @@ namespace PeriDeal
     for (const ModelKind model : scene.general.models)
       sample.models.push_back({to_string(model)});
     std::vector<std::string>                  notes;
-    const Watch                               building;
-    const std::shared_ptr<Triangulation<dim>> mesh = build_mesh(scene, communicator, notes);
+    const double                              start = processor_seconds();
+    const std::shared_ptr<Triangulation<dim>> mesh  = build_mesh(scene, communicator, notes);
     sample.cells         = static_cast<double>(mesh->n_global_active_cells());
-    sample.time_to_build = building.seconds();
-    if (scene.general.physics == Physics::elasticity)
-      take_elasticity(scene, mesh, sample);
-    else
-      take_heat(scene, mesh, communicator, sample);
+    sample.time_to_build = processor_seconds() - start;
+    take_problems(scene, mesh, sample);
     const double own = known ? peak_memory() - before : 0.;
     sample.memory    = Utilities::MPI::sum(own, communicator);
     for (ModelEstimate &model : sample.models) // to be the same on all processes
@@ -264,63 +144,13 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  double time_of_equilibria(const Scene<dim>  &scene,
-                            ElasticOperator   &op,
-                            const unsigned int model,
-                            const double       n_steps,
-                            const MPI_Comm     communicator,
-                            double            &memory)
-  {
-    // Larger ones take longer than one likes to wait for a check; where there is no coarse lattice
-    // one waits some more.
-    constexpr double few_unknowns = 5e4, many_unknowns = 3e5;
-    // Iterations of other solvers over those of the linear one, where these are alike.
-    constexpr double of_full_kinematics = 3.;
-    if (scene.elasticity.solver == ElasticSolver::dynamic_relaxation ||
-        scene.elasticity.solver == ElasticSolver::adaptive_dynamic_relaxation)
-      return -1.;
-    const double n_unknowns = static_cast<double>(op.size().unknowns);
-    double       first      = 0.;
-    if (n_unknowns > few_unknowns)
-      {
-        const RunEstimate estimate = estimate_run(scene, communicator);
-        first                      = estimate.models[model].time_of_solution;
-        memory                     = std::max(memory, estimate.memory);
-      }
-    if (first <= 0. && n_unknowns <= many_unknowns)
-      first =
-        Utilities::MPI::max(time_of_linear_equilibrium(scene.solver,
-                                                       op,
-                                                       scene.time.steady ? 0. : scene.time.end_time,
-                                                       !op.nonlinear()),
-                            communicator);
-    if (first <= 0.)
-      return -1.;
-    if (op.nonlinear())
-      first *= of_full_kinematics;
-    // A step whose loads grow in proportion starts from its solution, and looks at every bond.
-    constexpr double applications_of_step = 5.;
-    if (scene.time.steady)
-      return first;
-    const bool alike = !op.nonlinear() && !scene.warms_slowly();
-    return first + n_steps * (alike ? applications_of_step * time_of_application(op) : first);
-  }
-
-
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
   template double number_of<dim>(const std::array<unsigned int, dim> &, const unsigned int);       \
   template std::array<unsigned int, dim> coarse_cells<dim>(const std::array<unsigned int, dim> &,  \
                                                            const double);                          \
   template std::shared_ptr<Scene<dim>>   coarse_scene<dim>(const Scene<dim> &,                     \
                                                          const std::array<unsigned int, dim> &); \
-  template Sample                        take_sample<dim>(const Scene<dim> &, const MPI_Comm);     \
-  template double                        time_of_equilibria<dim>(const Scene<dim> &,               \
-                                          ElasticOperator &,                \
-                                          const unsigned int,               \
-                                          const double,                     \
-                                          const MPI_Comm,                   \
-                                          double &);
+  template Sample                        take_sample<dim>(const Scene<dim> &, const MPI_Comm);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

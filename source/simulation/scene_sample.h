@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <perideal/operators/elastic_operator.h>
 #include <perideal/simulation/estimate.h>
 
 #include <memory>
@@ -18,7 +17,6 @@ namespace PeriDeal
     double                     memory = 0., time_to_build = 0.;
     std::vector<ModelEstimate> models;
   };
-
 
 
   /** Cells of a lattice with @p more = 0, its vertices with 1. */
@@ -45,19 +43,4 @@ namespace PeriDeal
    * Collective. */
   template <int dim>
   Sample take_sample(const Scene<dim> &scene, const MPI_Comm communicator);
-
-  /**
-   * Seconds that the equilibria of an elastic body take, negative if that is not known: a linear
-   * one is solved, of a large body on a coarser lattice. Bonds that break take more. @param model
-   * number of the model in the scene. @param n_steps of loading
-   * @param memory raised to what the run of a large body takes at least beyond what is there before
-   *               it. Collective.
-   */
-  template <int dim>
-  double time_of_equilibria(const Scene<dim>  &scene,
-                            ElasticOperator   &op,
-                            const unsigned int model,
-                            const double       n_steps,
-                            const MPI_Comm     communicator,
-                            double            &memory);
 } // namespace PeriDeal

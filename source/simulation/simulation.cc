@@ -3,28 +3,28 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/analysis/coupling_certificate.h>
+#include <perideal/base/memory.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
-#include <perideal/operators/bond_operator.h>
+#include <perideal/problems/check_sides.h>
+#include <perideal/problems/problem_factory.h>
+#include <perideal/problems/reference.h>
+#include <perideal/problems/result_record.h>
+#include <perideal/problems/run_context.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/with_formulas.h>
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
-#include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <utility>
 
-#include "check_sides.h"
 #include "closing.h"
-#include "crack_note.h"
-#include "effective_conductivity.h"
-#include "finite_results.h"
-#include "point_readers.h"
-#include "result_record.h"
+#include "model_comparison.h"
 #include "summary_parts.h"
 
 namespace PeriDeal
@@ -41,14 +41,12 @@ namespace PeriDeal
     , communicator(communicator)
     , progress(communicator, quiet)
     , record(std::make_unique<ResultRecord>())
-  {
-    Assert(scene.general.physics != Physics::elasticity, ExcMessage("see ElasticSimulation"));
-  }
+    , output(std::make_unique<RunOutput<dim>>(scene, *record))
+  {}
 
 
   template <int dim>
-  Simulation<dim>::~Simulation()
-  {}
+  Simulation<dim>::~Simulation() = default;
 
 
   template <int dim>
@@ -64,30 +62,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::build_on(const std::shared_ptr<Triangulation<dim>> &given_mesh)
+  RunContext Simulation<dim>::context() const
   {
-    mesh = given_mesh;
-    build();
-    make_steppers();
+    return {progress, *record, [this](const std::string &model, double &memory) {
+              return estimate_model(scene, model, communicator, memory);
+            }};
   }
 
 
   template <int dim>
-  const ModelRun<dim> &Simulation<dim>::model(const unsigned int number) const
-  {
-    return *models[number];
-  }
-
-
-  template <int dim>
-  const std::vector<std::string> &Simulation<dim>::notes() const
-  {
-    return record->notes;
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::build_mesh_of_run()
+  void Simulation<dim>::build()
   {
     const unsigned int n_proc = Utilities::MPI::n_mpi_processes(communicator);
     progress.line(scene.general.title + "  (" + text.file_name + ", " + std::to_string(n_proc) +
@@ -98,184 +82,60 @@ namespace PeriDeal
       mesh = build_mesh(scene, communicator, record->notes);
       set_material_ids(*mesh, scene.material.phases.all());
     }
-    check_points_of_parts(scene, *mesh, record->notes);
-    note_missing_crack_scaling(scene, record->notes);
+    check_mesh();
     progress.line("mesh: " + readable_count(mesh->n_global_active_cells()) + " cells");
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::build()
-  {
-    if (!mesh)
-      build_mesh_of_run();
-    if (!scene.cracks.tips.empty())
-      {
-        const CrackHistory<dim> history = scene.crack_history();
-        record->notes.push_back(
-          "the cracks grow in " + std::to_string(history.events().size()) +
-          " events, between which no tip advances more than " +
-          number_text(history.longest_advance()) +
-          "; bonds are cut too early or too late by at most the time that it needs for half of that ('Growth step' in section "
-          "'Cracks').");
-      }
-    unsigned int n_own_cells = 0;
-    for (const auto &cell : mesh->active_cell_iterators())
-      n_own_cells += cell->is_locally_owned() ? 1 : 0;
-    AssertThrow(Utilities::MPI::min(n_own_cells, communicator) > 0,
-                UserError("A mesh of " + std::to_string(mesh->n_global_active_cells()) +
-                          " cells leaves some of the " +
-                          std::to_string(Utilities::MPI::n_mpi_processes(communicator)) +
-                          " processes without any. Use fewer processes or more 'Cells' (section "
-                          "'Domain')."));
-    with_formulas([&] { check_sides(scene, *mesh); });
-    if (scene.peridynamics.flux_treatment != FluxTreatment::natural &&
-        scene.boundary_conditions.flux.empty())
-      record->notes.push_back(
-        "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' (an insulated side "
-        "needs 'side: 0' there).");
     for (const ModelKind model : scene.general.models)
       {
-        if (files)
-          progress.doing("building " + to_string(model));
-        with_formulas([&] { models.push_back(make_model_run(model, *mesh, scene)); });
-        describe(*models.back());
-        for (const std::string &note : models.back()->notes())
-          record->notes.push_back(models.back()->name() + ": " + note);
+        progress.doing("building " + to_string(model));
+        problems.push_back(make_problem(model, *mesh, scene));
+        say_size(*problems.back(), progress);
+        for (const std::string &note : problems.back()->notes())
+          record->notes.push_back(note);
+      }
+    companions = make_companions(problems, *mesh, scene, record->notes);
+    for (const auto &companion : companions)
+      {
+        progress.line("to find the " + companion->field_name() + " in it:");
+        say_size(*companion, progress);
       }
     prepare_adaptation();
-    make_reference();
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::with_formulas(const std::function<void()> &action) const
-  {
-    const DeferredFormulaErrors errors;
-    try
-      {
-        action();
-      }
-    catch (const UserError &)
-      {
-        // The cause, if it is a formula's value; not of this process alone: others wait elsewhere.
-        if (all_processes_arrive(communicator))
-          errors.throw_if_any(communicator);
-        throw;
-      }
-    errors.throw_if_any(communicator);
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::describe(const ModelRun<dim> &model) const
-  {
-    const OperatorSize size = model.op().size();
-    std::string        line = model.name() + ": " + readable_count(size.unknowns) + " unknowns";
-    if (size.bonds > 0)
-      line += ", " + readable_count(size.bonds) + " bonds";
-    if (size.nonzeros > 0)
-      line += ", " + readable_count(size.nonzeros) +
-              (size.form == "lattice" ? " stored corrections" : " stored numbers");
-    const double memory = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
-    progress.line(line + ", " + readable_bytes(memory));
-    for (const auto &[name, value] : model.settings())
-      if (name == "operator form")
-        progress.line("  form: " + value);
-      else if (name == "calibration" && value.find("because") != std::string::npos)
-        progress.line("  calibration: " + value);
-    if (const CouplingCertificate *certificate = model.examined())
-      progress.line(certificate_line(*certificate));
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::make_reference()
-  {
-    if (scene.reference.solution.empty())
-      return;
-    ExactSolutionContext context;
-    context.dim = dim;
-    context.lower.resize(dim);
-    context.upper.resize(dim);
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        context.lower[d] = scene.domain.lower[d];
-        context.upper[d] = scene.domain.upper[d];
-      }
-    const Point<dim> middle = scene.domain.lower + 0.5 * (scene.domain.upper - scene.domain.lower);
-    context.conductivity    = scene.material.conductivity.value(middle);
-    context.storage         = scene.material.storage(middle);
-    context.kernel          = scene.peridynamics.kernel;
-    context.exponent        = scene.peridynamics.kernel_exponent;
-    if (scene.domain.shape != Shape::mesh_file)
-      {
-        context.horizon = scene.horizon();
-        context.family  = lattice_terms(lattice_family<dim>(scene.domain.spacing(),
-                                                           context.horizon,
-                                                           scene.peridynamics.kernel,
-                                                           scene.peridynamics.kernel_exponent,
-                                                           scene.peridynamics.volume_fraction,
-                                                           scene.peridynamics.calibration),
-                                       scene.domain.spacing(),
-                                       context.conductivity);
-      }
-    if (scene.domain.shape != Shape::box)
-      context.no_named = "is the solution in a box, but 'Shape' in section 'Domain' is another.";
-    else if (!scene.material.conductivity.is_constant() || !scene.material.density.is_constant() ||
-             !scene.material.heat_capacity.is_constant())
-      context.no_named = "holds for a uniform material only (section 'Material').";
-    exact = make_exact_solution(scene.reference.solution, context);
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::make_readers()
-  {
-    probe_readers = make_point_readers<dim>(models, scene.cracks, scene.output.probes, "Probes");
-    line_readers  = make_point_readers<dim>(models, scene.cracks, scene.output.line, "Line");
-    grid_readers  = make_point_readers<dim>(models, scene.cracks, scene.output.grid, "Grid");
-  }
-
-
-  template <int dim>
-  void Simulation<dim>::note_gaps()
-  {
-    for (const std::string &note : gaps_in_line<dim>(line_readers, scene.output.line))
+    exact = make_reference(scene);
+    Timings::Scope scope(timings, "output");
+    output->find_points(reported());
+    for (const std::string &note : output->gaps_in_line())
       record->notes.push_back(note);
   }
 
 
   template <int dim>
-  void Simulation<dim>::make_tables()
+  void Simulation<dim>::check_mesh()
   {
-    const auto make = [&](const std::vector<std::vector<double>> &points, const std::string &name) {
-      return points.empty() ? nullptr :
-                              std::make_unique<PointTable>(files->folder, name, points, dim);
-    };
-    probes = make(scene.output.probes, "probes.csv");
-    line   = make(scene.output.line, "line.csv");
-    grid   = make(scene.output.grid, "grid.csv");
+    require_cells_everywhere(*mesh);
+    with_formulas(communicator, [&] { check_sides(scene, *mesh); });
+    check_points_of_parts(scene, *mesh, record->notes);
+    note_scene(scene, *mesh, record->notes);
   }
 
 
   template <int dim>
-  void Simulation<dim>::make_writers()
+  std::vector<const Problem<dim> *> Simulation<dim>::reported() const
   {
-    for (const auto &model : models)
-      writers.push_back(
-        std::make_unique<FieldWriter<dim>>(model->dofs(), files->folder, series_of(model->name())));
+    std::vector<const Problem<dim> *> list;
+    for (const auto &problem : problems)
+      list.push_back(problem.get());
+    return list;
   }
 
 
   template <int dim>
   void Simulation<dim>::run()
   {
+    require_computable(scene);
     require_memory(scene, communicator);
-    files = std::make_unique<RunFiles>(scene, text, communicator);
+    output->open(text, communicator);
     nlohmann::ordered_json summary;
-    with_orderly_end(*files, progress, [&] { summary = compute(); });
-    files.reset();
+    with_orderly_end(output->files(), progress, [&] { summary = compute(); });
+    output->close();
     progress.end();
     say_what_was_found(progress, summary, scene.general.output_directory);
   }
@@ -285,31 +145,22 @@ namespace PeriDeal
   nlohmann::ordered_json Simulation<dim>::compute()
   {
     build();
-    {
-      Timings::Scope scope(timings, "output");
-      make_readers();
-      note_gaps();
-    }
-    make_steppers();
-    {
-      Timings::Scope scope(timings, "output");
-      make_tables();
-      make_writers();
-    }
-    const std::vector<double> times = output_times();
-    if (scene.time.steady)
-      progress.line("steady state");
+    begin();
     progress.begin("time");
-    if (scene.output.starts_at_zero())
-      with_formulas([&] { write_start(); });
-    for (const double t : times)
+    if (!scene.time.steady)
+      settle();
+    const bool at_stops = tells_at_stops();
+    if (at_stops)
+      add_totals(0.);
+    if (scene.output.starts_at_zero() && !scene.time.steady)
+      write_fields(0.);
+    if (at_stops)
+      end_output(0.);
+    for (const double t : output_times())
       {
         advance_to(t);
         progress.update(scene.time.steady ? 1. : t / scene.time.end_time);
-        progress.doing("writing results");
-        Timings::Scope scope(timings, "output");
-        with_formulas([&] { write_output(t); });
-        end_output(t);
+        write_output(t);
       }
     progress.end();
     if (n_adaptations > 0)
@@ -317,184 +168,323 @@ namespace PeriDeal
                               (n_adaptations == 1 ? " time" : " times") + "; it has " +
                               readable_count(mesh->n_global_active_cells()) +
                               " cells at the end ('Zone = adaptive' in section 'Coupling').");
+    for (const auto &problem : problems)
+      problem->note_end(context());
     for (const std::string &note : record->notes)
       progress.note(note);
-    const nlohmann::ordered_json summary = summary_now();
-    files->complete(summary);
+    const nlohmann::ordered_json summary = summary_now(true);
+    output->complete(summary);
     return summary;
   }
 
 
   template <int dim>
-  void Simulation<dim>::write_output(const double t)
+  void Simulation<dim>::begin()
   {
-    if (!readers_fit)
-      make_readers();
-    for (auto &model : models) // refuses what is not finite before it is written
-      add_totals(t, *model);
-    for (auto &model : models)
-      model->solution.update_ghost_values();
-    add_points(t);
-    add_errors(t);
-    compare_models(t);
-    write_fields(t);
-    for (auto &model : models)
-      model->solution.set_ghost_state(false);
+    for (const auto *list : {&companions, &problems})
+      for (const auto &problem : *list)
+        problem->begin(context());
   }
 
 
   template <int dim>
-  void Simulation<dim>::write_start()
+  void Simulation<dim>::settle()
   {
-    Timings::Scope scope(timings, "output");
-    for (auto &model : models)
-      model->solution.update_ghost_values();
-    // All times have the same fields; the table of differences begins with the first results.
-    const auto comparison = record->comparison, comparisons = record->comparisons;
-    compare_models(0.);
-    record->comparison  = comparison;
-    record->comparisons = comparisons;
-    write_fields(0.);
-    for (auto &model : models)
-      model->solution.set_ghost_state(false);
+    for (const auto &companion : companions)
+      {
+        Timings::Scope scope(timings, companion->field_name());
+        companion->settle(context());
+      }
+    for (const auto &problem : problems)
+      {
+        progress.doing("solving " + problem->name());
+        problem->settle(context());
+      }
+  }
+
+
+  template <int dim>
+  bool Simulation<dim>::tells_at_stops() const
+  {
+    return std::any_of(problems.begin(), problems.end(), [](const auto &problem) {
+      return problem->tells_at_stops();
+    });
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::add_totals(const double t)
+  {
+    for (const auto &problem : problems)
+      problem->add_totals(t, context());
   }
 
 
   template <int dim>
   void Simulation<dim>::end_output(const double t)
   {
-    files->add_totals(std::exchange(record->totals, ""));
-    files->after_output([&] { return summary_now(); },
-                        scene.time.steady ? "the steady state" : "until t = " + full_precision(t));
+    output->end_time([&] { return summary_now(false); },
+                     scene.time.steady ? problems[0]->steady_name() :
+                                         "until t = " + full_precision(t));
   }
 
 
   template <int dim>
-  void Simulation<dim>::add_points(const double t)
+  void Simulation<dim>::add_errors(const double t)
   {
-    const auto add =
-      [&](const std::vector<std::vector<double>> &points, const auto &readers, PointTable *table) {
-        for (std::size_t m = 0; m < readers.size(); ++m)
-          table->add(t, models[m]->name(), readers[m]->evaluate(models[m]->solution));
-        if (exact && !points.empty())
-          {
-            std::vector<double> values;
-            for (unsigned int k = 0; k < points.size(); ++k)
-              values.push_back(readers[0]->is_gap(k) ? std::nan("") :
-                                                       exact->value(points[k].data(), t));
-            table->add(t, "exact", values);
-          }
-      };
-    add(scene.output.probes, probe_readers, probes.get());
-    add(scene.output.line, line_readers, line.get());
-    add(scene.output.grid, grid_readers, grid.get());
+    if (!exact)
+      return;
+    for (const auto &problem : problems)
+      with_formulas(communicator, [&] {
+        const Difference error = problem->error(*exact, t);
+        record->errors[problem->name()]["relative l2"].push_back({t, error.relative_l2});
+        record->errors[problem->name()]["maximum"].push_back({t, error.maximum});
+      });
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::write_output(const double t)
+  {
+    for (const auto &problem : problems)
+      problem->examine(t);
+    progress.doing("writing results");
+    Timings::Scope scope(timings, "output");
+    if (!readers_fit)
+      output->find_points(reported());
+    readers_fit = true;
+    if (!tells_at_stops()) // refuses what is not finite before it is written
+      add_totals(t);
+    with_formulas(communicator, [&] { output->write_points(t, exact.get()); });
+    add_errors(t);
+    compare_models(reported(), scene.domain, t, *record);
+    write_fields(t);
+    end_output(t);
   }
 
 
   template <int dim>
   void Simulation<dim>::write_fields(const double t)
   {
-    if (!scene.output.vtu && !scene.output.hdf5)
-      return;
-    nlohmann::ordered_json names = nlohmann::ordered_json::object();
-    for (std::size_t m = 0; m < models.size(); ++m)
-      {
-        std::vector<OutputField> fields{
-          {names_of(scene.general.physics).field, {models[m]->solution}}};
-        fields[0].components[0].update_ghost_values();
-        for (OutputField &field : models[m]->derived_fields(models[m]->solution, t))
-          fields.push_back(std::move(field));
-        if (models[m]->name() == to_string(ModelKind::peridynamics) && difference.size() > 0)
-          {
-            fields.push_back({"peridynamics_minus_finite_elements", {difference}});
-            fields.back().components[0].update_ghost_values();
-          }
-        const std::string name = writers[m]->write(fields, t, scene.output.vtu, scene.output.hdf5);
-        if (!name.empty())
-          names[models[m]->name()] = name;
-      }
-    record->fields.push_back({{"time", t}, {"files", names}});
-    if (scene.cracks.change())
-      record->fields.back()["cracks"] = corners_of(scene.cracks.pieces(t));
-    if (!cracks)
-      cracks = std::make_unique<CrackWriter>(files->folder);
-    if (scene.output.vtu)
-      cracks->write(crack_corners(scene.cracks.pieces(t)), t);
+    std::map<std::string, OutputField> more;
+    if (shows_difference(*problems[0]))
+      for (Vector &difference : difference_of_models(reported()))
+        more.emplace(to_string(ModelKind::peridynamics),
+                     OutputField{"peridynamics_minus_finite_elements", {std::move(difference)}});
+    output->write_fields(t, more);
   }
 
 
   template <int dim>
-  void Simulation<dim>::add_totals(const double t, ModelRun<dim> &model)
+  nlohmann::ordered_json Simulation<dim>::summary_now(const bool at_the_end) const
   {
-    const Balance       balance = model.op().balance(model.solution, t, scene.time.steady);
-    const PhysicsNames &names   = names_of(scene.general.physics);
-    require_finite(
-      {{"largest " + names.field, model.solution.linfty_norm()},
-       {names.flow, balance.throughput()},
-       {"imbalance", balance.imbalance()},
-       {names.content, balance.content}},
-      model.name(),
-      t,
-      "Numbers beyond 1e308 came up. Check the sizes and units of values, fluxes and sources (sections 'Boundary conditions' and 'Initial and source') and of the "
-      "properties in section 'Material'.");
-    const auto row = [&](const std::string &quantity, const double value) {
-      record->totals += full_precision(t) + "," + model.name() + "," + quantity + "," +
-                        full_precision(value) + "\n";
-    };
-    row(names.content,
-        scene.general.physics == Physics::moisture ? model.weight(model.solution) :
-                                                     balance.content);
-    for (const auto &[side, value] : balance.sides)
-      row(names.flow + " through " + side, value);
-    row(names.flow + " from sources", balance.sources);
-    nlohmann::ordered_json cumulative; // not if steady
-    row("rate of storage", balance.stored);
-    row("throughput", balance.throughput());
-    row("imbalance", balance.imbalance());
-    if (model.stepper)
+    nlohmann::ordered_json summary = PeriDeal::describe_scene(scene, text, *mesh, communicator);
+    if (scene.domain.coarsening > 0)
+      summary["mesh"] = {{"coarsening", scene.domain.coarsening}, {"adaptations", n_adaptations}};
+    describe_run(scene, *mesh, *record, timings, summary);
+    summary["write times"] = output_times();
+    for (const auto &problem : problems)
       {
-        const CumulativeBalance since_start =
-          model.ledger.balance(model.stepper->entered(), balance.content, communicator);
-        row(names.quantity + " entered since start", since_start.entered);
-        row(names.quantity + " stored since start", since_start.stored);
-        row("cumulative imbalance", since_start.imbalance());
-        cumulative = {{"entered", since_start.entered},
-                      {"stored", since_start.stored},
-                      {"imbalance", since_start.imbalance()}};
+        auto &entry = summary["models"][problem->name()];
+        entry       = describe_problem<dim>(*problem, problem->describe_solving(), *record);
+        if (at_the_end)
+          problem->describe_end(entry, *record);
       }
-    for (std::size_t crack = 0; crack < balance.cracks.size(); ++crack)
-      row(names.flow + " through crack " + std::to_string(crack + 1), balance.cracks[crack]);
-    record->balances[model.name()] = {
-      {"boundary flux", balance.sides},
-      {"heat balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}}};
-    if (!cumulative.empty())
-      record->balances[model.name()]["heat balance"]["cumulative"] = cumulative;
-    if (const auto kappa = effective_conductivity(scene, balance))
-      {
-        row("effective conductivity", *kappa);
-        record->balances[model.name()]["effective conductivity"] = *kappa;
-      }
-    if (!balance.cracks.empty())
-      record->balances[model.name()]["crack flux"] = balance.cracks;
+    problems[0]->describe_scene(summary, at_the_end);
+    return summary;
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                            \
-  template Simulation<dim>::Simulation(const Scene<dim> &,                                   \
-                                       const SceneText &,                                    \
-                                       const MPI_Comm,                                       \
-                                       const bool);                                          \
-  template Simulation<dim>::~Simulation();                                                   \
-  template void Simulation<dim>::build();                                                    \
-  template void Simulation<dim>::build_on(const std::shared_ptr<Triangulation<dim>> &);      \
-  template const ModelRun<dim>            &Simulation<dim>::model(const unsigned int) const; \
-  template const std::vector<std::string> &Simulation<dim>::notes() const;                   \
-  template void                            Simulation<dim>::make_readers();                  \
-  template void                            Simulation<dim>::note_gaps();                     \
-  template std::vector<double>             Simulation<dim>::output_times() const;            \
-  template void                            Simulation<dim>::run();
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  template <int dim>
+  void Simulation<dim>::dry_run()
+  {
+    require_computable(scene);
+    const double before = Utilities::MPI::sum(resident_memory(), communicator);
+    build();
+    begin();
+    double computing = 0., memory = 0.; // negative if it is not known
+    for (const auto *list : {&companions, &problems})
+      for (const auto &problem : *list)
+        {
+          const double own =
+            problem->time_of_run(output_times(), list == &problems, context(), memory);
+          computing = own >= 0. && computing >= 0. ? computing + own : -1.;
+        }
+    if (grading)
+      progress.line("With 'Zone = adaptive' all figures are those of the mesh at the start.");
+    for (const std::string &note : record->notes)
+      progress.note(note);
+    std::vector<double> components;
+    for (const auto &problem : problems)
+      components.push_back(components_written(*problem, problems.size()));
+    for (const std::string &line : describe_costs(scene,
+                                                  computing,
+                                                  before + memory,
+                                                  mesh->n_global_active_cells(),
+                                                  components,
+                                                  communicator))
+      progress.line(line);
+    progress.line("The scene is valid. Nothing was computed.");
+  }
+
+
+  template <int dim>
+  double Simulation<dim>::share_done(const unsigned int n, const double to) const
+  {
+    double some = 0., all = 0.;
+    for (unsigned int k = 0; k < problems.size(); ++k)
+      {
+        const double work = problems[k]->work_of(to - now);
+        all += work;
+        if (k < n)
+          some += work;
+      }
+    return (now + some / all * (to - now)) / scene.time.end_time;
+  }
+
+
+  template <int dim>
+  std::vector<double> Simulation<dim>::stops_until(const double t) const
+  {
+    std::vector<double> stops;
+    for (const auto &problem : problems)
+      for (const double stop : problem->stops(now, t))
+        stops.push_back(stop);
+    std::sort(stops.begin(), stops.end());
+    stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+    return stops;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::advance_to(const double t)
+  {
+    if (scene.time.steady)
+      return find_steady_state();
+    if (!(t > now))
+      return;
+    const std::vector<double> stops = stops_until(t);
+    for (unsigned int n = 0; n < stops.size(); ++n)
+      {
+        while (now < stops[n])
+          {
+            const double next = grading ? grading->next_adaptation(now) :
+                                          std::numeric_limits<double>::infinity();
+            const double to   = std::min(stops[n], next);
+            advance_all(to, n + 1, stops.size(), t);
+            if (to == next)
+              adapt(to);
+          }
+        if (!tells_at_stops())
+          continue;
+        Timings::Scope scope(timings, "output");
+        add_totals(now);
+        end_output(now);
+        progress.update(now / scene.time.end_time);
+      }
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::advance_all(const double       to,
+                                    const unsigned int stop,
+                                    const unsigned int n_stops,
+                                    const double       t)
+  {
+    for (const auto &companion : companions)
+      {
+        Timings::Scope scope(timings, companion->field_name());
+        companion->advance(
+          now,
+          to,
+          [](const double) {},
+          context());
+      }
+    for (unsigned int k = 0; k < problems.size(); ++k)
+      {
+        const double before = share_done(k, to), after = share_done(k + 1, to);
+        progress.doing(problems[k]->doing(stop, n_stops, t));
+        if (!problems[k]->tells_at_stops())
+          progress.advancing(now, to, before, after);
+        problems[k]->advance(
+          now,
+          to,
+          [&](const double share) { progress.update(before + share * (after - before)); },
+          context());
+      }
+    now = to;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::find_steady_state()
+  {
+    progress.line(problems[0]->steady_name());
+    settle();
+    constexpr double settled = 0.05; // share of cells more or fewer
+    for (unsigned int round = 0; round < 2 * scene.domain.coarsening; ++round)
+      {
+        const double n_before = mesh->n_global_active_cells();
+        if (!adapt(0.))
+          break;
+        settle();
+        if (std::abs(mesh->n_global_active_cells() - n_before) < settled * n_before)
+          break;
+      }
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::prepare_adaptation()
+  {
+    if (scene.coupling.zone != ZoneKind::adaptive)
+      return;
+    grading = std::make_unique<Grading<dim>>(scene, *mesh);
+    if (scene.time.steady)
+      return;
+    for (unsigned int round = 0; round < scene.domain.coarsening && adapt(0.); ++round)
+      for (auto &problem : problems)
+        problem->start_anew();
+  }
+
+
+  template <int dim>
+  bool Simulation<dim>::adapt(const double t)
+  {
+    if (!grading)
+      return false;
+    grading->set_time(t);
+    const auto guide = std::find_if(problems.begin(), problems.end(), [](const auto &problem) {
+      return problem->name() == to_string(ModelKind::coupled);
+    });
+    const RecoveryIndicators found = (*guide)->indicators();
+    // A uniform field has fluxes of round-off only.
+    constexpr double round_off = 1e-20;
+    const double     least     = round_off * found.size / scene.domain.spacing().norm_square();
+    const double     goal      = scene.coupling.adaptive_tolerance;
+    const double     target =
+      goal * goal * std::max(found.energy, least) / mesh->n_global_active_cells();
+    {
+      Timings::Scope scope(timings, "mesh adaptation");
+      if (!grading->mark(*mesh, found.squares, target))
+        return false;
+      for (auto &problem : problems)
+        problem->before_remesh();
+      mesh->execute_coarsening_and_refinement();
+    }
+    with_formulas(communicator, [&] {
+      for (auto &problem : problems)
+        problem->after_remesh(t, scene.time.steady);
+    });
+    for (auto &problem : problems)
+      problem->renew_stepper();
+    readers_fit = false;
+    ++n_adaptations;
+    return true;
+  }
+
+
+  template class Simulation<1>;
+  template class Simulation<2>;
+  template class Simulation<3>;
 } // namespace PeriDeal

@@ -4,13 +4,14 @@
 #include "summary_parts.h"
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <perideal/problems/places.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
-
-#include "places.h"
 
 namespace PeriDeal
 {
@@ -100,29 +101,15 @@ namespace PeriDeal
   json describe_start(const Scene<dim> &scene, const SceneText &text, const MPI_Comm communicator)
   {
     json summary;
-    summary["title"]          = scene.general.title;
-    summary["text"]           = teaching_text(text.text);
-    summary["scene file"]     = text.file_name;
-    summary["program"]        = std::string("PeriDeal ") + PERIDEAL_VERSION;
-    summary["dimension"]      = dim;
-    summary["processes"]      = Utilities::MPI::n_mpi_processes(communicator);
-    summary["units"]          = {{"length", scene.units.length},
-                                 {"time", scene.units.time},
-                                 {"temperature", scene.units.temperature},
-                                 {"force", scene.units.force},
-                                 {"energy", scene.units.energy},
-                                 {"mass", scene.units.mass},
-                                 {"current", scene.units.current},
-                                 {"field", scene.units.of_field(scene.general.physics)}};
-    const PhysicsNames &names = names_of(scene.general.physics);
-    summary["physics"]        = names.physics;
-    summary["names"]          = {{"field", names.field},
-                                 {"flux", names.flux},
-                                 {"content", names.content},
-                                 {"flow", names.flow},
-                                 {"quantity", names.quantity}};
-    summary["models"]         = json::object();
-    summary["fields"]         = json::array();
+    summary["title"]      = scene.general.title;
+    summary["text"]       = teaching_text(text.text);
+    summary["scene file"] = text.file_name;
+    summary["program"]    = std::string("PeriDeal ") + PERIDEAL_VERSION;
+    summary["dimension"]  = dim;
+    summary["processes"]  = Utilities::MPI::n_mpi_processes(communicator);
+    describe_physics(scene, summary);
+    summary["models"] = json::object();
+    summary["fields"] = json::array();
     return summary;
   }
 
@@ -147,6 +134,63 @@ namespace PeriDeal
     if (scene.domain.image)
       summary["image"] = describe_image(scene.domain.image_file, scene.domain.image_of_body());
     return summary;
+  }
+
+
+  template <int dim>
+  void describe_run(const Scene<dim>         &scene,
+                    const Triangulation<dim> &mesh,
+                    const ResultRecord       &record,
+                    const Timings            &timings,
+                    json                     &summary)
+  {
+    summary["cracks"]    = corners_of(scene.cracks.pieces(scene.cracks.end_time));
+    summary["steady"]    = scene.time.steady;
+    summary["end time"]  = scene.time.steady ? 0. : scene.time.end_time;
+    summary["notes"]     = record.notes;
+    summary["fields"]    = record.fields;
+    summary["wall time"] = timings.all();
+    summary["memory of mesh"] =
+      Utilities::MPI::sum(static_cast<double>(mesh.memory_consumption()), mesh.get_communicator());
+    if (!record.comparison.empty())
+      summary["comparison"] = record.comparison;
+    if (!record.comparisons.empty())
+      summary["comparisons"] = record.comparisons;
+  }
+
+
+  template <int dim>
+  json describe_problem(const Problem<dim> &problem, const json &own, const ResultRecord &record)
+  {
+    const MPI_Comm     communicator = problem.dofs().get_communicator();
+    const OperatorSize size         = problem.op().size();
+    json               entry;
+    entry["unknowns"] = size.unknowns;
+    if (size.bonds > 0)
+      entry["bonds"] = size.bonds;
+    entry["nonzeros"] = size.nonzeros;
+    if (size.busiest > 0.)
+      entry["work of the busiest process"] = size.busiest;
+    entry.update(own);
+    entry["operator applications"] = problem.op().n_applications();
+    entry["operator form"]         = size.form;
+    entry["settings"]              = json::object();
+    for (const auto &[name, value] : problem.settings())
+      entry["settings"][name] = value;
+    if (const CouplingCertificate *certificate = problem.examined())
+      entry["certificate"] = describe_certificate(*certificate);
+    entry["wall time"] = problem.timings.all();
+    entry["memory"]    = Utilities::MPI::sum(static_cast<double>(size.memory), communicator);
+    Utilities::System::MemoryStats stats;
+    Utilities::System::get_memory_stats(stats);
+    entry["peak memory"] =
+      1024. * Utilities::MPI::sum(static_cast<double>(stats.VmHWM), communicator);
+    if (record.errors.contains(problem.name()))
+      entry["errors"] = record.errors.at(problem.name());
+    for (const json *const results : {&record.balances, &record.extremes})
+      if (results->contains(problem.name()) && results->at(problem.name()).is_object())
+        entry.update(results->at(problem.name())); // null without any force
+    return entry;
   }
 
 
@@ -197,13 +241,44 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                      \
-  template json describe_scene(const Scene<dim> &,                                     \
-                               const SceneText &,                                      \
-                               const Triangulation<dim> &,                             \
-                               const MPI_Comm);                                        \
-  template json describe_start(const Scene<dim> &, const SceneText &, const MPI_Comm); \
-  template void write_image_as_read(const Scene<dim> &, ResultFolder &);
+  template <int dim>
+  void say_size(const Problem<dim> &problem, const Progress &progress)
+  {
+    const OperatorSize size = problem.op().size();
+    std::string        line = problem.name() + ": " + readable_count(size.unknowns) + " unknowns";
+    if (size.bonds > 0)
+      line += ", " + readable_count(size.bonds) + " bonds";
+    if (size.nonzeros > 0)
+      line += ", " + readable_count(size.nonzeros) +
+              (size.form == "lattice" && problem.n_components() == 1 ? " stored corrections" :
+                                                                       " stored numbers");
+    const double memory =
+      Utilities::MPI::sum(static_cast<double>(size.memory), problem.dofs().get_communicator());
+    progress.line(line + ", " + readable_bytes(memory));
+    for (const auto &[name, value] : problem.settings())
+      if (name == "operator form")
+        progress.line("  form: " + value);
+      else if (name == "calibration" && value.find("because") != std::string::npos)
+        progress.line("  calibration: " + value);
+    if (const CouplingCertificate *certificate = problem.examined())
+      progress.line(certificate_line(*certificate));
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                           \
+  template json describe_scene(const Scene<dim> &,                                          \
+                               const SceneText &,                                           \
+                               const Triangulation<dim> &,                                  \
+                               const MPI_Comm);                                             \
+  template json describe_start(const Scene<dim> &, const SceneText &, const MPI_Comm);      \
+  template void write_image_as_read(const Scene<dim> &, ResultFolder &);                    \
+  template void describe_run(const Scene<dim> &,                                            \
+                             const Triangulation<dim> &,                                    \
+                             const ResultRecord &,                                          \
+                             const Timings &,                                               \
+                             json &);                                                       \
+  template json describe_problem(const Problem<dim> &, const json &, const ResultRecord &); \
+  template void say_size(const Problem<dim> &, const Progress &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

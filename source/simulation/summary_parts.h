@@ -7,6 +7,8 @@
 
 #include <perideal/analysis/coupling_certificate.h>
 #include <perideal/output/result_folder.h>
+#include <perideal/problems/problem.h>
+#include <perideal/problems/result_record.h>
 #include <perideal/scene/scene.h>
 
 #include <nlohmann/json.hpp>
@@ -30,6 +32,26 @@ namespace PeriDeal
                                         const MPI_Comm                    communicator);
 
   /**
+   * What summary.json says of any run: cracks, end, notes, fields, times, memory of the mesh,
+   * comparisons of its models. Collective.
+   */
+  template <int dim>
+  void describe_run(const Scene<dim>                 &scene,
+                    const dealii::Triangulation<dim> &mesh,
+                    const ResultRecord               &record,
+                    const Timings                    &timings,
+                    nlohmann::ordered_json           &summary);
+
+  /**
+   * What it says of a problem: sizes, costs, settings, certificate, results so far. Collective.
+   * @param own what this physics says besides
+   */
+  template <int dim>
+  nlohmann::ordered_json describe_problem(const Problem<dim>           &problem,
+                                          const nlohmann::ordered_json &own,
+                                          const ResultRecord           &record);
+
+  /**
    * With `Shape = image` write image_as_read.png: one pixel per cell in the colours of the phases.
    * Not collective.
    */
@@ -43,4 +65,7 @@ namespace PeriDeal
   nlohmann::ordered_json describe_certificate(const CouplingCertificate &certificate);
   std::string            certificate_line(const CouplingCertificate &certificate);
 
+  /** Lines about the size of a problem, the form of its operator, its coupling. Collective. */
+  template <int dim>
+  void say_size(const Problem<dim> &problem, const Progress &progress);
 } // namespace PeriDeal

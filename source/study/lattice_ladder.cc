@@ -204,14 +204,21 @@ namespace PeriDeal
 
   double nodal_error(const std::vector<double> &values,
                      const std::vector<double> &reference,
-                     const CellCounts          &cells)
+                     const CellCounts          &cells,
+                     const bool                 with_gaps)
   {
     AssertDimension(values.size(), reference.size());
-    double difference = 0., size = 0., volume = 0.;
+    std::size_t n_vertices = 1;
+    for (const unsigned int n : cells)
+      n_vertices *= n + 1;
+    const std::size_t n_components = values.size() / n_vertices;
+    double            difference = 0., size = 0., volume = 0.;
     for (std::size_t k = 0; k < values.size(); ++k)
       {
+        if (with_gaps && std::isnan(reference[k]))
+          continue;
         double      v    = 1.;
-        std::size_t rest = k;
+        std::size_t rest = k / n_components;
         for (const unsigned int n : cells)
           {
             const std::size_t i = rest % (n + 1);

@@ -9,7 +9,6 @@
 #include <perideal/base/user_error.h>
 #include <perideal/output/result_folder.h>
 #include <perideal/scene/lists.h>
-#include <perideal/simulation/elastic_simulation.h>
 #include <perideal/simulation/simulation.h>
 
 #include <malloc.h>
@@ -124,10 +123,7 @@ namespace PeriDeal
     template <int dim>
     void run(const Scene<dim> &scene, const SceneText &text, const MPI_Comm communicator)
     {
-      if (scene.general.physics == Physics::elasticity)
-        ElasticSimulation<dim>(scene, text, communicator, true).run();
-      else
-        Simulation<dim>(scene, text, communicator, true).run();
+      Simulation<dim>(scene, text, communicator, true).run();
     }
 
 

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <map>
 #include <numeric>
+#include <sstream>
 
 namespace PeriDeal
 {
@@ -19,12 +20,36 @@ namespace PeriDeal
     using Json   = RowResult::Json;
     using Status = RowResult::Status;
 
-    /** The values of one model in grid.csv at the last time. */
+    std::vector<std::string> cells_of(const std::string &line)
+    {
+      std::vector<std::string> cells;
+      std::istringstream       in(line);
+      for (std::string cell; std::getline(in, cell, ',');)
+        cells.push_back(cell);
+      return cells;
+    }
+
+
+    /** Of grid.csv, those that are the unknown: `value`, or the components of a displacement. */
+    std::vector<std::size_t> columns_of_unknown(const std::vector<std::string> &header)
+    {
+      std::vector<std::size_t> columns;
+      for (std::size_t k = 0; k < header.size(); ++k)
+        for (const char *const name : {"value", "ux", "uy", "uz"})
+          if (header[k] == name)
+            columns.push_back(k);
+      return columns;
+    }
+
+
+    /** The values of one model in grid.csv at the last time, all components of a point together. */
     std::vector<double> read_grid(const CheckedRow &row, const std::string &model)
     {
       std::ifstream       in(row.folder + "/grid.csv");
       std::vector<double> values;
-      std::string         time;
+      std::string         time, head;
+      std::getline(in, head);
+      const std::vector<std::size_t> columns = columns_of_unknown(cells_of(head));
       for (std::string line; std::getline(in, line);)
         {
           const std::size_t first = line.find(','), second = line.find(',', first + 1);
@@ -36,7 +61,9 @@ namespace PeriDeal
               values.clear();
               time = line.substr(0, first);
             }
-          values.push_back(std::strtod(line.c_str() + line.rfind(',') + 1, nullptr));
+          const std::vector<std::string> cells = cells_of(line);
+          for (const std::size_t k : columns)
+            values.push_back(std::strtod(k < cells.size() ? cells[k].c_str() : "", nullptr));
         }
       AssertThrow(!values.empty(),
                   UserError("work_precision: '" + row.folder + "/grid.csv' of the row '" +
@@ -60,10 +87,14 @@ namespace PeriDeal
     LatticeValues split(const std::vector<double> &values, const std::vector<CellCounts> &lattices)
     {
       LatticeValues parts;
-      auto          begin = values.begin();
+      std::size_t   n_points = 0;
+      for (const CellCounts &cells : lattices)
+        n_points += n_vertices(cells);
+      auto begin = values.begin();
       for (const CellCounts &cells : lattices)
         {
-          const auto end = begin + static_cast<std::ptrdiff_t>(n_vertices(cells));
+          const auto end =
+            begin + static_cast<std::ptrdiff_t>(n_vertices(cells) * (values.size() / n_points));
           parts[cells].assign(begin, end);
           begin = end;
         }
@@ -103,7 +134,7 @@ namespace PeriDeal
         n_values += n_vertices(cells);
       for (const std::vector<double> &values : solutions)
         AssertThrow(
-          values.size() == n_values,
+          values.size() % n_values == 0 && values.size() == solutions[0].size(),
           UserError(
             "work_precision: the reference belongs to other lattices. Compute it again with --redo."));
       const auto difference = [&](const std::vector<double> &a, const std::vector<double> &b) {
@@ -233,10 +264,11 @@ namespace PeriDeal
         const std::vector<double> values = read_grid(computed.rows[k], planned.family->model);
         const std::vector<double> expected =
           plan.reference.empty() ? read_grid(computed.rows[k], "exact") : limit.at(planned.cells);
-        AssertThrow(values.size() == n_vertices(planned.cells) && expected.size() == values.size(),
+        AssertThrow(values.size() % n_vertices(planned.cells) == 0 &&
+                      expected.size() == values.size(),
                     UserError("work_precision: '" + computed.rows[k].folder +
                               "/grid.csv' is not whole. Compute the row again with --redo."));
-        row.error = nodal_error(values, expected, planned.cells);
+        row.error = nodal_error(values, expected, planned.cells, plan.reference.empty());
         for (unsigned int d = 0; d < box.dim(); ++d)
           row.spacing = std::max(row.spacing, (box.upper[d] - box.lower[d]) / planned.cells[d]);
         results.rows.push_back(row);

@@ -135,6 +135,31 @@ namespace PeriDeal
     }
 
 
+    /** Cells that a crack cuts carry nothing, or the crack is part of the surface. */
+    std::vector<WorkFamily> families_of_bodies()
+    {
+      std::vector<WorkFamily> all = {family("FEM, crack on faces", elements, "faces", "none"),
+                                     family("FEM, cells removed", elements, "removed", "none")};
+      for (const char *const m : {"2", "3", "4", "6.5"})
+        {
+          all.push_back(whole_body("cut at sides", m, "none", "none"));
+          all.push_back(whole_body("energy-corrected", m, "none", "energy"));
+          all.push_back(whole_body("completed", m, "auto", "auto"));
+        }
+      for (const char *const m : {"2", "3"})
+        for (const char *const c : {"0.5", "1", "2"})
+          for (const bool scaled : {false, true})
+            all.push_back(zone(m, c, scaled));
+      for (WorkFamily &one : all)
+        {
+          one.deforms = true;
+          if (!one.on_faces)
+            set_entry(one, "Cracks/Mesh", "removed");
+        }
+      return all;
+    }
+
+
     /**
      * The lattices of the reference: three, each twice as fine as the one before, with the cracks
      * on faces.
@@ -222,12 +247,17 @@ namespace PeriDeal
 
   const std::vector<WorkFamily> &work_families()
   {
-    static const std::vector<WorkFamily> families = make_families();
+    static const std::vector<WorkFamily> families = [] {
+      std::vector<WorkFamily> all = make_families(), of_bodies = families_of_bodies();
+      all.insert(all.end(), of_bodies.begin(), of_bodies.end());
+      return all;
+    }();
     return families;
   }
 
 
   WorkPlan plan_work(const CrackedBox  &box,
+                     const bool         deforms,
                      const bool         exact,
                      const bool         moving_cracks,
                      const std::string &cells,
@@ -267,7 +297,8 @@ namespace PeriDeal
           plan.rows.push_back({"reference, " + lattice_name(lattice), nullptr, lattice});
       }
     for (const WorkFamily &one : work_families())
-      add_rows(plan, box, one, moving_cracks, budget);
+      if (one.deforms == deforms)
+        add_rows(plan, box, one, moving_cracks, budget);
     return plan;
   }
 } // namespace PeriDeal

@@ -20,6 +20,7 @@ namespace PeriDeal
     double               ratio    = 0.;    // m of peridynamics in the whole body, else 0
     bool                 on_faces = false; // needs lattices with the cracks on cell faces
     unsigned int         multiple = 1;     // of the numbers of cells
+    bool                 deforms  = false; // for bodies that deform, else for what diffuses
   };
 
   /** All methods that are compared, in the order of tables and legends. */
@@ -42,12 +43,14 @@ namespace PeriDeal
   /**
    * The plan for a box with cracks.
    *
+   * @param deforms the body deforms, else something diffuses in it
    * @param exact the scene has a reference solution
    * @param cells, reference as of WorkPrecisionOptions
    *
    * Throws UserError.
    */
   WorkPlan plan_work(const CrackedBox  &box,
+                     const bool         deforms,
                      const bool         exact,
                      const bool         moving_cracks,
                      const std::string &cells,

@@ -5,6 +5,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/output/result_folder.h>
+#include <perideal/problems/problem_factory.h>
 #include <perideal/study/work_precision.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ namespace PeriDeal
     struct SceneFacts
     {
       CrackedBox  box;
-      bool        exact = false, moving_cracks = false;
+      bool        deforms = false, exact = false, moving_cracks = false;
       std::string title;
     };
 
@@ -57,6 +58,7 @@ namespace PeriDeal
           "'Solution' in section 'Reference'."));
       SceneFacts facts;
       facts.title         = scene.general.title;
+      facts.deforms       = n_components_of(scene) > 1;
       facts.exact         = !scene.reference.solution.empty();
       facts.moving_cracks = scene.cracks.change();
       for (unsigned int d = 0; d < dim; ++d)
@@ -91,6 +93,7 @@ namespace PeriDeal
     {
       return {{"Domain/Node spacing", ""},
               {"Domain/Nodes", "vertices"},
+              {"Cracks/Nodes on cracks", "left"}, // these very cells
               {"Peridynamics/Flux treatment", "natural"},
               {"Finite elements/Degree", "1"},
               {"Coupling/Certificate", "false"},
@@ -153,7 +156,8 @@ namespace PeriDeal
           std::string &fault = faults[row.family];
           try
             {
-              with_scene(read_scene(scene, all, communicator), [](const auto &) {});
+              with_scene(read_scene(scene, all, communicator),
+                         [](const auto &parsed) { require_computable(parsed); });
             }
           catch (const UserError &error)
             {
@@ -240,10 +244,12 @@ namespace PeriDeal
     for (const auto &[entry, value] : common_settings())
       overrides.push_back(entry + "=" + value);
     overrides.push_back("Models=finite elements"); // those of the rows may be others
+    overrides.push_back("Peridynamics/Surface correction=none");
     SceneFacts facts;
     with_scene(read_scene(scene, overrides, communicator),
                [&](const auto &parsed) { facts = facts_of(parsed); });
     WorkPlan plan = plan_work(facts.box,
+                              facts.deforms,
                               facts.exact,
                               facts.moving_cracks,
                               options.cells,

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """What is computed, but told: points outside the body, parts that nothing uses, entries that are rarely meant so, rows that tractions tear off.
 
-    doubts.py gaps | entries | symmetry | torn
+    doubts.py gaps | entries | symmetry | torn | loose
 """
 
 import math
@@ -240,6 +240,21 @@ def torn():
     not_said(whole, "beside the loaded")
 
 
-DOUBTS = {"gaps": gaps, "entries": entries, "symmetry": symmetry, "torn": torn}
+def loose():
+    """Parts that cracks cut off and loads pull: `perideal check` finds them, on lattices that it estimates by coarse ones, too, and nothing where they are held."""
+    folder = tempfile.mkdtemp(prefix="perideal_")
+    cut = {**ELASTIC, "Domain/Holes": "", "Output/Line": "", "Time/Steady": "true", BC + "Traction": "right: if(y > 0.6, 1, 0), 0",
+           "Cracks/Segments": "-1, 0.52 ; 2, 0.52", "Peridynamics/Horizon": "0.02"}
+    for model in (FE, PD):
+        for cells in (100, 180):  # 20,000 unknowns, and 65,000, an estimate of whose coarse lattices precedes
+            settings = {**cut, "Models": model, "Domain/Cells": f"{cells}, {cells}"}
+            status, text = check_command(folder, PLATE, settings)
+            check(status == 1 and "Nothing holds a part" in text and "'Displacement'" in text, f"{model}, {cells} cells: {text}")
+            status, text = check_command(folder, PLATE, {**settings, BC + "Displacement": "bottom: 0, 0 ; top: 0, 0"})
+            check(status == 0 and "time: about" in text, f"held on both sides, {model}, {cells} cells: {text}")
+    return folder
+
+
+DOUBTS = {"gaps": gaps, "entries": entries, "symmetry": symmetry, "torn": torn, "loose": loose}
 
 finish(*[folder for folder in [DOUBTS[wanted]() for wanted in sys.argv[1:] or DOUBTS] if folder])

@@ -14,7 +14,6 @@
 #include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/field_writer.h>
-#include <perideal/simulation/elastic_simulation.h>
 #include <perideal/simulation/simulation.h>
 
 #include <fcntl.h>
@@ -100,10 +99,7 @@ namespace
   {
     Scene<dim> scene;
     parse_scene(text, scene);
-    if (scene.general.physics == Physics::elasticity)
-      ElasticSimulation<dim>(scene, text, communicator, false).run();
-    else
-      Simulation<dim>(scene, text, communicator, false).run();
+    Simulation<dim>(scene, text, communicator, false).run();
   }
 
 

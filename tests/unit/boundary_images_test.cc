@@ -373,6 +373,49 @@ namespace
       }
     EXPECT_EQ(n_corners, dim == 2 ? 1u : 3u * 8u + 1u);
   }
+
+  /** What node and images at its place fill of h^dim, at the origin. */
+  template <int dim>
+  double filled_at_origin(const Nodes<dim>                                            &nodes,
+                          const std::vector<dealii::types::boundary_id>               &symmetry,
+                          const std::function<bool(const dealii::types::boundary_id)> &goes_on,
+                          const double                                                 h)
+  {
+    double     volume = 0.;
+    const auto images = boundary_images<dim>(nodes, symmetry, goes_on, 3. * h);
+    for (unsigned int m = 0; m < nodes.n_local(); ++m)
+      if (nodes.position(m).norm() < 1e-9)
+        {
+          volume += nodes.volume(m);
+          for (const BoundaryImage<dim> &image : images)
+            if (image.origin == m && image.place.norm() < 1e-9)
+              volume += image.volume;
+        }
+    return volume / std::pow(h, dim);
+  }
+
+
+  /** The upper half of a notch of 90 degrees, its tip in the origin; sides of their direction. */
+  Triangulation<2> half_notch()
+  {
+    Triangulation<2> mesh;
+    const auto       quad = [](const std::vector<unsigned int> &vertices) {
+      dealii::CellData<2> cell;
+      std::copy(vertices.begin(), vertices.end(), cell.vertices.begin());
+      return cell;
+    };
+    mesh.create_triangulation({{0., 0.}, {1., 0.}, {0., 1.}, {1., 1.}, {-1., 1.}, {-1., 2.}},
+                              {quad({0, 1, 2, 3}), quad({4, 0, 5, 2})},
+                              {});
+    for (const auto &face : mesh.active_face_iterators())
+      if (face->at_boundary())
+        {
+          const Point<2> p = face->center();
+          face->set_boundary_id(p[1] < 1e-9 ? 1 : std::abs(p[0] + p[1]) < 1e-9 ? 2 : 0);
+        }
+    mesh.refine_global(4);
+    return mesh;
+  }
 } // namespace
 
 
@@ -380,4 +423,31 @@ TEST(BoundaryImages, fill_reentrant_corners)
 {
   check_reentrant_corner<2>();
   check_reentrant_corner<3>();
+}
+
+
+TEST(BoundaryImages, fill_reentrant_corners_in_planes_of_symmetry)
+{
+  const Triangulation<2> mesh = half_notch();
+  const MeshFile<2>      file("half_notch", mesh);
+  const Body<2>          body(file.settings(0.3), ModelKind::peridynamics, MPI_COMM_SELF);
+  // Of the whole notch, whose nodes above and below the tip make parallelograms.
+  const auto all = [](const dealii::types::boundary_id) { return true; };
+  EXPECT_NEAR(filled_at_origin<2>(*body.nodes, {1}, all, 1. / 16.), 4. / 3., 1e-9);
+}
+
+
+TEST(BoundaryImages, fill_their_share_of_reentrant_corners_beside_sides_that_end)
+{
+  Triangulation<2> mesh;
+  dealii::GridGenerator::hyper_L(mesh, -1., 1., true);
+  mesh.refine_global(4);
+  dealii::types::boundary_id ending = dealii::numbers::invalid_boundary_id;
+  for (const auto &face : mesh.active_face_iterators())
+    if (face->at_boundary() && std::abs(face->center()[0]) < 1e-9)
+      ending = face->boundary_id();
+  const MeshFile<2> file("ending", mesh);
+  const Body<2>     body(file.settings(0.3), ModelKind::peridynamics, MPI_COMM_SELF);
+  const auto goes_on = [ending](const dealii::types::boundary_id side) { return side != ending; };
+  EXPECT_NEAR(filled_at_origin<2>(*body.nodes, {}, goes_on, 1. / 16.), 7. / 8., 1e-9);
 }

@@ -13,21 +13,39 @@
 namespace PeriDeal
 {
   /**
-   * A known solution of a diffusion problem, to measure errors against. Coordinates are those of
-   * the scene.
+   * A known solution of a problem, to measure errors against: the value of what diffuses, or the
+   * displacement of a body. Coordinates are those of the scene.
    */
   class ExactSolution
   {
   public:
     virtual ~ExactSolution() = default;
 
-    /** The value at the point x (dim numbers) and time t >= 0. */
-    virtual double value(const double *x, const double t) const = 0;
+    /**
+     * A component at the point x (dim numbers) and time t >= 0; not a number where the solution has
+     * no single value.
+     */
+    virtual double value(const double *x, const double t, const unsigned int component) const = 0;
 
     /**
-     * Write the spatial gradient (dim numbers) if it is known; false, and nothing written, if not.
+     * Write the spatial gradient of a component (dim numbers) if it is known; false, and nothing
+     * written, if not.
      */
-    virtual bool gradient(const double *x, const double t, double *g) const = 0;
+    virtual bool gradient(const double      *x,
+                          const double       t,
+                          const unsigned int component,
+                          double            *g) const = 0;
+
+    /** Of the first component. */
+    double value(const double *x, const double t) const
+    {
+      return value(x, t, 0);
+    }
+
+    bool gradient(const double *x, const double t, double *g) const
+    {
+      return gradient(x, t, 0, g);
+    }
   };
 
 

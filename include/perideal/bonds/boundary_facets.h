@@ -63,6 +63,12 @@ namespace PeriDeal
      */
     std::vector<Foot> feet(const dealii::Point<dim> &p) const;
 
+    /** The facets in which p lies, one for each direction, whether their sides go on or not. */
+    std::vector<Foot> at(const dealii::Point<dim> &p) const;
+
+    /** Whether normals are those of one side: they differ by less than those 37 degrees. */
+    static bool are_alike(const dealii::Tensor<1, dim> &a, const dealii::Tensor<1, dim> &b);
+
     /**
      * The nearest point of facets whose normals differ from @p normal by less than that; false if
      * there is none within the reach and a facet's size.

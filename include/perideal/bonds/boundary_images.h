@@ -47,8 +47,8 @@ namespace PeriDeal
    * node along the normals of its vertices: beyond a hole images lie closer than nodes, and none
    * are beyond its middle. At convex edges one side after the other goes on. Images that are nearer
    * to another part of the boundary are left out. Beyond planes of symmetry all is mirrored. A node
-   * on a side has images at its own place, the part of its volume that the body lacks there.
-   * Beyond sides that do not go on there are none.
+   * on a side has images at its own place, the part of its volume that the body lacks there. Beyond
+   * sides that do not go on there are none; in a reentrant corner the others then fill their share.
    *
    * Those of the nodes that this process knows. Planes of symmetry are normal to an axis.
    * Collective.

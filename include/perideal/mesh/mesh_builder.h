@@ -38,4 +38,8 @@ namespace PeriDeal
   std::unique_ptr<dealii::Triangulation<dim>> build_mesh(const Scene<dim>         &scene,
                                                          const MPI_Comm            communicator,
                                                          std::vector<std::string> &notes);
+
+  /** Throws UserError if a process has no cells of a mesh. Collective. */
+  template <int dim>
+  void require_cells_everywhere(const dealii::Triangulation<dim> &mesh);
 } // namespace PeriDeal

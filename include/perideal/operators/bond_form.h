@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/bonds/diffusion_bonds.h>
+#include <perideal/scene/choices.h>
 
 #include <functional>
 #include <memory>
@@ -49,8 +50,8 @@ namespace PeriDeal
     virtual double row_sums(double *sums) const = 0;
 
     /**
-     * The conductances of these owned nodes' bonds have changed (Families::set_cracks_of(),
-     * set_node_factors()): take them anew, and write the rows' sums of W_ij to sums[node]. Costs in
+     * The conductances of these owned nodes' bonds have changed (CrackSet::set_time(),
+     * NodeFactors::set()): take them anew, and write the rows' sums of W_ij to sums[node]. Costs in
      * proportion to the rows, apart from a copy of the stored corrections.
      *
      * @param rows in ascending order
@@ -58,7 +59,7 @@ namespace PeriDeal
     virtual void update_rows(const std::vector<unsigned int> &rows, double *sums) = 0;
 
     /**
-     * The conductivities of all nodes have changed (Families::take_conductivities_at()): scale each
+     * The conductivities of all nodes have changed (BondConductivities::take_at()): scale each
      * bond, and write the sums of all rows.
      */
     virtual void update_conductivities(double *sums) = 0;
@@ -93,4 +94,10 @@ namespace PeriDeal
    */
   template <int dim>
   bool lattice_form_suits(const DiffusionBonds<dim> &bonds, std::string &reason);
+
+  /**
+   * Whether bonds take the lattice form under the entry `Operator form`. @param reason why they
+   * cannot, or empty; @param pays with `auto`. Throws UserError where they have to, but cannot.
+   */
+  bool takes_lattice_form(const OperatorForm wanted, const std::string &reason, const bool pays);
 } // namespace PeriDeal

@@ -33,6 +33,12 @@ namespace PeriDeal
     BondsAcrossVoids    across_voids         = BondsAcrossVoids::automatic;
     OperatorForm form = OperatorForm::automatic; // entry `Operator form` = auto | lattice | stored
 
+    /** Fluxes are sources in the outermost nodes: no values there follow from others. */
+    bool natural_fluxes() const
+    {
+      return flux_treatment == FluxTreatment::natural;
+    }
+
     /** The surface correction is one of the linear peridynamic solid. */
     bool corrects_elastic_bonds() const;
 

@@ -39,6 +39,7 @@ namespace PeriDeal
     std::string content;  // what the body holds: heat, sum of C_sat w V, charge, strain energy
     std::string flow;     // what passes through sides
     std::string quantity; // what is conserved
+    std::string property; // of the material that has an effective value for a body; or none
   };
 
   const PhysicsNames &names_of(const Physics physics);

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/problems/problem_cost.h>
 #include <perideal/scene/scene.h>
 
 #include <mpi.h>
@@ -12,18 +13,6 @@
 
 namespace PeriDeal
 {
-  /** What a model will need, as far as that can be told. */
-  struct ModelEstimate
-  {
-    std::string name;
-    double      unknowns = 0., bonds = 0.;
-    double      applications        = 0.; // of the operator until the end time; 0: not known
-    double      time_of_application = 0.; // in seconds
-    double      time_of_solution    = 0.; // of a linear equilibrium or steady state; 0: not known
-    double      components          = 0.; // of all fields that are written together
-  };
-
-
   /** What writing fields takes: seconds in all, and bytes at its peak. */
   struct OutputEstimate
   {
@@ -73,6 +62,15 @@ namespace PeriDeal
    */
   template <int dim>
   RunEstimate estimate_run(const Scene<dim> &scene, const MPI_Comm communicator);
+
+  /**
+   * What it says of one model. @param memory raised to what the run needs. Collective.
+   */
+  template <int dim>
+  ModelEstimate estimate_model(const Scene<dim>  &scene,
+                               const std::string &model,
+                               const MPI_Comm     communicator,
+                               double            &memory);
 
   /** The lines of `perideal check` about it, and whether it fits into what is available.
    * Collective. */

@@ -6,25 +6,28 @@
 #include <deal.II/grid/tria.h>
 
 #include <perideal/analysis/exact_solution.h>
-#include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/progress.h>
 #include <perideal/mesh/grading.h>
-#include <perideal/output/crack_writer.h>
-#include <perideal/simulation/model_run.h>
-#include <perideal/simulation/run_files.h>
+#include <perideal/problems/problem.h>
+#include <perideal/scene/scene.h>
 
-#include <functional>
-#include <map>
+#include <nlohmann/json_fwd.hpp>
+
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace PeriDeal
 {
   struct ResultRecord;
+  template <int dim>
+  class RunOutput;
 
   /**
-   * Owns and wires the members of a run: mesh, models, steppers, output. All models of the scene
-   * advance together from one output time to the next, so that they can be compared. No
-   * discretisation and no time stepping here. All functions are collective and throw UserError.
+   * Owns and wires the members of a run, whatever it computes: mesh, problems, output. All problems
+   * of the scene advance together from one output time to the next, so that they can be compared.
+   * No physics, no discretisation and no time stepping here. All functions are collective and throw
+   * UserError.
    */
   template <int dim>
   class Simulation
@@ -45,89 +48,58 @@ namespace PeriDeal
     /** Build everything, say what a run would need, compute and write nothing. */
     void dry_run();
 
-    /**
-     * Build everything on a mesh of the same scene, which others use too, for advance_to(). Nothing
-     * is written then.
-     */
-    void build_on(const std::shared_ptr<dealii::Triangulation<dim>> &given_mesh);
-
-    /**
-     * From the time reached so far, at first 0, to time t; where the scene is steady the steady
-     * state, whatever t.
-     */
-    void advance_to(const double t);
-
-    /** In the order of `Models`. Not collective. */
-    const ModelRun<dim> &model(const unsigned int number) const;
-
-    /** Of the fields of a model, as many as it writes at a time. Collective. */
-    unsigned int components_written(const unsigned int number) const;
-
-    /**
-     * Seconds that the models of a run take once they are built, as far as that can be told before;
-     * negative if not. Collective.
-     */
-    double time_of_run() const;
-
-    /** What the user should know. Not collective. */
-    const std::vector<std::string> &notes() const;
-
   private:
-    void                   build();
-    void                   build_mesh_of_run();
-    void                   with_formulas(const std::function<void()> &action) const;
-    void                   make_steppers();
-    void                   make_stepper_of(ModelRun<dim> &model);
-    void                   make_readers();
-    void                   note_gaps();
-    void                   solve_models();
-    void                   prepare_adaptation();
-    bool                   adapt(const double t);
-    void                   make_tables();
-    void                   make_writers();
+    using List = std::vector<std::unique_ptr<Problem<dim>>>;
+
+    RunContext                        context() const;
+    std::vector<const Problem<dim> *> reported() const;
+    std::vector<double>               output_times() const;
+
+    void build();
+    void check_mesh();
+    void prepare_adaptation();
+
     nlohmann::ordered_json compute(); // the summary at the end
-    void                   make_reference();
-    void advance_through_events(ModelRun<dim> &model, const double t_begin, const double t_end);
-    void write_output(const double t);
-    void write_start(); // the first frame of a film
-    void end_output(const double t);
-    void add_points(const double t);
-    void add_totals(const double t, ModelRun<dim> &model);
-    void add_errors(const double t);
-    void compare_models(const double t);
-    void compare_with_others(const double t, const ModelRun<dim> &coupled);
-    void write_fields(const double t);
-    nlohmann::ordered_json summary_now() const;
-    void                   describe(const ModelRun<dim> &model) const;
-    std::vector<double>    output_times() const;
-    double                 expected_applications(const ModelRun<dim> &model) const;
-    double                 time_of_run(const ModelRun<dim> &model) const;
-    double                 time_of_application(const ModelRun<dim> &model) const;
+    void                   begin();
+    void                   settle();
+    bool                   tells_at_stops() const;
+    void                   advance_to(const double t);
+    void                   find_steady_state();
+    std::vector<double>    stops_until(const double t) const;
+
+    /** To a time on the way to t, the given one of some stops. */
+    void advance_all(const double       to,
+                     const unsigned int stop,
+                     const unsigned int n_stops,
+                     const double       t);
 
     /**
-     * The share of the run that is done when the first n models have got to @p t and the others are
-     * where they are now, as far as sizes tell it. Collective.
+     * The share of the run that is done when the first n problems have got to @p t and the others
+     * are where they are now, as far as sizes tell it. Collective.
      */
     double share_done(const unsigned int n, const double t) const;
+    bool   adapt(const double t);
 
-    const Scene<dim>                                 &scene;
-    const SceneText                                  &text;
-    MPI_Comm                                          communicator;
-    mutable Progress                                  progress;
-    Timings                                           timings;
-    std::shared_ptr<dealii::Triangulation<dim>>       mesh;
-    std::vector<std::unique_ptr<ModelRun<dim>>>       models;
-    std::vector<std::unique_ptr<FieldWriter<dim>>>    writers;
-    std::vector<std::unique_ptr<PointEvaluator<dim>>> probe_readers, line_readers, grid_readers;
-    std::unique_ptr<ExactSolution>                    exact;
-    std::unique_ptr<RunFiles>                         files; // of run() only
-    std::unique_ptr<PointTable>                       probes, line, grid;
-    std::unique_ptr<CrackWriter>                      cracks; // from the first fields on
-    std::unique_ptr<ResultRecord>                     record;
-    Vector                        difference; // peridynamics minus finite elements, at the nodes
-    std::unique_ptr<Grading<dim>> grading;    // only where the mesh is adapted
-    bool                          readers_fit   = true; // the mesh
-    unsigned int                  n_adaptations = 0;
-    double                        now           = 0.;
+    void                   write_output(const double t);
+    void                   write_fields(const double t);
+    void                   add_totals(const double t);
+    void                   add_errors(const double t);
+    void                   end_output(const double t);
+    nlohmann::ordered_json summary_now(const bool at_the_end) const;
+
+    const Scene<dim>                           &scene;
+    const SceneText                            &text;
+    MPI_Comm                                    communicator;
+    mutable Progress                            progress;
+    Timings                                     timings;
+    std::shared_ptr<dealii::Triangulation<dim>> mesh;
+    List                                        companions, problems; // advanced in this order
+    std::unique_ptr<ExactSolution>              exact;
+    std::unique_ptr<ResultRecord>               record;
+    std::unique_ptr<RunOutput<dim>>             output;
+    std::unique_ptr<Grading<dim>>               grading; // only where the mesh is adapted
+    bool                                        readers_fit   = true; // the mesh
+    unsigned int                                n_adaptations = 0;
+    double                                      now           = 0.;
   };
 } // namespace PeriDeal

@@ -73,8 +73,11 @@ namespace PeriDeal
   /**
    * sqrt(sum V (u - r)^2 / sum V r^2) over the vertices of a lattice, x fastest, V their share of
    * the cells around them. Without a reference that differs from zero the root of sum V u^2/sum V.
+   * @param with_gaps what has no number in the reference does not count: an exact solution on a
+   *                  crack, where it has two values
    */
   double nodal_error(const std::vector<double> &values,
                      const std::vector<double> &reference,
-                     const CellCounts          &cells);
+                     const CellCounts          &cells,
+                     const bool                 with_gaps = false);
 } // namespace PeriDeal

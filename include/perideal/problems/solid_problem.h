@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/analysis/elastic_stress.h>
+#include <perideal/analysis/phase_statistics.h>
+#include <perideal/analysis/stress_intensity.h>
+#include <perideal/operators/elastic_operator.h>
+#include <perideal/problems/problem.h>
+#include <perideal/scene/scene.h>
+#include <perideal/solvers/motion_stepper.h>
+#include <perideal/solvers/slow_loading.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  template <int dim>
+  class DiffusionProblem;
+
+  /**
+   * A body that deforms, in one model of a scene: dim unknowns at each node, interleaved. Functions
+   * are collective.
+   */
+  template <int dim>
+  class SolidProblem : public Problem<dim>
+  {
+  public:
+    explicit SolidProblem(const Scene<dim> &scene);
+
+    std::string              field_name() const override;
+    std::string              steady_name() const override;
+    const Vector            &state() const override;
+    unsigned int             n_components() const override;
+    std::vector<std::string> columns() const override;
+    Difference               error(const ExactSolution &exact, const double t) const override;
+    std::vector<double>      exact_row(const ExactSolution      &exact,
+                                       const dealii::Point<dim> &point,
+                                       const double              t) const override;
+    typename FieldWriter<dim>::Choice shown() const override;
+
+    void                begin(const RunContext &context) override;
+    void                settle(const RunContext &context) override;
+    std::vector<double> stops(const double from, const double to) const override;
+    bool                tells_at_stops() const override;
+    std::string doing(const unsigned int k, const unsigned int n, const double t) const override;
+    void        advance(const double                             from,
+                        const double                             to,
+                        const std::function<void(const double)> &report,
+                        const RunContext                        &context) override;
+    double      work_of(const double span) const override;
+    void        examine(const double t) override;
+    void        add_totals(const double t, const RunContext &context) override;
+    void        note_end(const RunContext &context) const override;
+    nlohmann::ordered_json describe_solving() const override;
+    void   describe_end(nlohmann::ordered_json &entry, ResultRecord &record) const override;
+    void   describe_scene(nlohmann::ordered_json &summary, const bool at_the_end) const override;
+    void   take_sample(const RunContext &context, ModelEstimate &estimate) override;
+    double time_of_run(const std::vector<double> &times,
+                       const bool                 says,
+                       const RunContext          &context,
+                       double                    &memory) override;
+
+    /** Of slow loading: the time between two equilibria. Not collective. */
+    double load_step() const;
+
+    /** The initial state and the stepper of a motion. Throws UserError. */
+    void begin_motion(const RunContext &context);
+
+    ElasticOperator &op() const override = 0;
+
+    /** The mean stress over the volume of the body: what the body as a whole carries. */
+    virtual dealii::SymmetricTensor<2, 3> mean_stress() const = 0;
+
+    /** At the ends of cracks, where the model has a local stress (crack_end_integrals()). */
+    virtual std::vector<StressIntensity> stress_intensities(const double /*time*/) const
+    {
+      return {};
+    }
+
+    /** The stress of each own node or cell, with its phase. */
+    virtual std::vector<StressSample> stress_samples() const = 0;
+
+    const Scene<dim>              &scene;
+    const DiffusionProblem<dim>   *heat = nullptr; // what computes the temperature, if anything
+    Vector                         displacement;
+    Vector                         velocity;          // of a motion
+    std::unique_ptr<MotionStepper> stepper;           // null in equilibrium
+    std::unique_ptr<SlowLoading>   loading;           // null in motion
+    double                         stable_step  = 0.; // of a motion by verlet, at its start
+    double                         force_scale  = 0.; // the largest find_force_scale() so far
+    unsigned int                   n_iterations = 0;
+
+  private:
+    void           set_start();
+    void           take_temperature();
+    StepperOptions stepper_options() const;
+    void           begin_loading(const RunContext &context);
+    void           move(const double                             from,
+                        const double                             to,
+                        const std::function<void(const double)> &report,
+                        const RunContext                        &context);
+  };
+
+
+  /**
+   * ux, uy, uz, then the components of the stress and `von_mises`, and a computed `temperature`:
+   * the columns of probes.csv and line.csv.
+   */
+  template <int dim>
+  std::vector<std::string> solid_columns(const Scene<dim> &scene);
+
+  /** Builds a model's nodes and operator. The time goes into its timings. */
+  template <int dim>
+  std::unique_ptr<SolidProblem<dim>> make_solid_problem(const ModelKind                   model,
+                                                        const dealii::Triangulation<dim> &mesh,
+                                                        const Scene<dim>                 &scene);
+} // namespace PeriDeal

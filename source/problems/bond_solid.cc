@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/fe/fe_dgq.h>
+#include <deal.II/fe/fe_q.h>
+
+#include <perideal/operators/state_operator.h>
+#include <perideal/scene/beyond_sides.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+
+#include "diffusion_parts.h"
+#include "solid_fields.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    class BondSolid : public SolidProblem<dim>
+    {
+    public:
+      using SolidProblem<dim>::scene;
+
+      BondSolid(const Triangulation<dim> &mesh, const Scene<dim> &scene)
+        : SolidProblem<dim>(scene)
+        , handler(mesh)
+      {
+        {
+          Timings::Scope scope(this->timings, "unknowns");
+          if (scene.domain.nodes == NodePlacement::vertices)
+            handler.distribute_dofs(FE_Q<dim>(1));
+          else
+            handler.distribute_dofs(FE_DGQ<dim>(0));
+          if (scene.domain.shape != Shape::mesh_file)
+            number_along_lattice(handler, scene.domain);
+          node_set = std::make_unique<Nodes<dim>>(handler,
+                                                  scene.domain,
+                                                  scene.cracks,
+                                                  scene.peridynamics.nodal_volume);
+        }
+        Timings::Scope scope(this->timings, "operator");
+        states = std::make_unique<StateOperator<dim>>(*node_set, scene);
+      }
+
+      std::string name() const override
+      {
+        return to_string(ModelKind::peridynamics);
+      }
+
+      const DoFHandler<dim> &dofs() const override
+      {
+        return handler;
+      }
+
+      const Nodes<dim> *nodes() const override
+      {
+        return node_set.get();
+      }
+
+      ElasticOperator &op() const override
+      {
+        return *states;
+      }
+
+      Point<dim> position(const unsigned int node) const override
+      {
+        return node_set->position(node);
+      }
+
+      double volume(const unsigned int node) const override
+      {
+        return node_set->volume(node);
+      }
+
+      std::vector<double> at_points(const PointEvaluator<dim>              &reader,
+                                    const std::vector<std::vector<double>> &points) const override
+      {
+        constexpr unsigned int n_stresses = SymmetricTensor<2, 3>::n_independent_components;
+        const auto             stress     = nodal_stress(states->tensors(this->displacement));
+        std::vector<std::vector<double>> columns;
+        for (unsigned int d = 0; d < dim; ++d)
+          columns.push_back(reader.evaluate(this->displacement, dim, d));
+        // Von Mises' stress of interpolated components would be smaller than that of the nodes: it
+        // is interpolated itself.
+        for (unsigned int k = 0; k <= n_stresses; ++k)
+          {
+            Vector values(node_set->partitioner());
+            for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+              values.local_element(i) = k < n_stresses ? stress[i].access_raw_entry(k) :
+                                                         von_mises(stress[i]);
+            columns.push_back(reader.evaluate(values));
+          }
+        const std::vector<double> change = changes_at_points(reader);
+        std::vector<double>       rows;
+        for (std::size_t k = 0; k < points.size(); ++k)
+          {
+            double                values[dim];
+            SymmetricTensor<2, 3> at_point;
+            for (unsigned int d = 0; d < dim; ++d)
+              values[d] = columns[d][k];
+            for (unsigned int c = 0; c < n_stresses; ++c)
+              at_point.access_raw_entry(c) = columns[dim + c][k];
+            append_row(values, at_point, dim, rows);
+            rows.back() = columns.back()[k];
+            if (!change.empty())
+              rows.push_back(change[k] + scene.elasticity.reference_temperature);
+          }
+        return rows;
+      }
+
+      std::vector<OutputField> fields(const double) const override
+      {
+        const NodalTensors<dim> tensors = states->tensors(this->displacement);
+        std::vector<double>     theta;
+        states->dilatations(this->displacement, theta);
+        SolidFields<dim> list(node_set->partitioner());
+        list.add_vector("displacement", this->displacement);
+        if (this->stepper)
+          list.add_vector("velocity", this->velocity);
+        list.add_stress(nodal_stress(tensors));
+        list.add_strain(tensors.strain);
+        list.add_temperature(states->temperature_change(), scene);
+        list.add("dilatation", [&](const unsigned int i) { return theta[i]; });
+        if (states->brittle() || !scene.cracks.cracks.empty())
+          {
+            const std::vector<double> damage = states->damage();
+            list.add("damage", [&](const unsigned int i) { return damage[i]; });
+          }
+        list.add("node_volume", [&](const unsigned int i) { return node_set->volume(i); });
+        return list.take();
+      }
+
+      SymmetricTensor<2, 3> mean_stress() const override
+      {
+        const auto            stress = nodal_stress(states->tensors(this->displacement));
+        SymmetricTensor<2, 3> sum;
+        double                volume = 0.;
+        for (unsigned int i = 0; i < stress.size(); ++i)
+          {
+            sum += volume_in_body(i) * stress[i];
+            volume += volume_in_body(i);
+          }
+        return Utilities::MPI::sum(sum, handler.get_communicator()) /
+               Utilities::MPI::sum(volume, handler.get_communicator());
+      }
+
+      std::vector<StressSample> stress_samples() const override
+      {
+        const auto                stress = nodal_stress(states->tensors(this->displacement));
+        std::vector<StressSample> samples;
+        for (unsigned int i = 0; i < stress.size(); ++i)
+          if (const double volume = volume_in_body(i); volume > 0.)
+            samples.push_back(
+              {scene.material.phases.all().at(node_set->position(i)), volume, stress[i]});
+        return samples;
+      }
+
+      std::vector<std::pair<std::string, std::string>> settings() const override
+      {
+        auto list = bond_settings(scene, states->families());
+        if (!states->brittle())
+          return list;
+        double lowest = 1e300, highest = 0.;
+        for (const double s : states->critical_stretches())
+          {
+            lowest  = std::min(lowest, s);
+            highest = std::max(highest, s);
+          }
+        lowest  = Utilities::MPI::min(lowest, handler.get_communicator());
+        highest = Utilities::MPI::max(highest, handler.get_communicator());
+        list.emplace_back("critical stretch",
+                          number_text(lowest) +
+                            (highest > lowest ? " to " + number_text(highest) : ""));
+        return list;
+      }
+
+      std::vector<std::string> notes() const override
+      {
+        constexpr double  tolerable = 1e-8;
+        const std::string entry     = "'Surface correction = moments' in section 'Peridynamics' ";
+        const unsigned long long n  = states->n_uncorrected_nodes();
+        std::vector<std::string> list;
+        if (const std::string note = note_on_cut_sides(scene); !note.empty())
+          list.push_back(note);
+        if (dim > 1 && scene.elasticity.model == ElasticModel::bond_based &&
+            scene.elasticity.micromodulus == Micromodulus::family)
+          list.push_back(
+            "'Model = bond-based' in section 'Elasticity' divides the stiffness of a bond by sums over the families of its ends, which are smaller at surfaces: these are "
+            "stiffer than those of the prototype microelastic material, which has the same constant everywhere. 'Micromodulus = constant' is that one.");
+        if (n > 0)
+          list.push_back(
+            entry + "leaves " + std::to_string(n) + " of " + std::to_string(node_set->n_global()) +
+            " nodes as they are, whose bonds would get negative factors, as in convex corners and beside the ends of cracks.");
+        if (states->gap_of_moments() > tolerable)
+          list.push_back(
+            entry +
+            "has not found all factors: moments of families differ from those of a complete one by up to " +
+            number_text(states->gap_of_moments()) + " of them.");
+        return list;
+      }
+
+    private:
+      /** Without what lies in extra layers: half of a vertex on a side of the body. */
+      double volume_in_body(const unsigned int i) const
+      {
+        const Domain<dim> &domain = scene.domain;
+        const Point<dim>  &p      = node_set->position(i);
+        double             volume = node_set->volume(i);
+        if (!domain.has_extra_layers())
+          return volume;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double slack = 1e-9 * (domain.upper[d] - domain.lower[d]);
+            if ((domain.extra_layers[2 * d] > 0 && p[d] < domain.body_lower[d] + slack) ||
+                (domain.extra_layers[2 * d + 1] > 0 && p[d] > domain.body_upper[d] - slack))
+              volume *= 0.5;
+          }
+        return domain.shows(p) ? volume : 0.;
+      }
+
+      std::vector<SymmetricTensor<2, 3>> nodal_stress(const NodalTensors<dim> &tensors) const
+      {
+        std::vector<SymmetricTensor<2, 3>> stress;
+        const Vector                      &change = states->temperature_change();
+        for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+          {
+            const Point<dim> &p = node_set->position(i);
+            stress.push_back(full_stress(tensors.stress[i],
+                                         scene,
+                                         p,
+                                         change.size() > 0 ?
+                                           change.local_element(i) :
+                                           scene.elasticity.temperature_change.value(p)));
+          }
+        return stress;
+      }
+
+      /** Of the temperature where it is computed, else none. */
+      std::vector<double> changes_at_points(const PointEvaluator<dim> &reader) const
+      {
+        if (states->temperature_change().size() == 0)
+          return {};
+        const Vector change(states->temperature_change());
+        return reader.evaluate(change);
+      }
+
+      DoFHandler<dim>                     handler;
+      std::unique_ptr<Nodes<dim>>         node_set;
+      std::unique_ptr<StateOperator<dim>> states;
+    };
+  } // namespace
+
+
+  template <int dim>
+  std::unique_ptr<SolidProblem<dim>> make_bond_solid(const Triangulation<dim> &mesh,
+                                                     const Scene<dim>         &scene)
+  {
+    return std::make_unique<BondSolid<dim>>(mesh, scene);
+  }
+
+#define PERIDEAL_INSTANTIATE(dim)                                                         \
+  template std::unique_ptr<SolidProblem<dim>> make_bond_solid(const Triangulation<dim> &, \
+                                                              const Scene<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/analysis/heat_flux.h>
+#include <perideal/problems/diffusion_problem.h>
+
+#include <memory>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Finite elements, the model `coupled`, or peridynamics by exchange, which is `coupled` with the
+   * zone everywhere.
+   */
+  template <int dim>
+  std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion(
+    const ModelKind                   model,
+    const dealii::Triangulation<dim> &mesh,
+    const Scene<dim>                 &scene);
+
+  /** Peridynamics by bonds alone. */
+  template <int dim>
+  std::unique_ptr<DiffusionProblem<dim>> make_bond_diffusion(const dealii::Triangulation<dim> &mesh,
+                                                             const Scene<dim> &scene);
+
+
+  /** What was chosen for the bonds, for the report. */
+  template <int dim>
+  std::vector<std::pair<std::string, std::string>> bond_settings(const Scene<dim>    &scene,
+                                                                 const Families<dim> &families);
+
+
+  inline std::string to_text(const double x)
+  {
+    std::ostringstream out;
+    out << x;
+    return out.str();
+  }
+
+
+  template <int dim>
+  OutputField vector_field(const std::string &name, VectorField<dim> &components)
+  {
+    OutputField field;
+    field.name = name;
+    for (Vector &component : components)
+      {
+        component.update_ghost_values();
+        field.components.push_back(std::move(component));
+      }
+    return field;
+  }
+} // namespace PeriDeal

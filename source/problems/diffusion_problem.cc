@@ -1,0 +1,439 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/analysis/exact_solution.h>
+#include <perideal/base/user_error.h>
+#include <perideal/problems/run_context.h>
+#include <perideal/scene/with_formulas.h>
+#include <perideal/solvers/linear_solver.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "diffusion_parts.h"
+#include "effective_conductivity.h"
+#include "finite_results.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Refuse what a stepper would never finish. @p stiffness is the end time times the largest
+     * eigenvalue.
+     */
+    void check_stepper(const std::string &name, const TimeControl &time, const double stiffness)
+    {
+      constexpr double   longest = 1e12, finest = 1e-11;
+      const bool         implicit = name == "sdirk2" || name == "bdf2" || name == "crank nicolson";
+      std::ostringstream message;
+      if (!implicit && stiffness > longest)
+        message
+          << "'End time' in section 'Time' is " << time.end_time << ", " << stiffness
+          << " times the shortest decay time of this mesh: too long for the explicit stepper '"
+          << name << "'. Choose 'Steady = true' or 'Stepper = sdirk2'.";
+      if (name == "rkc2" && time.time_step < 0. && time.tolerance < finest)
+        message << "'Tolerance' in section 'Time' is " << time.tolerance
+                << ", which round-off does not allow 'rkc2' to reach; it needs " << finest
+                << " or more. 'chebyshev' and a fixed 'Time step' reach more.";
+      AssertThrow(message.str().empty(), UserError(message.str()));
+    }
+  } // namespace
+
+
+  template <int dim>
+  void set_start(DiffusionProblem<dim> &run)
+  {
+    run.op().initialize_vector(run.solution);
+    run.set_initial_value(run.solution);
+    run.op().distribute(run.solution, 0.);
+    run.op().take_material_at(run.solution); // with the prescribed values
+    run.op().distribute(run.solution, 0.);
+  }
+
+
+  template <int dim>
+  const Vector &DiffusionProblem<dim>::state() const
+  {
+    return solution;
+  }
+
+
+  template <int dim>
+  unsigned int DiffusionProblem<dim>::n_components() const
+  {
+    return 1;
+  }
+
+
+  template <int dim>
+  std::vector<std::string> DiffusionProblem<dim>::columns() const
+  {
+    return {"value"};
+  }
+
+
+  template <int dim>
+  std::vector<double> DiffusionProblem<dim>::at_points(
+    const PointEvaluator<dim> &reader,
+    const std::vector<std::vector<double>> &) const
+  {
+    solution.update_ghost_values();
+    std::vector<double> values = reader.evaluate(solution);
+    solution.set_ghost_state(false);
+    return values;
+  }
+
+
+  template <int dim>
+  std::vector<OutputField> DiffusionProblem<dim>::fields(const double t) const
+  {
+    std::vector<OutputField> list{{this->field_name(), {solution}}};
+    list[0].components[0].update_ghost_values();
+    solution.update_ghost_values();
+    with_formulas(this->dofs().get_communicator(), [&] {
+      for (OutputField &field : derived_fields(solution, t))
+        list.push_back(std::move(field));
+    });
+    solution.set_ghost_state(false);
+    return list;
+  }
+
+
+  template <int dim>
+  DiffusionProblem<dim>::DiffusionProblem(const Scene<dim> &scene)
+    : scene(scene)
+  {}
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::make_stepper()
+  {
+    StepperOptions options;
+    options.time_step        = scene.time.time_step;
+    options.tolerance        = scene.time.tolerance;
+    options.solver_tolerance = scene.solver.tolerance;
+    options.max_iterations   = scene.solver.max_iterations;
+    options.direct_up_to     = scene.solver.direct_up_to;
+    Timings::Scope scope(this->timings, "stepper");
+    with_formulas(this->dofs().get_communicator(),
+                  [&] { stepper = PeriDeal::make_stepper(scene.time.stepper, op(), options); });
+    check_stepper(stepper->name(), scene.time, op().spectrum().sharp * scene.time.end_time);
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::begin_stepping()
+  {
+    make_stepper();
+    with_formulas(this->dofs().get_communicator(),
+                  [&] { ledger.begin(op().balance(solution, 0., false).content); });
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::renew_stepper()
+  {
+    if (!stepper) // before begin(), or steady
+      return;
+    const StepperCost before  = stepper->cost();
+    const double      entered = stepper->entered();
+    make_stepper();
+    stepper->carry_over(before, entered);
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::begin(const RunContext &context)
+  {
+    if (scene.time.steady)
+      return;
+    begin_stepping();
+    std::ostringstream line;
+    line << this->name() << ": stepper " << stepper->name();
+    if (stepper->current_step() > 0.)
+      line << ", step " << stepper->current_step();
+    context.progress.line(line.str());
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::settle(const RunContext &)
+  {
+    if (scene.time.steady)
+      solve();
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::advance(const double from,
+                                      const double to,
+                                      const std::function<void(const double)> &,
+                                      const RunContext &)
+  {
+    if (!scene.time.steady)
+      advance_through_events(from, to);
+  }
+
+
+  template <int dim>
+  double DiffusionProblem<dim>::work_of(const double span) const
+  {
+    const OperatorSize size = op().size();
+    return std::max(1., stepper->expected_applications(span)) *
+           static_cast<double>(size.unknowns + size.nonzeros + size.bonds);
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::start_anew()
+  {
+    set_start(*this);
+  }
+
+
+  template <int dim>
+  std::vector<std::string> DiffusionProblem<dim>::notes() const
+  {
+    std::vector<std::string> list;
+    for (const std::string &note : own_notes())
+      list.push_back(this->name() + ": " + note);
+    return list;
+  }
+
+
+  template <int dim>
+  Difference DiffusionProblem<dim>::error(const ExactSolution &exact, const double t) const
+  {
+    solution.update_ghost_values();
+    const Difference result =
+      difference_to(solution, [&](const Point<dim> &p) { return exact_row(exact, p, t)[0]; });
+    solution.set_ghost_state(false);
+    return result;
+  }
+
+
+  template <int dim>
+  std::vector<double> DiffusionProblem<dim>::exact_row(const ExactSolution &exact,
+                                                       const Point<dim>    &point,
+                                                       const double         t) const
+  {
+    double x[dim];
+    for (unsigned int d = 0; d < dim; ++d)
+      x[d] = point[d];
+    return {exact.value(x, t)};
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::take_sample(const RunContext &context, ModelEstimate &estimate)
+  {
+    begin(context);
+    const double start = processor_seconds();
+    settle(context);
+    if (scene.time.steady)
+      estimate.time_of_solution = processor_seconds() - start;
+    else
+      estimate.applications = stepper->expected_applications(scene.time.end_time);
+  }
+
+
+  template <int dim>
+  double DiffusionProblem<dim>::time_of_run(const std::vector<double> &times,
+                                            const bool                 says,
+                                            const RunContext          &context,
+                                            double &)
+  {
+    if (says)
+      context.progress.line(this->name() + ":");
+    if (scene.time.steady)
+      {
+        if (says)
+          context.progress.line("  steady: one linear solve, about 20 iterations");
+        // Each iteration with its preconditioner takes some 6 applications.
+        return 20. * 6. * time_of_application(op());
+      }
+    const double n    = expected_applications(times),
+                 time = n > 0. ? n * time_of_application(op()) : -1.;
+    if (!says)
+      return time;
+    const Spectrum     spectrum = op().spectrum();
+    std::ostringstream out;
+    out << "  largest eigenvalue: sharp bound " << spectrum.sharp << ", safe bound "
+        << spectrum.safe << "\n"
+        << "  stable steps (sharp / safe): euler " << stable_step("euler", spectrum.sharp) << " / "
+        << stable_step("euler", spectrum.safe) << ", rk4 " << stable_step("rk4", spectrum.sharp)
+        << " / " << stable_step("rk4", spectrum.safe) << "\n"
+        << "  stepper: " << stepper->name();
+    context.progress.line(out.str());
+    if (n > 0.)
+      context.progress.line("  estimated: " + readable_count(static_cast<unsigned long long>(n)) +
+                            " operator applications, " + readable_duration(time));
+    return time;
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::solve()
+  {
+    Timings::Scope scope(this->timings, "solve");
+    with_formulas(this->dofs().get_communicator(), [&] {
+      steady_iterations += solve_steady(op(),
+                                        solution,
+                                        0.,
+                                        scene.solver.tolerance,
+                                        scene.solver.max_iterations,
+                                        scene.solver.direct_up_to);
+    });
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::advance_through_events(const double t_begin, const double t_end)
+  {
+    with_formulas(this->dofs().get_communicator(), [&] {
+      for (double from = t_begin; from < t_end;)
+        {
+          if (scene.cracks.change())
+            {
+              Timings::Scope scope(this->timings, "changing cracks");
+              if (update(from))
+                stepper->restart();
+            }
+          Timings::Scope scope(this->timings, "time stepping");
+          const double   to = std::min(t_end, op().next_event(from));
+          stepper->advance(solution, from, to);
+          from = to;
+        }
+    });
+  }
+
+
+  template <int dim>
+  nlohmann::ordered_json DiffusionProblem<dim>::describe_solving() const
+  {
+    if (!this->stepper)
+      return {{"stepper", "steady"}, {"steps", 0}, {"iterations", steady_iterations}};
+    const Stepper         &stepping = *this->stepper;
+    nlohmann::ordered_json entry    = {{"stepper", stepping.name()},
+                                       {"steps", stepping.cost().steps},
+                                       {"rejected steps", stepping.cost().rejected},
+                                       {"iterations", stepping.cost().iterations}};
+    if (stepping.current_step() > 0.)
+      entry["time step"] = stepping.current_step();
+    const Spectrum    spectrum = op().spectrum();
+    const std::string method   = stepping.name() == "rk4" ? "rk4" : "euler";
+    entry["stable step"]       = {{"sharp", stable_step(method, spectrum.sharp)},
+                                  {"safe", stable_step(method, spectrum.safe)},
+                                  {"method", method}};
+    return entry;
+  }
+
+
+  template <int dim>
+  double DiffusionProblem<dim>::expected_applications(const std::vector<double> &times) const
+  {
+    double n = 0., t = 0.;
+    for (const double next : times)
+      while (t < next)
+        {
+          const double to = std::min(next, op().next_event(t));
+          n += stepper->expected_applications(to - t);
+          t = to;
+        }
+    return n;
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::add_totals(const double t, const RunContext &context)
+  {
+    ResultRecord &record = context.record;
+    Balance       balance;
+    double        content = 0.;
+    with_formulas(this->dofs().get_communicator(), [&] {
+      balance = op().balance(solution, t, scene.time.steady);
+      content = scene.general.physics == Physics::moisture ? weight(solution) : balance.content;
+    });
+    const PhysicsNames &names = names_of(scene.general.physics);
+    require_finite(
+      {{"largest " + names.field, solution.linfty_norm()},
+       {names.flow, balance.throughput()},
+       {"imbalance", balance.imbalance()},
+       {names.content, balance.content}},
+      this->name(),
+      t,
+      "Numbers beyond 1e308 came up. Check the sizes and units of values, fluxes and sources (sections 'Boundary conditions' and 'Initial and source') and of the "
+      "properties in section 'Material'.");
+    const auto row = [&](const std::string &quantity, const double value) {
+      record.add_row(this->name(), quantity, value, t);
+    };
+    row(names.content, content);
+    for (const auto &[side, value] : balance.sides)
+      row(names.flow + " through " + side, value);
+    row(names.flow + " from sources", balance.sources);
+    nlohmann::ordered_json cumulative; // not if steady
+    row("rate of storage", balance.stored);
+    row("throughput", balance.throughput());
+    row("imbalance", balance.imbalance());
+    if (stepper)
+      {
+        const CumulativeBalance since_start =
+          ledger.balance(stepper->entered(), balance.content, this->dofs().get_communicator());
+        row(names.quantity + " entered since start", since_start.entered);
+        row(names.quantity + " stored since start", since_start.stored);
+        row("cumulative imbalance", since_start.imbalance());
+        cumulative = {{"entered", since_start.entered},
+                      {"stored", since_start.stored},
+                      {"imbalance", since_start.imbalance()}};
+      }
+    for (std::size_t crack = 0; crack < balance.cracks.size(); ++crack)
+      row(names.flow + " through crack " + std::to_string(crack + 1), balance.cracks[crack]);
+    record.balances[this->name()] = {
+      {"boundary flux", balance.sides},
+      {"heat balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}}};
+    if (!cumulative.empty())
+      record.balances[this->name()]["heat balance"]["cumulative"] = cumulative;
+    if (const auto kappa = effective_conductivity(scene, balance))
+      {
+        row("effective conductivity", *kappa);
+        record.balances[this->name()]["effective conductivity"] = *kappa;
+      }
+    if (!balance.cracks.empty())
+      record.balances[this->name()]["crack flux"] = balance.cracks;
+  }
+
+
+  template <int dim>
+  std::unique_ptr<DiffusionProblem<dim>> make_diffusion_problem(const ModelKind           model,
+                                                                const Triangulation<dim> &mesh,
+                                                                const Scene<dim>         &scene)
+  {
+    std::unique_ptr<DiffusionProblem<dim>> run;
+    if (model == ModelKind::peridynamics &&
+        scene.peridynamics.treatment != BoundaryTreatment::exchange)
+      run = make_bond_diffusion(mesh, scene);
+    else
+      run = make_element_diffusion(model, mesh, scene);
+    set_start(*run);
+    return run;
+  }
+
+  template class DiffusionProblem<1>;
+  template class DiffusionProblem<2>;
+  template class DiffusionProblem<3>;
+  template void                                 set_start(DiffusionProblem<1> &);
+  template void                                 set_start(DiffusionProblem<2> &);
+  template void                                 set_start(DiffusionProblem<3> &);
+  template std::unique_ptr<DiffusionProblem<1>> make_diffusion_problem(const ModelKind,
+                                                                       const Triangulation<1> &,
+                                                                       const Scene<1> &);
+  template std::unique_ptr<DiffusionProblem<2>> make_diffusion_problem(const ModelKind,
+                                                                       const Triangulation<2> &,
+                                                                       const Scene<2> &);
+  template std::unique_ptr<DiffusionProblem<3>> make_diffusion_problem(const ModelKind,
+                                                                       const Triangulation<3> &,
+                                                                       const Scene<3> &);
+} // namespace PeriDeal

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// What the summary says of a scene in which something diffuses.
+
+#include <perideal/problems/diffusion_problem.h>
+#include <perideal/problems/result_record.h>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    using json = nlohmann::ordered_json;
+
+    /** One sentence per side on what holds there. */
+    template <int dim>
+    json describe_sides(const Scene<dim> &scene)
+    {
+      const auto &conditions = scene.boundary_conditions;
+      json        sides      = json::object();
+      if (scene.domain.shape != Shape::mesh_file)
+        for (unsigned int k = 0; k < 2 * dim; ++k)
+          sides[box_side_names()[k]] = "insulated";
+      const auto add = [&](const std::string &name, const std::string &text) {
+        if (sides.contains(name) && sides[name] != "insulated")
+          sides[name] = sides[name].template get<std::string>() + ", " + text;
+        else
+          sides[name] = text;
+      };
+      for (const SideCondition &c : conditions.dirichlet)
+        add(c.name, "Dirichlet " + c.value.text());
+      for (const SideCondition &c : conditions.flux)
+        add(c.name,
+            c.value.is_constant() && c.value.value(Point<dim>()) == 0. ? "insulated" :
+                                                                         "flux " + c.value.text());
+      for (const SideCondition &c : conditions.convection)
+        add(c.name, "convection " + c.coefficient.text() + ", " + c.value.text());
+      for (const auto side : conditions.symmetry)
+        add(conditions.name_of(side), "symmetry");
+      return sides;
+    }
+
+
+    /**
+     * Flows and amounts of moisture are wetness times volume: nothing is given that would make
+     * them masses.
+     */
+    bool counts_wetness(const Material &material)
+    {
+      const auto is_one = [](const MaterialProperty &property) {
+        return property.is_constant() && property.value(Point<1>()) == 1.;
+      };
+      return is_one(material.density) && is_one(material.heat_capacity);
+    }
+  } // namespace
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::describe_scene(nlohmann::ordered_json &summary, const bool) const
+  {
+    if (scene.general.physics == Physics::moisture)
+      summary["moisture counts"] = counts_wetness(scene.material) ? "wetness" : "mass";
+    summary["sides"]     = describe_sides(scene);
+    summary["reference"] = scene.reference.solution;
+  }
+
+#define PERIDEAL_INSTANTIATE(dim) \
+  template void DiffusionProblem<dim>::describe_scene(nlohmann::ordered_json &, const bool) const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,500 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/distributed/solution_transfer.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <perideal/analysis/coupling_certificate.h>
+#include <perideal/base/user_error.h>
+#include <perideal/operators/coupling.h>
+#include <perideal/operators/fem_operator.h>
+
+#include <optional>
+
+#include "diffusion_parts.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    class ElementDiffusion : public DiffusionProblem<dim>
+    {
+    public:
+      using DiffusionProblem<dim>::scene;
+
+      /**
+       * @param model finite elements, coupled, or peridynamics by exchange, which is `coupled` with
+       *              the zone everywhere
+       */
+      ElementDiffusion(const ModelKind           model,
+                       const Triangulation<dim> &mesh,
+                       const Scene<dim>         &scene)
+        : DiffusionProblem<dim>(scene)
+        , model(model)
+        , element(model == ModelKind::finite_elements ? scene.finite_elements.degree : 1)
+        , handler(mesh)
+      {
+        number_unknowns();
+        build_operator();
+        if (model == ModelKind::coupled && scene.coupling.certificate)
+          examine();
+      }
+
+      std::string name() const override
+      {
+        return to_string(model);
+      }
+
+      const DoFHandler<dim> &dofs() const override
+      {
+        return handler;
+      }
+
+      const Nodes<dim> *nodes() const override
+      {
+        return model == ModelKind::peridynamics ? node_set.get() : nullptr;
+      }
+
+      Point<dim> position(const unsigned int node) const override
+      {
+        Assert(node_set, ExcMessage("Finite elements alone have no peridynamic nodes."));
+        return node_set->position(node);
+      }
+
+      double volume(const unsigned int node) const override
+      {
+        Assert(node_set, ExcMessage("Finite elements alone have no peridynamic nodes."));
+        return node_set->volume(node);
+      }
+
+      DiffusionOperator &op() const override
+      {
+        return *fem;
+      }
+
+      bool update(const double t) override
+      {
+        return fem->update(t);
+      }
+
+      void set_initial_value(Vector &u) const override
+      {
+        // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for
+        // higher degrees, which it would spoil, and for peridynamics, whose values are those of
+        // points.
+        const auto initial = [&](const Point<dim> &p) {
+          return scene.initial_and_source.initial_value.value(p);
+        };
+        if (element.degree == 1 && model != ModelKind::peridynamics)
+          {
+            Vector volumes(u);
+            integrate(initial, u);
+            integrate([](const Point<dim> &) { return 1.; }, volumes);
+            if (scene.domain.coarsening > 0)
+              {
+                fem->condense(u);
+                fem->condense(volumes);
+                fem->set_hanging(volumes, 1.);
+              }
+            for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+              u.local_element(i) /= volumes.local_element(i);
+            if (scene.domain.coarsening > 0)
+              move_to_nodes(initial, volumes, u);
+          }
+        else
+          for_each_node(
+            [&](const unsigned int i, const Point<dim> &p) { u.local_element(i) = initial(p); });
+      }
+
+      RecoveryIndicators indicators() const override
+      {
+        this->solution.update_ghost_values();
+        const RecoveryIndicators found =
+          recovery_indicators<dim>(handler, scene.material, fem->cut_cells(), this->solution);
+        this->solution.set_ghost_state(false);
+        return found;
+      }
+
+      void before_remesh() override
+      {
+        heat_before = fem->heat(this->solution);
+        this->solution.update_ghost_values();
+        transfer = std::make_unique<Transfer>(handler);
+        transfer->prepare_for_coarsening_and_refinement(this->solution);
+      }
+
+      void after_remesh(const double t, const bool steady) override
+      {
+        const unsigned long long applications = fem->n_applications();
+        fem.reset();
+        node_set.reset();
+        number_unknowns();
+        build_operator(t);
+        fem->carry_over_applications(applications);
+        Vector &u = this->solution;
+        fem->initialize_vector(u);
+        transfer->interpolate(u);
+        transfer.reset();
+        fem->interpolate_hanging(u);
+        const double kept = fem->heat(u), lost = heat_before - kept;
+        fem->distribute(u, t); // what new nodes on Dirichlet sides get comes from outside
+        this->ledger.add(fem->heat(u) - kept);
+        if (!steady)
+          give_heat(lost, t);
+      }
+
+      std::string field_name() const override
+      {
+        return names_of(scene.general.physics).field;
+      }
+
+      std::vector<OutputField> derived_fields(const Vector &u, const double) const override
+      {
+        VectorField<dim> flux;
+        for (Vector &component : flux)
+          fem->initialize_vector(component);
+        std::vector<OutputField> fields;
+        const std::string        flux_name = names_of(scene.general.physics).flux;
+        if (model == ModelKind::finite_elements)
+          {
+            element_heat_flux<dim>(handler, scene.material, fem->cut_cells(), u, flux);
+            fields.push_back(vector_field<dim>(flux_name, flux));
+          }
+        else
+          {
+            VectorField<dim> one_sided = flux;
+            coupled_heat_flux<dim>(*fem, u, flux, one_sided);
+            fields.push_back(vector_field<dim>(flux_name, flux));
+            fields.push_back(vector_field<dim>(flux_name + "_one_sided", one_sided));
+            add_bond_fields(u, fields);
+          }
+        if (scene.general.physics == Physics::moisture)
+          {
+            std::array<Vector, 1> concentration{u};
+            for_each_node([&](const unsigned int i, const Point<dim> &p) {
+              concentration[0].local_element(i) =
+                scene.material.saturated_concentration.value(p) * u.local_element(i);
+            });
+            fields.push_back(vector_field<1>("concentration", concentration));
+          }
+        return fields;
+      }
+
+      double weight(const Vector &u) const override
+      {
+        FEValues<dim>       values(element,
+                             QGauss<dim>(element.degree + 1),
+                             update_values | update_quadrature_points | update_JxW_values);
+        std::vector<double> wetness(values.n_quadrature_points);
+        double              sum = 0.;
+        u.update_ghost_values();
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              values.reinit(cell);
+              values.get_function_values(u, wetness);
+              for (const unsigned int q : values.quadrature_point_indices())
+                sum += scene.material.saturated_concentration.value(values.quadrature_point(q)) *
+                       wetness[q] * values.JxW(q);
+            }
+        u.set_ghost_state(false);
+        return Utilities::MPI::sum(sum, handler.get_communicator());
+      }
+
+      Difference difference_to(
+        const Vector                                    &u,
+        const std::function<double(const Point<dim> &)> &exact) const override
+      {
+        if (scene.cracks.cracks.empty() || scene.cracks.mesh == CrackMesh::faces ||
+            element.degree > 1)
+          return element_difference(handler, u, exact);
+        // Inside a cut cell the interpolant runs across the crack: only the values at the nodes are
+        // the model's.
+        Vector expected(u), volumes(u);
+        for_each_node(
+          [&](const unsigned int i, const Point<dim> &p) { expected.local_element(i) = exact(p); });
+        integrate([](const Point<dim> &) { return 1.; }, volumes);
+        return nodal_difference(u, expected, [&](const unsigned int i) {
+          return volumes.local_element(i);
+        });
+      }
+
+      std::vector<std::string> own_notes() const override
+      {
+        if (!certificate || certificate->fault().empty())
+          return {};
+        return {certificate->fault() +
+                ". 'Scheme = exchange' (section 'Coupling') has neither fault."};
+      }
+
+      const CouplingCertificate *examined() const override
+      {
+        return certificate ? &*certificate : nullptr;
+      }
+
+      std::vector<std::pair<std::string, std::string>> settings() const override
+      {
+        std::vector<std::pair<std::string, std::string>> list{
+          {"element", "Q" + std::to_string(element.degree)},
+          {"capacity", scene.finite_elements.consistent_capacity ? "consistent" : "lumped"}};
+        if (model != ModelKind::finite_elements)
+          {
+            for (const auto &setting : bond_settings(scene, fem->bonds().families()))
+              if (setting.first != "boundary treatment" || model == ModelKind::peridynamics)
+                list.push_back(setting);
+            list.emplace_back("coupling",
+                              model == ModelKind::coupled ? scene.coupling.scheme_text() :
+                                                            "exchange");
+            list.emplace_back("zone",
+                              model == ModelKind::coupled ? scene.coupling.zone_text() :
+                                                            "everywhere");
+            list.emplace_back("share of the body in the zone",
+                              to_text(100. * fem->bonds().zone_share()) + " %");
+          }
+        if (!scene.cracks.cracks.empty())
+          list.emplace_back("cracks",
+                            scene.cracks.mesh == CrackMesh::pairs ? "pairs" :
+                            scene.cracks.mesh == CrackMesh::faces ? "faces" :
+                                                                    "removed");
+        return list;
+      }
+
+    private:
+      using Transfer = parallel::distributed::SolutionTransfer<dim, Vector>;
+
+      void number_unknowns()
+      {
+        Timings::Scope scope(this->timings, "unknowns");
+        handler.distribute_dofs(element);
+        if (scene.domain.shape != Shape::mesh_file && element.degree == 1)
+          number_along_lattice(handler, scene.domain);
+      }
+
+
+      /**
+       * Where sizes of cells meet, the mean around a node is that of a place beside it, which
+       * shifts smooth fields: correct by the difference of the values there. On the surface of the
+       * body the mean stays, as on uniform meshes.
+       */
+      void move_to_nodes(const std::function<double(const Point<dim> &)> &initial,
+                         const Vector                                    &volumes,
+                         Vector                                          &u) const
+      {
+        std::array<Vector, dim> centers;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            fem->initialize_vector(centers[d]);
+            integrate([d](const Point<dim> &p) { return p[d]; }, centers[d]);
+            fem->condense(centers[d]);
+          }
+        Vector on_surface(u);
+        on_surface = 0.;
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned() && cell->at_boundary())
+            {
+              cell->get_dof_indices(indices);
+              for (const unsigned int f : cell->face_indices())
+                for (unsigned int i = 0; i < indices.size() && cell->face(f)->at_boundary(); ++i)
+                  if (element.has_support_on_face(i, f))
+                    on_surface(indices[i]) = 1.;
+            }
+        on_surface.compress(VectorOperation::max);
+        const double apart = 1e-9 * scene.domain.spacing().norm();
+        const Vector mean(u); // nodes are visited from each of their cells
+        for_each_node([&](const unsigned int i, const Point<dim> &p) {
+          Point<dim> center;
+          for (unsigned int d = 0; d < dim; ++d)
+            center[d] = centers[d].local_element(i) / volumes.local_element(i);
+          if (on_surface.local_element(i) == 0. && center.distance(p) > apart)
+            {
+              // At a jump of the initial value it stays between the mean and the value there.
+              const double here = initial(p), old = mean.local_element(i);
+              u.local_element(i) =
+                std::clamp(old + here - initial(center), std::min(old, here), std::max(old, here));
+            }
+        });
+      }
+
+
+      /**
+       * Where cells have been merged the interpolant holds a little more or less heat than the
+       * finer field did. The difference goes to the nodes of merged cells, each by the same
+       * temperature.
+       */
+      void give_heat(const double lost, const double t)
+      {
+        Vector                              &u = this->solution;
+        Vector                               share(u.get_partitioner());
+        const double                         spacing = scene.domain.spacing()[0];
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned() && cell->extent_in_direction(0) > 1.5 * spacing)
+            {
+              cell->get_dof_indices(indices);
+              for (const auto i : indices)
+                share(i) = 1.;
+            }
+        share.compress(VectorOperation::max);
+        fem->clear_constrained(share);
+        fem->interpolate_hanging(share);
+        const double capacity = fem->heat(share);
+        if (capacity > 0.)
+          u.add(lost / capacity, share);
+        fem->distribute(u, t);
+      }
+
+
+      void build_operator(const double start = 0.)
+      {
+        Timings::Scope                 scope(this->timings, "operator");
+        std::unique_ptr<Coupling<dim>> coupling;
+        if (model != ModelKind::finite_elements)
+          {
+            node_set = std::make_unique<Nodes<dim>>(handler,
+                                                    scene.domain,
+                                                    scene.cracks,
+                                                    NodalVolume::partial);
+            Zone<dim> zone;
+            if (model == ModelKind::coupled)
+              zone = Zone<dim>(scene.coupling, scene.horizon());
+            if (scene.domain.shape != Shape::mesh_file)
+              zone.stay_in({{scene.domain.lower, scene.domain.upper}});
+            coupling = make_coupling(*node_set, scene, zone, scheme());
+          }
+        fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling), start);
+      }
+
+
+      /**
+       * Exchange that is not exact must not run; of the others the user is told how wrong they are.
+       */
+      void examine()
+      {
+        Timings::Scope scope(this->timings, "certificate");
+        certificate             = examine_coupling(*fem, fem->symmetric());
+        const std::string fault = certificate->fault();
+        AssertThrow(fault.empty() || scheme() != CouplingScheme::exchange,
+                    UserError("The coupling of section 'Coupling' is not sound: " + fault +
+                              ". Choose another 'Zone', or a mesh with less distorted cells."));
+      }
+
+
+      /** Peridynamics alone has nothing to splice or to blend with. */
+      CouplingScheme scheme() const
+      {
+        return model == ModelKind::coupled ? scene.coupling.scheme : CouplingScheme::exchange;
+      }
+
+
+      /** Which nodes are in the zone, and the part of their bonds that cracks have cut. */
+      void add_bond_fields(const Vector &u, std::vector<OutputField> &fields) const
+      {
+        std::array<Vector, 1>                     zone{u}, cut{u}, volume{u};
+        std::vector<typename Coupling<dim>::Bond> bonds;
+        for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+          {
+            zone[0].local_element(i)   = fem->bonds().in_zone(i);
+            volume[0].local_element(i) = node_set->volume(i);
+            cut[0].local_element(i)    = 0.;
+            if (!fem->bonds().families().near_crack(i))
+              continue;
+            fem->bonds().bonds_of(i, bonds);
+            double all = 0., gone = 0.;
+            for (const auto &bond : bonds)
+              {
+                all += bond.intact;
+                gone += bond.cut ? bond.intact : 0.;
+              }
+            cut[0].local_element(i) = all > 0. ? gone / all : 0.;
+          }
+        if (model == ModelKind::coupled)
+          fields.push_back(vector_field<1>("zone", zone));
+        fields.push_back(vector_field<1>("node_volume", volume));
+        fields.push_back(vector_field<1>("cut_fraction", cut));
+      }
+
+
+      /**
+       * Integral of f times the shape function of each owned unknown, with two Gauss points along
+       * each direction. Collective.
+       */
+      void integrate(const std::function<double(const Point<dim> &)> &f, Vector &integrals) const
+      {
+        FEValues<dim>                        values(element,
+                             QGauss<dim>(2),
+                             update_values | update_quadrature_points | update_JxW_values);
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        integrals = 0.;
+        for (const auto &cell : handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              values.reinit(cell);
+              cell->get_dof_indices(indices);
+              for (const unsigned int q : values.quadrature_point_indices())
+                {
+                  const double weight = f(values.quadrature_point(q)) * values.JxW(q);
+                  for (unsigned int i = 0; i < indices.size(); ++i)
+                    integrals(indices[i]) += values.shape_value(i, q) * weight;
+                }
+            }
+        integrals.compress(VectorOperation::add);
+      }
+
+
+      /** Call visit(local index, position) for each owned dof. */
+      void for_each_node(
+        const std::function<void(const unsigned int, const Point<dim> &)> &visit) const
+      {
+        FEValues<dim>                        values(element,
+                             Quadrature<dim>(element.get_unit_support_points()),
+                             update_quadrature_points);
+        std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+        const auto                          &owned = this->solution.get_partitioner();
+        for (const auto &cell : handler.active_cell_iterators())
+          if (!cell->is_artificial())
+            {
+              values.reinit(cell);
+              cell->get_dof_indices(indices);
+              for (unsigned int i = 0; i < indices.size(); ++i)
+                if (owned->in_local_range(indices[i]))
+                  visit(owned->global_to_local(indices[i]), values.quadrature_point(i));
+            }
+      }
+
+      const ModelKind                    model;
+      FE_Q<dim>                          element;
+      DoFHandler<dim>                    handler;
+      std::unique_ptr<Nodes<dim>>        node_set; // null for finite elements alone
+      std::unique_ptr<FEMOperator<dim>>  fem;
+      std::optional<CouplingCertificate> certificate;
+      std::unique_ptr<Transfer>          transfer; // while the mesh changes
+      double                             heat_before = 0.;
+    };
+  } // namespace
+
+
+  template <int dim>
+  std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion(const ModelKind           model,
+                                                                const Triangulation<dim> &mesh,
+                                                                const Scene<dim>         &scene)
+  {
+    return std::make_unique<ElementDiffusion<dim>>(model, mesh, scene);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                         \
+  template std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion( \
+    const ModelKind,                                                      \
+    const Triangulation<dim> &,                                           \
+    const Scene<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

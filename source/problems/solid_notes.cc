@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "solid_notes.h"
+
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** `side 'top'`, or `sides 'bottom' (3,340) and 'top' (3,340)`. */
+    std::string list_of_sides(const std::map<std::string, unsigned long long> &n_bonds)
+    {
+      if (n_bonds.size() == 1)
+        return "side '" + n_bonds.begin()->first + "'";
+      std::string text = "sides ";
+      std::size_t left = n_bonds.size();
+      for (const auto &[side, n] : n_bonds)
+        {
+          text += "'" + side + "' (" + readable_count(n) + ")";
+          --left;
+          text += left == 0 ? "" : left == 1 ? " and " : ", ";
+        }
+      return text;
+    }
+
+
+    template <int dim>
+    void note_torn_sides(const SolidProblem<dim> &run, const RunContext &context)
+    {
+      const auto &torn = run.op().break_places().beside_loads;
+      if (torn.empty())
+        return;
+      unsigned long long n = 0;
+      for (const auto &[side, n_bonds] : torn)
+        n += n_bonds;
+      context.record.extremes[run.name()]["broken beside loads"] = torn;
+      const std::string layer    = "'Traction layer' in section 'Boundary conditions'",
+                        tear_off = "They act on the outermost nodes, and tear them off: ";
+      const bool  of_file        = run.scene.domain.shape == Shape::mesh_file;
+      const auto &parts          = run.scene.boundary_conditions.parts;
+      const bool  on_spot        = std::any_of(parts.begin(), parts.end(), [&](const Part &part) {
+        return part.kind != Part::of_side && torn.count(part.name) > 0;
+      });
+      std::string remedy         = tear_off;
+      if (on_spot)
+        remedy += "spread them over a larger region, or a part of a side";
+      else if (of_file)
+        remedy += "move the side by 'Displacement' in their place";
+      else if (run.scene.boundary_conditions.traction_layer > 0.)
+        remedy = layer + " is too thin for them: make it deeper";
+      else
+        remedy += "spread them by " + layer + ", over a horizon or more";
+      if (!on_spot && !of_file &&
+          run.scene.peridynamics.surface_correction == SurfaceCorrection::none)
+        remedy +=
+          ", or let families go on beyond the sides by 'Surface correction = auto' in section 'Peridynamics'";
+      context.record.notes.push_back(
+        run.name() + ": " + readable_count(n) + (n == 1 ? " bond" : " bonds") +
+        " broke beside the loaded " + list_of_sides(torn) +
+        " before any did elsewhere. The tractions are more than what they act on bears. " + remedy +
+        ". Tractions that come suddenly may be too much all the same.");
+    }
+
+
+    template <int dim>
+    void note_steps(const SolidProblem<dim> &run, const RunContext &context)
+    {
+      const double first    = StepLimit::share * run.stable_step,
+                   shortest = run.stepper->shortest_step();
+      if (run.scene.time.time_step < 0. && run.stepper->name() == "verlet" && shortest < first)
+        context.record.notes.push_back(
+          run.name() + ": the automatic time step followed the body's deformation, from " +
+          number_text(first) + " down to " + number_text(shortest) + ".");
+    }
+
+
+    template <int dim>
+    void note_energy(const SolidProblem<dim> &run, const RunContext &context)
+    {
+      constexpr double tolerable = 0.01,
+                       few       = 0.01; // where few bonds have broken it is not they that tell
+      const auto rounded         = [](const double x) {
+        std::ostringstream text;
+        text << std::setprecision(3) << x;
+        return text.str();
+      };
+      const auto note = [&](const auto &energy, const double lost) {
+        const double imbalance = energy.imbalance();
+        const bool   of_bonds  = run.op().brittle() && lost > few * energy.exchanged;
+        const double whole     = of_bonds ? lost : energy.exchanged;
+        if (std::abs(imbalance) <= tolerable * whole)
+          return;
+        context.record.notes.push_back(
+          run.name() + ": the energy balance does not close. What " +
+          (imbalance < 0. ? "is missing" : "has come from nowhere") + " at the end, " +
+          rounded(std::abs(imbalance)) + ", is " + rounded(100. * std::abs(imbalance) / whole) +
+          " % of " +
+          (of_bonds ? "what broken bonds have dissipated" :
+                      "what start and loads have brought in") +
+          (run.stepper ?
+             ". A smaller 'Time step' in section 'Time' makes it less: half the step a quarter, where it is not the breaking of bonds that makes it." :
+             ". Smaller steps of the loading ('Time step' in section 'Time') make it less."));
+      };
+      if (run.stepper)
+        {
+          const MotionEnergy energy = run.stepper->energy(run.displacement, run.velocity);
+          note(energy, energy.released);
+        }
+      else
+        {
+          const LoadingEnergy energy = run.loading->energy(run.displacement);
+          note(energy, energy.dissipated);
+        }
+    }
+
+
+    template <int dim>
+    void note_inversion(const SolidProblem<dim> &run, const RunContext &context)
+    {
+      if (run.op().nonlinear()) // such runs have ended
+        return;
+      const Inversion found = run.op().inverted(run.displacement);
+      if (found.n_nodes > 0)
+        context.record.notes.push_back(
+          run.name() + ": the displacements turn cells inside out at " +
+          std::to_string(found.n_nodes) + " nodes, worst at " + found.place +
+          ". They are far beyond the small displacements that 'Kinematics = linear' in section 'Elasticity' is for: read them as those of a "
+          "load of 1, in proportion to the load, or make the load smaller.");
+    }
+  } // namespace
+
+
+  template <int dim>
+  void tell_first_break(const SolidProblem<dim> &run, const double t, const RunContext &context)
+  {
+    const BreakPlaces &places = run.op().break_places();
+    auto              &kept   = context.record.extremes[run.name()];
+    if (places.first.empty() || kept.contains("first broken bond"))
+      return;
+    kept["first broken bond"] = places.first;
+    std::ostringstream line;
+    line.precision(4);
+    line << "  " << run.name() << ": the first bond broke at (";
+    for (unsigned int d = 0; d < dim; ++d)
+      line << (d > 0 ? ", " : "") << places.first[d];
+    line << ")" << (run.stepper ? ", by t = " : " at t = ") << t;
+    if (!places.beside_loads.empty())
+      line << ", beside the loaded " << list_of_sides(places.beside_loads);
+    context.progress.line(line.str());
+  }
+
+
+  template <int dim>
+  void note_end(const SolidProblem<dim> &run, const RunContext &context)
+  {
+    if (run.stepper)
+      note_steps(run, context);
+    // What warming does to the strain energy is not followed.
+    if (run.stepper || (!run.scene.time.steady && !run.scene.warms_slowly()))
+      note_energy(run, context);
+    note_inversion(run, context);
+    note_torn_sides(run, context);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                              \
+  template void tell_first_break(const SolidProblem<dim> &, const double, const RunContext &); \
+  template void note_end(const SolidProblem<dim> &, const RunContext &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,439 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/problems/diffusion_problem.h>
+#include <perideal/scene/lists.h>
+#include <perideal/solvers/static_solver.h>
+#include <perideal/solvers/step_tools.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "finite_results.h"
+#include "solid_cost.h"
+#include "solid_error.h"
+#include "solid_fields.h"
+#include "solid_notes.h"
+#include "solid_phases.h"
+#include "solid_sides.h"
+#include "solid_summary.h"
+#include "solid_temperature.h"
+#include "solid_totals.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  SolidProblem<dim>::SolidProblem(const Scene<dim> &scene)
+    : scene(scene)
+  {}
+
+
+  template <int dim>
+  std::string SolidProblem<dim>::field_name() const
+  {
+    return "displacement";
+  }
+
+
+  template <int dim>
+  std::string SolidProblem<dim>::steady_name() const
+  {
+    return "the equilibrium";
+  }
+
+
+  template <int dim>
+  const Vector &SolidProblem<dim>::state() const
+  {
+    return displacement;
+  }
+
+
+  template <int dim>
+  unsigned int SolidProblem<dim>::n_components() const
+  {
+    return dim;
+  }
+
+
+  template <int dim>
+  std::vector<std::string> SolidProblem<dim>::columns() const
+  {
+    return solid_columns(scene);
+  }
+
+
+  template <int dim>
+  Difference SolidProblem<dim>::error(const ExactSolution &exact, const double t) const
+  {
+    return error_of_displacement(*this, exact, t);
+  }
+
+
+  template <int dim>
+  std::vector<double> SolidProblem<dim>::exact_row(const ExactSolution &exact,
+                                                   const Point<dim>    &point,
+                                                   const double         t) const
+  {
+    return exact_row_of_solid(scene, exact, point, t);
+  }
+
+
+  template <int dim>
+  typename FieldWriter<dim>::Choice SolidProblem<dim>::shown() const
+  {
+    return [this](const Point<dim> &p) { return scene.domain.shows(p); };
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::take_temperature()
+  {
+    if (heat == nullptr)
+      return;
+    Timings::Scope scope(this->timings, "thermal loads");
+    Vector         change;
+    op().initialize_nodal_vector(change);
+    find_temperature_change(*heat, *this, scene.elasticity.reference_temperature, change);
+    op().set_temperature_change(change);
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::set_start()
+  {
+    const InitialAndSource &given = scene.initial_and_source;
+    const auto              fill  = [&](Vector &vector, const std::vector<Expression> &formulas) {
+      op().initialize_vector(vector);
+      for (unsigned int i = 0; i < vector.locally_owned_size() && !formulas.empty(); ++i)
+        vector.local_element(i) = formulas[i % dim].value(this->position(i / dim));
+    };
+    fill(displacement, given.initial_displacement);
+    fill(velocity, given.initial_velocity);
+    op().distribute(displacement, 0.);
+    // Supports have the velocity of their first step.
+    op().clear_constrained(velocity);
+    AssertThrow(
+      std::isfinite(displacement.l1_norm()) && std::isfinite(velocity.l1_norm()),
+      UserError(
+        "'Initial displacement' or 'Initial velocity' in section 'Initial and source' is not finite everywhere."));
+  }
+
+
+  template <int dim>
+  StepperOptions SolidProblem<dim>::stepper_options() const
+  {
+    StepperOptions options;
+    options.time_step        = scene.time.time_step;
+    options.solver_tolerance = scene.solver.tolerance;
+    options.max_iterations   = scene.solver.max_iterations;
+    options.direct_up_to     = scene.solver.direct_up_to;
+    return options;
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::begin_motion(const RunContext &context)
+  {
+    Timings::Scope scope(this->timings, "stepper");
+    set_start();
+    op().linearize(displacement);
+    stepper     = make_motion_stepper(scene.time.stepper, op(), stepper_options());
+    stable_step = stable_motion_step(op());
+    std::ostringstream line;
+    line << this->name() << ": stepper " << stepper->name() << ", step " << stepper->current_step()
+         << ", "
+         << readable_count(static_cast<unsigned long long>(
+              std::ceil(scene.time.end_time / stepper->current_step() * (1. - 1e-10))))
+         << " steps or a few more";
+    context.progress.line(line.str());
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::begin(const RunContext &context)
+  {
+    op().initialize_vector(displacement);
+    if (!scene.elasticity.is_static())
+      begin_motion(context);
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::settle(const RunContext &context)
+  {
+    if (!scene.elasticity.is_static())
+      return;
+    take_temperature();
+    context.progress.doing("solving " + this->name());
+    begin_loading(context);
+    if (heat != nullptr && !scene.boundary_conditions.dirichlet.empty() && op().brittle() &&
+        op().n_broken_bonds() > 0)
+      context.record.notes.push_back(
+        this->name() + ": " + readable_count(op().n_broken_bonds()) +
+        " bonds broke at t = 0 already. 'Dirichlet' in section 'Boundary conditions' gives its sides their temperature at once, so that the outermost nodes "
+        "are stretched against the next ones by all of the jump, however fine the lattice. 'Convection', or a 'Dirichlet' value that begins at the initial one, lets the heat in gradually.");
+    if (scene.time.steady)
+      context.progress.line(this->name() + ": " + std::to_string(n_iterations) + " iterations");
+  }
+
+
+  template <int dim>
+  double SolidProblem<dim>::load_step() const
+  {
+    constexpr double share = 0.01; // of the end time, if no step is given
+    if (scene.warms_slowly())      // `Time step` is that of the heat problem
+      {
+        const bool in_steps = scene.material.fracture_energy || scene.material.critical_stretch ||
+                              scene.elasticity.kinematics == Kinematics::full;
+        return (in_steps ? share : 1.) * scene.time.end_time;
+      }
+    return scene.time.time_step > 0. ? scene.time.time_step : share * scene.time.end_time;
+  }
+
+
+  template <int dim>
+  std::vector<double> SolidProblem<dim>::stops(const double from, const double to) const
+  {
+    if (!loading)
+      return {to};
+    const unsigned long long n = n_equal_steps(to - from, load_step());
+    std::vector<double>      times;
+    for (unsigned long long k = 1; k < n; ++k)
+      times.push_back(from + k * (to - from) / n);
+    times.push_back(to);
+    return times;
+  }
+
+
+  template <int dim>
+  bool SolidProblem<dim>::tells_at_stops() const
+  {
+    return loading && !scene.time.steady;
+  }
+
+
+  template <int dim>
+  std::string SolidProblem<dim>::doing(const unsigned int k,
+                                       const unsigned int n,
+                                       const double       t) const
+  {
+    if (!loading)
+      return Problem<dim>::doing(k, n, t);
+    return "solving " + this->name() + ", load step " + std::to_string(k) + " of " +
+           std::to_string(n) + " until t = " + number_text(t);
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::advance(const double                             from,
+                                  const double                             to,
+                                  const std::function<void(const double)> &report,
+                                  const RunContext                        &context)
+  {
+    if (!loading)
+      return move(from, to, report, context);
+    if (scene.warms_slowly())
+      take_temperature();
+    Timings::Scope scope(this->timings, "solving");
+    loading->step(displacement, to);
+    n_iterations = loading->n_iterations();
+    tell_first_break(*this, to, context);
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::move(const double                             from,
+                               const double                             to,
+                               const std::function<void(const double)> &report,
+                               const RunContext                        &context)
+  {
+    constexpr unsigned int n_reports = 50; // of the progress
+    Timings::Scope         scope(this->timings, "time stepping");
+    // Whole steps between two reports, so that these change no step.
+    const double       span = to - from, step = stepper->current_step();
+    const double       n_steps = std::max(1., std::ceil(span / step * (1. - 1e-10)));
+    const unsigned int n_parts = std::min(n_steps, static_cast<double>(n_reports));
+    double             now     = from;
+    for (unsigned int part = 1; part <= n_parts; ++part)
+      {
+        const double next =
+          part == n_parts ? to : from + span * std::floor(n_steps * part / n_parts) / n_steps;
+        stepper->advance(displacement, velocity, now, next);
+        now = next;
+        if (op().brittle())
+          {
+            tell_broken_bonds(op().n_broken_bonds());
+            tell_first_break(*this, next, context);
+          }
+        report(static_cast<double>(part) / n_parts);
+      }
+  }
+
+
+  template <int dim>
+  double SolidProblem<dim>::work_of(const double span) const
+  {
+    if (!stepper)
+      return 1.;
+    const OperatorSize size = op().size();
+    // A step costs about as much as the product with what is stored.
+    return std::max(1., span / stepper->current_step()) *
+           static_cast<double>(size.unknowns + size.nonzeros + size.bonds);
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::take_sample(const RunContext &, ModelEstimate &estimate)
+  {
+    op().initialize_vector(displacement);
+    if (scene.elasticity.is_static())
+      {
+        if (scene.elasticity.solver == ElasticSolver::linear)
+          estimate.time_of_solution =
+            time_of_linear_equilibrium(scene.solver,
+                                       op(),
+                                       scene.time.steady ? 0. : scene.time.end_time,
+                                       false);
+        return;
+      }
+    // About as many steps as a run takes, whose first step is this one.
+    const double step =
+      make_motion_stepper(scene.time.stepper, op(), stepper_options())->current_step();
+    estimate.applications = step > 0. ? scene.time.end_time / step : 0.;
+  }
+
+
+  template <int dim>
+  double SolidProblem<dim>::time_of_run(const std::vector<double> &times,
+                                        const bool,
+                                        const RunContext &context,
+                                        double           &memory)
+  {
+    if (!stepper)
+      {
+        const double n_steps =
+          scene.time.steady ? 1. : std::max(scene.time.end_time / load_step(), 1. * times.size());
+        return time_of_equilibria(*this, n_steps, context, memory);
+      }
+    // By its first steps.
+    const double step = stepper->current_step(), end = scene.time.end_time;
+    const double from = std::min(step, end), to = std::min(4. * step, end);
+    stepper->advance(displacement, velocity, 0., from);
+    if (!(to > from))
+      return 0.;
+    const double before = context.progress.elapsed();
+    stepper->advance(displacement, velocity, from, to);
+    return (context.progress.elapsed() - before) * end / (to - from);
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::examine(const double t)
+  {
+    if (stepper)
+      stepper->examine(displacement, velocity, t);
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::note_end(const RunContext &context) const
+  {
+    if (loading && !scene.time.steady)
+      context.progress.line(this->name() + ": " + std::to_string(n_iterations) + " iterations");
+    PeriDeal::note_end(*this, context);
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::begin_loading(const RunContext &context)
+  {
+    Timings::Scope scope(this->timings, "solving");
+    StaticOptions  options;
+    options.tolerance      = scene.solver.tolerance;
+    options.max_iterations = scene.solver.most_iterations(scene.elasticity.solver);
+    options.direct_up_to   = scene.solver.direct_up_to;
+    options.multigrid      = scene.elasticity.multigrid;
+    loading                = std::make_unique<SlowLoading>(
+      op(),
+      make_static_solver(scene.elasticity.solver_name(), op(), options),
+      options);
+    loading->begin(displacement, 0.);
+    n_iterations = loading->n_iterations();
+    tell_first_break(*this, 0., context);
+  }
+
+
+  template <int dim>
+  nlohmann::ordered_json SolidProblem<dim>::describe_solving() const
+  {
+    nlohmann::ordered_json entry{{"iterations", n_iterations}};
+    if (stepper)
+      {
+        entry["stepper"]     = stepper->name();
+        entry["steps"]       = stepper->cost().steps;
+        entry["iterations"]  = stepper->cost().iterations;
+        entry["time step"]   = stepper->current_step();
+        entry["stable step"] = {{"sharp", stable_step}, {"method", "verlet"}};
+      }
+    if (loading && !scene.time.steady)
+      {
+        entry["steps"] = loading->n_steps();
+        if (!scene.warms_slowly()) // then equilibria are at times of output
+          entry["time step"] = load_step();
+      }
+    return entry;
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::add_totals(const double t, const RunContext &context)
+  {
+    add_solid_totals(*this, t, context);
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::describe_end(nlohmann::ordered_json &entry, ResultRecord &record) const
+  {
+    if (const auto phases =
+          describe_phases(*this, scene, record.totals, this->dofs().get_communicator());
+        !phases.empty())
+      entry["phases"] = phases;
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::describe_scene(nlohmann::ordered_json &summary,
+                                         const bool              at_the_end) const
+  {
+    describe_solid_scene(scene, at_the_end, summary);
+  }
+
+
+  template <int dim>
+  std::unique_ptr<SolidProblem<dim>> make_solid_problem(const ModelKind           model,
+                                                        const Triangulation<dim> &mesh,
+                                                        const Scene<dim>         &scene)
+  {
+    // With fictitious nodes peridynamics is the coupled model without elements.
+    return model == ModelKind::peridynamics && !scene.peridynamics.completes_families() ?
+             make_bond_solid(mesh, scene) :
+             make_element_solid(model, mesh, scene);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                            \
+  template class SolidProblem<dim>;                                                          \
+  template std::unique_ptr<SolidProblem<dim>> make_solid_problem(const ModelKind,            \
+                                                                 const Triangulation<dim> &, \
+                                                                 const Scene<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

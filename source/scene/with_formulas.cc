@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/scene/expression.h>
+#include <perideal/scene/with_formulas.h>
+
+namespace PeriDeal
+{
+  void with_formulas(const MPI_Comm communicator, const std::function<void()> &action)
+  {
+    const DeferredFormulaErrors errors;
+    try
+      {
+        action();
+      }
+    catch (const UserError &)
+      {
+        // The cause, if it is a formula's value; not of this process alone: others wait elsewhere.
+        if (all_processes_arrive(communicator))
+          errors.throw_if_any(communicator);
+        throw;
+      }
+    errors.throw_if_any(communicator);
+  }
+} // namespace PeriDeal

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "run_output.h"
+
+#include <cmath>
+#include <utility>
+
+#include "summary_parts.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  RunOutput<dim>::RunOutput(const Scene<dim> &scene, ResultRecord &record)
+    : scene(scene)
+    , record(record)
+  {
+    const auto add = [this](const std::string                      &entry,
+                            const std::string                      &file,
+                            const std::vector<std::vector<double>> &points) {
+      outputs.push_back({entry, file, points, {}, nullptr});
+    };
+    add("Probes", "probes.csv", scene.output.probes);
+    add("Line", "line.csv", scene.output.line);
+    add("Grid", "grid.csv", scene.output.grid);
+  }
+
+
+  template <int dim>
+  void RunOutput<dim>::open(const SceneText &text, const MPI_Comm communicator)
+  {
+    run_files = std::make_unique<RunFiles>(scene, text, communicator);
+  }
+
+
+  template <int dim>
+  bool RunOutput<dim>::is_open() const
+  {
+    return run_files != nullptr;
+  }
+
+
+  template <int dim>
+  void RunOutput<dim>::close()
+  {
+    run_files.reset();
+  }
+
+
+  template <int dim>
+  RunFiles &RunOutput<dim>::files()
+  {
+    return *run_files;
+  }
+
+
+  template <int dim>
+  void RunOutput<dim>::find_points(const Problems &of_run)
+  {
+    problems = of_run;
+    for (PointOutput &output : outputs)
+      output.readers = make_point_readers<dim>(problems, scene.cracks, output.points, output.entry);
+  }
+
+
+  template <int dim>
+  std::vector<std::string> RunOutput<dim>::gaps_in_line() const
+  {
+    for (const PointOutput &output : outputs)
+      if (output.entry == "Line")
+        return PeriDeal::gaps_in_line<dim>(output.readers, output.points);
+    return {};
+  }
+
+
+  template <int dim>
+  void RunOutput<dim>::write_points(const double t, const ExactSolution *exact)
+  {
+    for (PointOutput &output : outputs)
+      if (!output.points.empty())
+        write(output, t, exact);
+  }
+
+
+  template <int dim>
+  void RunOutput<dim>::write(PointOutput &output, const double t, const ExactSolution *exact)
+  {
+    if (!output.table)
+      output.table = std::make_unique<PointTable>(run_files->folder,
+                                                  output.file,
+                                                  output.points,
+                                                  dim,
+                                                  problems[0]->columns());
+    for (std::size_t k = 0; k < problems.size(); ++k)
+      output.table->add(t,
+                        problems[k]->name(),
+                        problems[k]->at_points(*output.readers[k], output.points));
+    if (!exact)
+      return;
+    std::vector<double> values;
+    for (unsigned int k = 0; k < output.points.size(); ++k)
+      {
+        Point<dim> point;
+        for (unsigned int d = 0; d < dim; ++d)
+          point[d] = output.points[k][d];
+        const std::vector<double> row = problems[0]->exact_row(*exact, point, t);
+        for (const double value : row)
+          values.push_back(output.readers[0]->is_gap(k) ? std::nan("") : value);
+      }
+    output.table->add(t, "exact", values);
+  }
+
+
+  template <int dim>
+  void RunOutput<dim>::write_fields(const double t, const std::map<std::string, OutputField> &more)
+  {
+    if (!scene.output.vtu && !scene.output.hdf5)
+      return;
+    RunFiles::Json names = RunFiles::Json::object();
+    for (std::size_t k = 0; k < problems.size(); ++k)
+      {
+        const std::string model = problems[k]->name();
+        if (writers.size() == k)
+          writers.push_back(std::make_unique<FieldWriter<dim>>(problems[k]->dofs(),
+                                                               run_files->folder,
+                                                               series_of(model),
+                                                               problems[k]->shown()));
+        std::vector<OutputField> fields = problems[k]->fields(t);
+        if (const auto found = more.find(model); found != more.end())
+          fields.push_back(found->second);
+        const std::string name = writers[k]->write(fields, t, scene.output.vtu, scene.output.hdf5);
+        if (!name.empty())
+          names[model] = name;
+      }
+    record.fields.push_back({{"time", t}, {"files", names}});
+    if (scene.cracks.change())
+      record.fields.back()["cracks"] = corners_of(scene.cracks.pieces(t));
+    if (!cracks)
+      cracks = std::make_unique<CrackWriter>(run_files->folder);
+    if (scene.output.vtu)
+      cracks->write(crack_corners(scene.cracks.pieces(t)), t);
+  }
+
+
+  template <int dim>
+  void RunOutput<dim>::end_time(const std::function<RunFiles::Json()> &summary,
+                                const std::string                     &reached)
+  {
+    run_files->add_totals(std::exchange(record.totals, ""));
+    run_files->after_output(summary, reached);
+  }
+
+
+  template <int dim>
+  void RunOutput<dim>::complete(const RunFiles::Json &summary)
+  {
+    run_files->add_totals(std::exchange(record.totals, ""));
+    run_files->complete(summary);
+  }
+
+
+  template class RunOutput<1>;
+  template class RunOutput<2>;
+  template class RunOutput<3>;
+} // namespace PeriDeal
