@@ -87,8 +87,6 @@ namespace PeriDeal
                                        const bool  with_bonds) const
   {
     assemble_whole_cell(cell, data, with_bonds);
-    data.convection      = 0.;
-    const unsigned int n = data.indices.size();
     if (cut_by_cracks.is_cut(cell))
       cut_by_cracks.cut_matrix(
         cell,
@@ -96,24 +94,7 @@ namespace PeriDeal
         data.stiffness);
     if (coupling && with_bonds)
       coupling->finish_cell(cell, data.stiffness);
-    for (const unsigned int f : cell->face_indices())
-      if (cell->face(f)->at_boundary())
-        condition_faces.for_each(scene.boundary_conditions.convection,
-                                 cell,
-                                 f,
-                                 data.face_values,
-                                 [&](const SideCondition &condition, const auto &values) {
-                                   for (const unsigned int q : values.quadrature_point_indices())
-                                     {
-                                       const double h =
-                                         condition.coefficient.value(values.quadrature_point(q)) *
-                                         values.JxW(q);
-                                       for (unsigned int i = 0; i < n; ++i)
-                                         for (unsigned int j = 0; j < n; ++j)
-                                           data.convection(i, j) += h * values.shape_value(i, q) *
-                                                                    values.shape_value(j, q);
-                                     }
-                                 });
+    loads.find_convection(cell, data.convection);
     cell->get_dof_indices(data.indices);
   }
 
@@ -125,11 +106,11 @@ namespace PeriDeal
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial())
         cells.push_back(cell);
-    const Vector layout = new_vector();
-    crack_factors.start(layout);
-    std::vector<unsigned int> nodes(layout.locally_owned_size());
+    const Vector zero(layout);
+    crack_factors.start(zero);
+    std::vector<unsigned int> nodes(zero.locally_owned_size());
     std::iota(nodes.begin(), nodes.end(), 0);
-    CrackSideFactors::Sums sums(layout);
+    CrackSideFactors::Sums sums(zero);
     find_crack_factors(cells, nodes, sums);
   }
 
@@ -191,7 +172,7 @@ namespace PeriDeal
     stiffness.reinit(pattern);
     if (!capacity_is_diagonal())
       mass.reinit(pattern);
-    initialize_vector(capacity);
+    capacity.reinit(layout);
     cell_data = std::make_shared<CellData>(dofs.get_fe());
     fill();
   }
@@ -237,131 +218,7 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  void FEMOperator<dim>::assemble_loads(Vector &loads, const double t) const
-  {
-    const Expression &source     = scene.initial_and_source.source;
-    const bool        any_source = !source.is_constant() || source.value(Point<dim>()) != 0.;
-    CellData         &data       = *cell_data;
-    loads                        = 0.;
-    for (const auto &cell : dofs.active_cell_iterators())
-      {
-        if (!cell->is_locally_owned() || !(any_source || cell->at_boundary()))
-          continue;
-        cell->get_dof_indices(data.indices);
-        if (any_source)
-          {
-            data.values.reinit(cell);
-            for (const unsigned int q : data.values.quadrature_point_indices())
-              for (unsigned int i = 0; i < data.indices.size(); ++i)
-                loads(data.indices[i]) += source.value(data.values.quadrature_point(q), t) *
-                                          data.values.shape_value(i, q) * data.values.JxW(q);
-          }
-        for (const unsigned int f : cell->face_indices())
-          {
-            if (!cell->face(f)->at_boundary())
-              continue;
-            const auto add = [&](const auto &values, const auto &entering) {
-              for (const unsigned int q : values.quadrature_point_indices())
-                {
-                  const double heat = entering(values.quadrature_point(q)) * values.JxW(q);
-                  for (unsigned int i = 0; i < data.indices.size(); ++i)
-                    loads(data.indices[i]) += heat * values.shape_value(i, q);
-                }
-            };
-            const auto &conditions = scene.boundary_conditions;
-            condition_faces.for_each(
-              conditions.flux,
-              cell,
-              f,
-              data.face_values,
-              [&](const SideCondition &flux, const auto &values) {
-                add(values, [&](const Point<dim> &p) { return flux.value.value(p, t); });
-              });
-            condition_faces.for_each(conditions.convection,
-                                     cell,
-                                     f,
-                                     data.face_values,
-                                     [&](const SideCondition &convection, const auto &values) {
-                                       add(values, [&](const Point<dim> &p) {
-                                         return convection.coefficient.value(p) *
-                                                convection.value.value(p, t);
-                                       });
-                                     });
-          }
-      }
-    for_each_part_flux([&](const PartUnknown<dim> &unknown, const SideCondition &flux) {
-      loads.local_element(unknown.node) += unknown.share * flux.value.value(unknown.position, t);
-    });
-    loads.compress(VectorOperation::add);
-    hanging.condense(loads);
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::add_side_and_source_heat(const Vector &u,
-                                                  const double  t,
-                                                  Balance      &balance) const
-  {
-    const Expression &source     = scene.initial_and_source.source;
-    const bool        any_source = !source.is_constant() || source.value(Point<dim>()) != 0.;
-    CellData         &data       = *cell_data;
-    u.update_ghost_values();
-    for (const auto &cell : dofs.active_cell_iterators())
-      {
-        if (!cell->is_locally_owned() || !(any_source || cell->at_boundary()))
-          continue;
-        if (any_source)
-          {
-            data.values.reinit(cell);
-            for (const unsigned int q : data.values.quadrature_point_indices())
-              balance.sources +=
-                source.value(data.values.quadrature_point(q), t) * data.values.JxW(q);
-          }
-        for (const unsigned int f : cell->face_indices())
-          {
-            if (!cell->face(f)->at_boundary())
-              continue;
-            condition_faces.for_each(
-              scene.boundary_conditions.flux,
-              cell,
-              f,
-              data.face_values,
-              [&](const SideCondition &flux, const auto &values) {
-                for (const unsigned int q : values.quadrature_point_indices())
-                  balance.sides[flux.name] +=
-                    flux.value.value(values.quadrature_point(q), t) * values.JxW(q);
-              });
-            cell->get_dof_indices(data.indices);
-            condition_faces.for_each(
-              scene.boundary_conditions.convection,
-              cell,
-              f,
-              data.face_values,
-              [&](const SideCondition &convection, const auto &values) {
-                for (const unsigned int q : values.quadrature_point_indices())
-                  {
-                    const Point<dim> &p           = values.quadrature_point(q);
-                    double            temperature = 0.;
-                    for (unsigned int i = 0; i < data.indices.size(); ++i)
-                      temperature += u(data.indices[i]) * values.shape_value(i, q);
-                    balance.sides[convection.name] += convection.coefficient.value(p) *
-                                                      (convection.value.value(p, t) - temperature) *
-                                                      values.JxW(q);
-                  }
-              });
-          }
-      }
-    for_each_part_flux([&](const PartUnknown<dim> &unknown, const SideCondition &flux) {
-      balance.sides[flux.name] += unknown.share * flux.value.value(unknown.position, t);
-    });
-    u.set_ghost_state(false);
-  }
-
 #define PERIDEAL_INSTANTIATE(dim)                                                       \
-  template void FEMOperator<dim>::add_side_and_source_heat(const Vector &,              \
-                                                           const double,                \
-                                                           Balance &) const;            \
   template struct FEMOperator<dim>::CellData;                                           \
   template void FEMOperator<dim>::fill();                                               \
   template bool FEMOperator<dim>::assemble_whole_cell(                                  \
@@ -378,8 +235,7 @@ namespace PeriDeal
                                                      CrackSideFactors::Sums &);         \
   template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                \
   template void FEMOperator<dim>::check_material() const;                               \
-  template void FEMOperator<dim>::assemble();                                           \
-  template void FEMOperator<dim>::assemble_loads(Vector &, const double) const;
+  template void FEMOperator<dim>::assemble();
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -22,7 +22,7 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::find_diagonal()
   {
-    initialize_vector(stiffness_diagonal);
+    stiffness_diagonal.reinit(layout);
     if (bonds_apart)
       {
         set_form_factors();
@@ -31,9 +31,8 @@ namespace PeriDeal
         form->row_sums(bond_sums.data());
         std::copy(bond_sums.begin(), bond_sums.end(), stiffness_diagonal.begin());
       }
-    const auto &layout = *stiffness_diagonal.get_partitioner();
     for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
-      if (column == layout.local_to_global(i))
+      if (column == layout->local_to_global(i))
         stiffness_diagonal.local_element(i) += value;
     });
   }
@@ -42,9 +41,8 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::extract_remainder()
   {
-    remainder          = RemainderRows();
-    const auto &layout = *coupling->families().nodes().partitioner();
-    double      size   = 0.;
+    remainder   = RemainderRows();
+    double size = 0.;
     for_each_entry(stiffness, [&](const unsigned int, const auto, const double value) {
       size = std::max(size, std::abs(value));
     });
@@ -58,7 +56,7 @@ namespace PeriDeal
           remainder.rows.push_back(i);
           remainder.starts.push_back(remainder.columns.size());
         }
-      remainder.columns.push_back(layout.global_to_local(column));
+      remainder.columns.push_back(layout->global_to_local(column));
       remainder.values.push_back(value);
     });
     remainder.starts.push_back(remainder.columns.size());

@@ -22,10 +22,6 @@ namespace PeriDeal
                dealii::QGauss<dim>(fe.degree + 1),
                dealii::update_values | dealii::update_gradients | dealii::update_quadrature_points |
                  dealii::update_JxW_values)
-      , face_values(fe,
-                    dealii::QGauss<dim - 1>(fe.degree + 1),
-                    dealii::update_values | dealii::update_quadrature_points |
-                      dealii::update_JxW_values)
       , stiffness(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
       , mass(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
       , convection(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
@@ -35,7 +31,6 @@ namespace PeriDeal
     {}
 
     dealii::FEValues<dim>                        values;
-    dealii::FEFaceValues<dim>                    face_values;
     dealii::FullMatrix<double>                   stiffness, mass, convection;
     std::vector<dealii::types::global_dof_index> indices;
     std::vector<double>                          temperatures;       // at the quadrature points
@@ -58,16 +53,4 @@ namespace PeriDeal
     CrackSideFactors::Sums factors;
     LocalBound             bound;
   };
-
-
-  /** Call visit(unknown, flux) for the regions and points in `Flux`. */
-  template <int dim>
-  template <typename Visit>
-  void FEMOperator<dim>::for_each_part_flux(const Visit &visit) const
-  {
-    for (const PartUnknown<dim> &unknown : part_unknowns)
-      for (const SideCondition &flux : scene.boundary_conditions.flux)
-        if (flux.id == unknown.id)
-          visit(unknown, flux);
-  }
 } // namespace PeriDeal

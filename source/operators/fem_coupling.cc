@@ -25,7 +25,6 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::add_bond_pattern(TrilinosWrappers::SparsityPattern &pattern) const
   {
-    const auto                          &layout = *coupling->families().nodes().partitioner();
     std::vector<unsigned int>            neighbors;
     std::vector<types::global_dof_index> columns;
     if (bonds_apart)
@@ -40,13 +39,13 @@ namespace PeriDeal
             }
         return;
       }
-    for (unsigned int i = 0; i < layout.locally_owned_size(); ++i)
+    for (unsigned int i = 0; i < layout->locally_owned_size(); ++i)
       {
         coupling->possible_neighbors_of(i, neighbors);
         columns.clear();
         for (const unsigned int j : neighbors)
-          columns.push_back(layout.local_to_global(j));
-        pattern.add_entries(layout.local_to_global(i), columns.begin(), columns.end());
+          columns.push_back(layout->local_to_global(j));
+        pattern.add_entries(layout->local_to_global(i), columns.begin(), columns.end());
       }
   }
 
@@ -73,18 +72,17 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::add_bonds(const std::vector<unsigned int> &nodes, const BondRows &rows)
   {
-    const auto                          &layout = *coupling->families().nodes().partitioner();
     std::vector<types::global_dof_index> columns;
     std::vector<double>                  values;
     for (std::size_t k = 0; k < nodes.size(); ++k)
       if (!rows[k].empty())
         {
-          const auto own = layout.local_to_global(nodes[k]);
+          const auto own = layout->local_to_global(nodes[k]);
           columns.assign(1, own);
           values.assign(1, 0.);
           for (const auto &[neighbor, conductance] : rows[k])
             {
-              columns.push_back(layout.local_to_global(neighbor));
+              columns.push_back(layout->local_to_global(neighbor));
               values.push_back(-conductance);
               values[0] += conductance;
             }
@@ -183,19 +181,18 @@ namespace PeriDeal
   void FEMOperator<dim>::visit_conductances(
     const std::function<void(const unsigned int, const unsigned int, const double)> &visit) const
   {
-    const auto &layout = *coupling->families().nodes().partitioner();
     for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
       // The neighbours of a hanging node's neighbours may be unknown here.
-      if (!layout.in_local_range(column) && !layout.is_ghost_entry(column))
+      if (!layout->in_local_range(column) && !layout->is_ghost_entry(column))
         return;
-      const unsigned int j = layout.global_to_local(column);
+      const unsigned int j = layout->global_to_local(column);
       if (i != j && value != 0.)
         visit(i, j, -value);
     });
     if (!bonds_apart)
       return;
     std::vector<unsigned int> node(1);
-    for (node[0] = 0; node[0] < layout.locally_owned_size(); ++node[0])
+    for (node[0] = 0; node[0] < layout->locally_owned_size(); ++node[0])
       {
         const BondRows rows = bond_rows(node);
         for (const auto &[neighbor, conductance] : rows[0])
@@ -244,20 +241,19 @@ namespace PeriDeal
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
     DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
-    const auto                               &layout = *coupling->families().nodes().partitioner();
     std::vector<typename Coupling<dim>::Bond> bonds;
     std::vector<types::global_dof_index>      columns;
     std::vector<double>                       values;
     const auto                                for_each_row = [&](const auto &visit) {
-      for (unsigned int i = 0; i < layout.locally_owned_size() && with_bonds; ++i)
+      for (unsigned int i = 0; i < layout->locally_owned_size() && with_bonds; ++i)
         {
           coupling->bonds_of(i, bonds);
-          const auto own = layout.local_to_global(i);
+          const auto own = layout->local_to_global(i);
           columns.assign(1, own);
           values.assign(1, 0.);
           for (const auto &bond : bonds)
             {
-              columns.push_back(layout.local_to_global(bond.neighbor));
+              columns.push_back(layout->local_to_global(bond.neighbor));
               values.push_back(-bond.intact);
               values[0] += bond.intact;
             }

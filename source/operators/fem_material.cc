@@ -135,79 +135,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::find_convection_sums()
-  {
-    if (scene.boundary_conditions.convection.empty())
-      return;
-    CellData &data = *cell_data;
-    Vector    sums;
-    initialize_vector(sums);
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && cell->at_boundary())
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            {
-              cell->get_dof_indices(data.indices);
-              condition_faces.for_each(
-                scene.boundary_conditions.convection,
-                cell,
-                f,
-                data.face_values,
-                [&](const SideCondition &condition, const auto &values) {
-                  for (const unsigned int q : values.quadrature_point_indices())
-                    for (unsigned int i = 0; i < data.indices.size(); ++i)
-                      sums(data.indices[i]) +=
-                        condition.coefficient.value(values.quadrature_point(q)) * values.JxW(q) *
-                        values.shape_value(i, q);
-                });
-            }
-    sums.compress(VectorOperation::add);
-    hanging.condense(sums);
-    for (unsigned int i = 0; i < sums.locally_owned_size(); ++i)
-      if (sums.local_element(i) != 0.)
-        convection_sums.emplace_back(i, sums.local_element(i));
-  }
-
-
-  template <int dim>
-  double FEMOperator<dim>::through_prescribed(const Vector      &y,
-                                              const unsigned int begin,
-                                              const unsigned int end) const
-  {
-    double sum = 0.;
-    for (auto entry =
-           std::lower_bound(prescribed.begin(),
-                            prescribed.end(),
-                            begin,
-                            [](const Prescribed &a, const unsigned int b) { return a.dof < b; });
-         entry != prescribed.end() && entry->dof < end;
-         ++entry)
-      sum += y.local_element(entry->dof);
-    return sum;
-  }
-
-
-  template <int dim>
-  double FEMOperator<dim>::through_convection(const Vector &x) const
-  {
-    double sum = 0.;
-    for (const auto &[dof, coefficient] : convection_sums)
-      sum -= coefficient * x.local_element(dof);
-    return sum;
-  }
-
-
-  template <int dim>
-  double FEMOperator<dim>::sum_of_free_loads(const Vector &loads) const
-  {
-    double sum = 0.;
-    for (unsigned int i = 0; i < loads.locally_owned_size(); ++i)
-      sum += loads.local_element(i);
-    return sum - through_prescribed(loads, 0, loads.locally_owned_size());
-  }
-
-
-  template <int dim>
   double FEMOperator<dim>::heat(const Vector &u) const
   {
     return Utilities::MPI::sum(heat_of(u), dofs.get_communicator());
@@ -246,12 +173,6 @@ namespace PeriDeal
 #define PERIDEAL_INSTANTIATE(dim)                                                                 \
   template bool   FEMOperator<dim>::capacity_depends_on_solution() const;                         \
   template void   FEMOperator<dim>::heat_between(Vector &, const Vector &, const Vector &) const; \
-  template void   FEMOperator<dim>::find_convection_sums();                                       \
-  template double FEMOperator<dim>::through_prescribed(const Vector &,                            \
-                                                       const unsigned int,                        \
-                                                       const unsigned int) const;                 \
-  template double FEMOperator<dim>::through_convection(const Vector &) const;                     \
-  template double FEMOperator<dim>::sum_of_free_loads(const Vector &) const;                      \
   template bool   FEMOperator<dim>::depends_on_solution() const;                                  \
   template void   FEMOperator<dim>::find_temperatures(CellData &) const;                          \
   template double FEMOperator<dim>::center_conductivity(const Cell &) const;                      \

@@ -11,12 +11,29 @@
 #include <perideal/operators/spectrum.h>
 
 #include <algorithm>
-#include <map>
 #include <sstream>
 
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** With the halo of the nodes, or of finite elements alone with the locally relevant dofs. */
+    template <int dim>
+    std::shared_ptr<const Utilities::MPI::Partitioner> layout_of(const DoFHandler<dim> &dofs,
+                                                                 const Coupling<dim>   *coupling)
+    {
+      if (coupling != nullptr)
+        return coupling->families().nodes().partitioner();
+      IndexSet relevant;
+      DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+      return std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
+                                                                 relevant,
+                                                                 dofs.get_communicator());
+    }
+  } // namespace
+
 
   template <int dim>
   FEMOperator<dim>::FEMOperator(const DoFHandler<dim>         &dof_handler,
@@ -26,7 +43,10 @@ namespace PeriDeal
     : dofs(dof_handler)
     , scene(scene)
     , coupling(std::move(coupling))
-    , hanging(dofs, *new_vector().get_partitioner())
+    , layout(layout_of(dofs, this->coupling.get()))
+    , hanging(dofs, *layout)
+    , loads(dofs, layout, scene.boundary_conditions, scene.initial_and_source.source, hanging)
+    , prescribed(dofs, *layout, scene.boundary_conditions, hanging, loads.part_unknowns())
     , history(scene.crack_history())
     , cracks_of(history.representative(start))
     , cut_by_cracks(dofs,
@@ -34,88 +54,15 @@ namespace PeriDeal
                      scene.cracks.mesh == CrackMesh::removed,
                      scene.cracks.contact_conductance,
                      [&scene] { return scene.horizon(); }})
-    , condition_faces(dofs, scene.boundary_conditions)
   {
     if (this->coupling && start > 0.)
       this->coupling->set_cracks_of(cracks_of);
     check_material();
     cut_by_cracks.set(history.pieces(cracks_of), history.transmission(cracks_of));
-    find_prescribed();
     bonds_apart = this->coupling && this->coupling->has_form();
     assemble();
     find_diagonal();
     find_gershgorin();
-    loads_vary = scene.initial_and_source.source.depends_on_time() ||
-                 scene.boundary_conditions.depends_on_time();
-    initialize_vector(scratch);
-    initialize_vector(constant_loads);
-    if (!loads_vary)
-      {
-        assemble_loads(constant_loads, 0.);
-        free_loads = sum_of_free_loads(constant_loads);
-      }
-    find_convection_sums();
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::find_prescribed()
-  {
-    Vector layout;
-    initialize_vector(layout);
-    const auto                          &fe = dofs.get_fe();
-    std::vector<types::global_dof_index> indices(fe.n_dofs_per_cell());
-    // For each dof the place in the list of the condition that holds: the one named first.
-    std::map<unsigned int, std::pair<unsigned int, Point<dim>>> found;
-    const auto                     &dirichlet = scene.boundary_conditions.dirichlet;
-    std::vector<unsigned long long> n_nodes(dirichlet.size(), 0);
-    const auto hold = [&](const unsigned int dof, const unsigned int k, const Point<dim> &p) {
-      const auto [entry, is_new] = found.try_emplace(dof, k, p);
-      entry->second.first        = std::min(entry->second.first, k);
-      ++n_nodes[k];
-    };
-    for (const auto &cell : dofs.active_cell_iterators())
-      {
-        if (cell->is_artificial() || !cell->at_boundary())
-          continue;
-        cell->get_dof_indices(indices);
-        for (const unsigned int f : cell->face_indices())
-          for (unsigned int k = 0; k < dirichlet.size(); ++k)
-            if (cell->face(f)->at_boundary() &&
-                scene.boundary_conditions.side_of(dirichlet[k].id) == cell->face(f)->boundary_id())
-              for (unsigned int i = 0; i < indices.size(); ++i)
-                if (fe.has_support_on_face(i, f) && layout.in_local_range(indices[i]) &&
-                    !hanging.is_hanging(indices[i]))
-                  {
-                    const Point<dim> p =
-                      MappingQ1<dim>().transform_unit_to_real_cell(cell, fe.unit_support_point(i));
-                    if (scene.boundary_conditions.holds_at(dirichlet[k].id, p))
-                      hold(layout.get_partitioner()->global_to_local(indices[i]), k, p);
-                  }
-      }
-    part_unknowns = unknowns_of_parts(dofs, scene.boundary_conditions);
-    for (const PartUnknown<dim> &unknown : part_unknowns)
-      for (unsigned int k = 0; k < dirichlet.size(); ++k)
-        if (dirichlet[k].id == unknown.id &&
-            !hanging.is_hanging(layout.get_partitioner()->local_to_global(unknown.node)))
-          hold(unknown.node, k, unknown.position);
-    std::vector<unsigned long long> n_held(dirichlet.size(), 0);
-    for (const auto &[dof, entry] : found)
-      {
-        prescribed.push_back({dof, entry.second, &dirichlet[entry.first]});
-        ++n_held[entry.first];
-      }
-    require_held_parts(scene.boundary_conditions,
-                       dirichlet,
-                       n_nodes,
-                       n_held,
-                       "Dirichlet",
-                       dofs.get_communicator());
-    for (const Prescribed &entry : prescribed)
-      held.push_back(entry.dof);
-    held.insert(held.end(), hanging.owned().begin(), hanging.owned().end());
-    std::sort(held.begin(), held.end());
-    any_prescribed = Utilities::MPI::max(prescribed.empty() ? 0 : 1, dofs.get_communicator()) > 0;
   }
 
 
@@ -145,30 +92,14 @@ namespace PeriDeal
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
     gershgorin = Utilities::MPI::max(bound, dofs.get_communicator());
-    mask(stiffness_diagonal, 1.);
+    prescribed.mask(stiffness_diagonal, 1.);
   }
 
 
   template <int dim>
   void FEMOperator<dim>::initialize_vector(Vector &vector) const
   {
-    if (coupling)
-      {
-        vector.reinit(coupling->families().nodes().partitioner());
-        return;
-      }
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
-    vector.reinit(dofs.locally_owned_dofs(), relevant, dofs.get_communicator());
-  }
-
-
-  template <int dim>
-  Vector FEMOperator<dim>::new_vector() const
-  {
-    Vector vector;
-    initialize_vector(vector);
-    return vector;
+    vector.reinit(layout);
   }
 
 
@@ -176,44 +107,6 @@ namespace PeriDeal
   const HangingNodes<dim> &FEMOperator<dim>::hanging_nodes() const
   {
     return hanging;
-  }
-
-  template <int dim>
-  void FEMOperator<dim>::interpolate_hanging(Vector &v) const
-  {
-    hanging.interpolate(v);
-  }
-
-  template <int dim>
-  void FEMOperator<dim>::condense(Vector &loads) const
-  {
-    hanging.condense(loads);
-  }
-
-  template <int dim>
-  void FEMOperator<dim>::set_hanging(Vector &v, const double value) const
-  {
-    hanging.set(v, value);
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::mask(Vector &y, const double value) const
-  {
-    mask(y, value, 0, y.locally_owned_size());
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::mask(Vector            &y,
-                              const double       value,
-                              const unsigned int begin,
-                              const unsigned int end) const
-  {
-    for (auto dof = std::lower_bound(held.begin(), held.end(), begin);
-         dof != held.end() && *dof < end;
-         ++dof)
-      y.local_element(*dof) = value;
   }
 
 
@@ -228,10 +121,10 @@ namespace PeriDeal
   void FEMOperator<dim>::apply_then(Vector &y, const Vector &x, const RowsAction &finish) const
   {
     ++applications;
-    entering_now = through_convection(x);
+    entering_now = loads.through_convection(x);
     multiply_then(y, x, [&](const unsigned int begin, const unsigned int end) {
-      entering_now += through_prescribed(y, begin, end);
-      mask(y, 0., begin, end);
+      entering_now += prescribed.sum(y, begin, end);
+      prescribed.mask(y, 0., begin, end);
       finish(begin, end);
     });
   }
@@ -242,34 +135,32 @@ namespace PeriDeal
   {
     ++applications;
     multiply(r, u);
-    if (loads_vary)
-      assemble_loads(scratch, t);
-    const Vector &loads = loads_vary ? scratch : constant_loads;
-    entering_now        = through_convection(u) + through_prescribed(r, 0, r.locally_owned_size()) +
-                   (loads_vary ? sum_of_free_loads(loads) : free_loads);
-    r.sadd(-1., 1., loads);
-    mask(r);
+    const Vector      &now = loads.at(t);
+    const unsigned int n   = r.locally_owned_size();
+    entering_now           = loads.through_convection(u) + prescribed.sum(r, 0, n) +
+                   (loads.sum() - prescribed.sum(now, 0, n));
+    r.sadd(-1., 1., now);
+    prescribed.mask(r);
   }
 
 
   template <int dim>
   void FEMOperator<dim>::distribute(Vector &u, const double t) const
   {
-    for (const Prescribed &entry : prescribed)
-      u.local_element(entry.dof) = entry.condition->value.value(entry.position, t);
+    prescribed.distribute(u, t);
     hanging.interpolate(u);
   }
 
   template <int dim>
   void FEMOperator<dim>::distribute_homogeneous(Vector &x) const
   {
-    mask(x);
+    prescribed.mask(x);
   }
 
   template <int dim>
   void FEMOperator<dim>::clear_constrained(Vector &y) const
   {
-    mask(y);
+    prescribed.mask(y);
   }
 
   template <int dim>
@@ -307,7 +198,7 @@ namespace PeriDeal
   {
     if (noise_values.size() > 0)
       return noise_values;
-    initialize_vector(noise_values);
+    noise_values.reinit(layout);
     const MappingQ1<dim>                 mapping;
     std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
     for (const auto &cell : dofs.active_cell_iterators())
@@ -345,13 +236,13 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::depends_on_time() const
   {
-    return loads_vary;
+    return loads.depends_on_time();
   }
 
   template <int dim>
   bool FEMOperator<dim>::has_steady_state() const
   {
-    return any_prescribed || !scene.boundary_conditions.convection.empty();
+    return prescribed.any() || !scene.boundary_conditions.convection.empty();
   }
 
 
@@ -362,9 +253,8 @@ namespace PeriDeal
       assemble_surrogate(matrix);
     else
       matrix.copy_from(stiffness);
-    Vector marked;
-    initialize_vector(marked);
-    mask(marked, 1.);
+    Vector marked(layout);
+    prescribed.mask(marked, 1.);
     const Vector held = with_columns_as_ghosts(marked, matrix);
     for_each_entry(matrix, [&](const unsigned int i, const auto column, double &value) {
       const bool is_held = held.local_element(i) > 0.;
@@ -385,24 +275,20 @@ namespace PeriDeal
   template <int dim>
   Balance FEMOperator<dim>::balance(const Vector &u, const double t, const bool steady) const
   {
-    Vector heat, loads;
-    initialize_vector(heat);
-    initialize_vector(loads);
-    assemble_loads(loads, t);
+    Vector heat(layout);
     multiply(heat, u);
     // What leaves each unknown through the body; in a prescribed one it must come from outside.
-    heat -= loads;
+    heat -= loads.at(t);
     Balance     balance;
     const auto &conditions = scene.boundary_conditions;
     for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})
       for (const SideCondition &condition : *list)
         balance.sides[condition.name];
-    for (const Prescribed &entry : prescribed)
-      balance.sides[entry.condition->name] += heat.local_element(entry.dof);
-    add_side_and_source_heat(u, t, balance);
+    prescribed.add_to(balance.sides, heat);
+    loads.add_to(balance, u, t);
     add_crack_heat(u, balance);
     balance.content = heat_of(u);
-    mask(heat);
+    prescribed.mask(heat);
     if (!steady)
       for (unsigned int i = 0; i < heat.locally_owned_size(); ++i)
         balance.stored -= heat.local_element(i);
@@ -417,7 +303,7 @@ namespace PeriDeal
   template <int dim>
   std::string FEMOperator<dim>::place_of(const unsigned int local_index) const
   {
-    const auto dof = capacity.get_partitioner()->local_to_global(local_index);
+    const auto                           dof = layout->local_to_global(local_index);
     std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
     std::ostringstream                   out;
     for (const auto &cell : dofs.active_cell_iterators())
@@ -453,7 +339,7 @@ namespace PeriDeal
       }
     size.memory = stiffness.memory_consumption() + mass.memory_consumption() +
                   capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
-                  constant_loads.memory_consumption() + scratch.memory_consumption();
+                  loads.memory_consumption();
     if (coupling)
       {
         if (recount_bonds)

@@ -79,7 +79,7 @@ namespace PeriDeal
       return;
     search = std::make_unique<CellSearch<dim>>(dofs);
     event  = std::make_shared<EventData>(capacity);
-    for (const unsigned int i : held)
+    for (const unsigned int i : prescribed.held())
       event->held.insert(i);
   }
 
@@ -133,7 +133,6 @@ namespace PeriDeal
     cut_by_cracks.set(near, history.pieces(time), history.transmission(time));
     if (scaled)
       find_crack_factors(near, owned_unknowns_of(cells_near(cuts, joins, 0.)), event->factors);
-    const auto &layout = *capacity.get_partitioner();
     for (std::size_t k = 0; k < near.size(); ++k)
       if (near[k]->is_locally_owned())
         {
@@ -146,10 +145,10 @@ namespace PeriDeal
             hanging.add_to(stiffness, data.stiffness, data.indices);
           for (const auto i : data.indices)
             {
-              event->touched.insert(layout.global_to_local(i));
+              event->touched.insert(layout->global_to_local(i));
               if (const auto *masters = hanging.constraints().get_constraint_entries(i))
                 for (const auto &master : *masters)
-                  event->touched.insert(layout.global_to_local(master.first));
+                  event->touched.insert(layout->global_to_local(master.first));
             }
         }
     if (coupling && !bonds_apart)
@@ -253,15 +252,14 @@ namespace PeriDeal
   std::vector<unsigned int> FEMOperator<dim>::owned_unknowns_of(
     const std::vector<Cell> &cells) const
   {
-    const auto                          &layout = *capacity.get_partitioner();
     std::vector<unsigned int>            list;
     std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
     for (const Cell &cell : cells)
       {
         cell->get_dof_indices(indices);
         for (const auto i : indices)
-          if (layout.in_local_range(i))
-            list.push_back(layout.global_to_local(i));
+          if (layout->in_local_range(i))
+            list.push_back(layout->global_to_local(i));
       }
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());

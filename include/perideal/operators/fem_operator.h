@@ -8,12 +8,13 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <perideal/mesh/cell_search.h>
-#include <perideal/operators/condition_faces.h>
 #include <perideal/operators/coupling.h>
 #include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/cut_cells.h>
 #include <perideal/operators/hanging_nodes.h>
+#include <perideal/operators/heat_loads.h>
 #include <perideal/operators/operator.h>
+#include <perideal/operators/prescribed_values.h>
 #include <perideal/scene/scene.h>
 
 #include <functional>
@@ -119,11 +120,6 @@ namespace PeriDeal
 
     const HangingNodes<dim> &hanging_nodes() const;
 
-    /** As the functions of hanging_nodes(). */
-    void interpolate_hanging(Vector &v) const;
-    void condense(Vector &loads) const;
-    void set_hanging(Vector &v, const double value) const;
-
     /**
      * Lowest eigenvalue of what the coupling leaves of any cell before cracks cut it, in units of
      * the conductivity times h^(dim-2); infinite if it leaves all cells as they are. Collective.
@@ -131,13 +127,6 @@ namespace PeriDeal
     double lowest_remainder() const;
 
   private:
-    struct Prescribed
-    {
-      unsigned int         dof; // local index
-      dealii::Point<dim>   position;
-      const SideCondition *condition;
-    };
-
     struct CellData;
     struct EventData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
@@ -155,8 +144,6 @@ namespace PeriDeal
       std::vector<double>       values;
     };
 
-    void     find_prescribed();
-    Vector   new_vector() const;
     void     find_diagonal();
     void     extract_remainder();
     void     add_remainder(Vector            &y,
@@ -194,59 +181,34 @@ namespace PeriDeal
                                          const double                                 wide) const;
     std::vector<unsigned int> owned_unknowns_of(const std::vector<Cell> &cells) const;
     void                      prepare_event();
-    void                      assemble_loads(Vector &loads, const double t) const;
-    void                      find_convection_sums();
+    void                      find_crack_factors();
+    void                      find_crack_factors(const std::vector<Cell>         &cells,
+                                                 const std::vector<unsigned int> &nodes,
+                                                 CrackSideFactors::Sums          &sums);
+    void                      find_gershgorin();
 
-    // The parts of entering(), each of this process: what the rows [begin, end) of prescribed
-    // unknowns say, loads left out; the part of convection that is linear in x; and the sum of
-    // loads of all unknowns but the prescribed ones.
-    double through_prescribed(const Vector      &y,
-                              const unsigned int begin,
-                              const unsigned int end) const;
-    double through_convection(const Vector &x) const;
-    double sum_of_free_loads(const Vector &loads) const;
-    void   add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
-    void   find_crack_factors();
-    template <typename Visit>
-    void for_each_part_flux(const Visit &visit) const;
-    void find_crack_factors(const std::vector<Cell>         &cells,
-                            const std::vector<unsigned int> &nodes,
-                            CrackSideFactors::Sums          &sums);
-    void find_gershgorin();
-    void mask(Vector &y, const double value = 0.) const;
-    void mask(Vector            &y,
-              const double       value,
-              const unsigned int begin,
-              const unsigned int end) const;
-
-    const dealii::DoFHandler<dim>         &dofs;
-    const Scene<dim>                      &scene;
-    std::unique_ptr<Coupling<dim>>         coupling; // null: finite elements alone
-    const HangingNodes<dim>                hanging;
-    const CrackHistory<dim>                history;
+    const dealii::DoFHandler<dim> &dofs;
+    const Scene<dim>              &scene;
+    std::unique_ptr<Coupling<dim>> coupling; // null: finite elements alone
+    const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout; // of vectors
+    const HangingNodes<dim>                                          hanging;
+    const HeatLoads<dim>                                             loads;
+    const PrescribedValues<dim>                                      prescribed;
+    const CrackHistory<dim>                                          history;
     double                                 cracks_of; // representative time of the cracks in K
     CutCells<dim>                          cut_by_cracks;
     dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
-    Vector                                 capacity, stiffness_diagonal, constant_loads;
-    mutable Vector                         scratch;
+    Vector                                 capacity, stiffness_diagonal;
     Vector temperatures;        // that K and C are those of, with ghosts; empty: initial values
     bool   bonds_apart = false; // in the form; else in the matrix
-    std::unique_ptr<BondForm>     form;
-    RemainderRows                 remainder;
-    std::vector<double>           bond_sums; // of each owned node, from the form
-    mutable unsigned long long    n_bonds       = 0;
-    mutable bool                  recount_bonds = true;
-    std::shared_ptr<CellData>     cell_data; // memory of the cell loops
-    ConditionFaces<dim>           condition_faces;
-    std::vector<PartUnknown<dim>> part_unknowns; // of regions and points
-    std::shared_ptr<EventData>    event;         // of update(), made for the first event
-    std::vector<Prescribed>       prescribed;    // in the order of unknowns
-    std::vector<std::pair<unsigned int, double>>
-           convection_sums; // coefficient times area of each unknown that has some
-    double free_loads = 0.; // the sum of constant_loads that are not prescribed unknowns'
-    std::vector<unsigned int>        held; // with hanging nodes: not free
+    std::unique_ptr<BondForm>        form;
+    RemainderRows                    remainder;
+    std::vector<double>              bond_sums; // of each owned node, from the form
+    mutable unsigned long long       n_bonds       = 0;
+    mutable bool                     recount_bonds = true;
+    std::shared_ptr<CellData>        cell_data; // memory of the cell loops
+    std::shared_ptr<EventData>       event;     // of update(), made for the first event
     CrackSideFactors                 crack_factors;
-    bool                             loads_vary = false, any_prescribed = false;
     double                           gershgorin = 0.;
     mutable Spectrum                 bounds;
     mutable Vector                   noise_values; // of noise()
