@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
@@ -13,7 +10,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <sstream>
 
 #include "fem_cell_data.h"
 
@@ -22,61 +18,11 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  void FEMOperator<dim>::check_material() const
-  {
-    std::string   message;
-    FEValues<dim> values(dofs.get_fe(),
-                         QGauss<dim>(dofs.get_fe().degree + 1),
-                         update_quadrature_points);
-    if (!scene.material.conductivity.is_constant() || !scene.material.density.is_constant() ||
-        !scene.material.heat_capacity.is_constant())
-      for (const auto &cell : dofs.active_cell_iterators())
-        if (cell->is_locally_owned() && message.empty())
-          {
-            values.reinit(cell);
-            for (const Point<dim> &p : values.get_quadrature_points())
-              {
-                std::ostringstream where;
-                where << " at (" << p << "); it must be positive everywhere in the body.";
-                const double T = scene.initial_and_source.initial_value.value(p);
-                if (!(scene.material.conductivity.value(p, T) > 0.))
-                  message = "'Conductivity' in section 'Material' is not positive" + where.str();
-                else if (!scene.time.steady && !(scene.material.storage(p, T) > 0.))
-                  message =
-                    "'Density' times 'Heat capacity' in section 'Material' is not positive" +
-                    where.str();
-              }
-          }
-    throw_on_all_if_any(dofs.get_communicator(), message);
-  }
-
-
-  template <int dim>
   bool FEMOperator<dim>::assemble_whole_cell(const Cell &cell,
                                              CellData   &data,
                                              const bool  with_bonds) const
   {
-    data.values.reinit(cell);
-    find_temperatures(data);
-    data.stiffness       = 0.;
-    data.mass            = 0.;
-    const unsigned int n = data.indices.size();
-    for (const unsigned int q : data.values.quadrature_point_indices())
-      {
-        const Point<dim> &p       = data.values.quadrature_point(q);
-        const double      T       = data.temperatures[q];
-        const double      kappa   = scene.material.conductivity.value(p, T) * data.values.JxW(q);
-        const double      storage = // steady: it only sets a scale
-          (scene.time.steady ? 1. : scene.material.storage(p, T)) * data.values.JxW(q);
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j < n; ++j)
-            {
-              data.stiffness(i, j) +=
-                kappa * (data.values.shape_grad(i, q) * data.values.shape_grad(j, q));
-              data.mass(i, j) +=
-                storage * data.values.shape_value(i, q) * data.values.shape_value(j, q);
-            }
-      }
+    cell_material.assemble(cell, data.stiffness, data.mass);
     return coupling && with_bonds && coupling->change_cell(cell, data.stiffness);
   }
 
@@ -90,7 +36,7 @@ namespace PeriDeal
     if (cut_by_cracks.is_cut(cell))
       cut_by_cracks.cut_matrix(
         cell,
-        [&] { return center_conductivity(cell); },
+        [&] { return cell_material.center_conductivity(cell); },
         data.stiffness);
     if (coupling && with_bonds)
       coupling->finish_cell(cell, data.stiffness);
@@ -138,7 +84,10 @@ namespace PeriDeal
           if (!sums.any_marked(data.indices))
             continue;
           assemble_cell(cell, data);
-          sums.add(cell, data.indices, data.stiffness, dim * center_conductivity(cell));
+          sums.add(cell,
+                   data.indices,
+                   data.stiffness,
+                   dim * cell_material.center_conductivity(cell));
         }
     sums.compress();
     if (coupling)
@@ -218,6 +167,31 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void FEMOperator<dim>::take_material_at(const Vector &u)
+  {
+    if (!depends_on_solution())
+      return;
+    cell_material.take(u);
+    stiffness = 0.;
+    mass      = 0.;
+    capacity  = 0.;
+    fill();
+    std::string message;
+    for (unsigned int i = 0; i < capacity.locally_owned_size() && message.empty(); ++i)
+      {
+        const auto index                    = capacity.get_partitioner()->local_to_global(i);
+        stiffness_diagonal.local_element(i) = stiffness.diag_element(index);
+        if (!(stiffness_diagonal.local_element(i) > 0.) || !(capacity.local_element(i) > 0.))
+          message =
+            "'Conductivity', 'Density' or 'Heat capacity' in section 'Material' is not positive at the temperatures near " +
+            place_of(i) + "; they must be positive at every temperature that the run reaches.";
+      }
+    throw_on_all_if_any(dofs.get_communicator(), message);
+    find_gershgorin();
+  }
+
+
 #define PERIDEAL_INSTANTIATE(dim)                                                       \
   template struct FEMOperator<dim>::CellData;                                           \
   template void FEMOperator<dim>::fill();                                               \
@@ -234,7 +208,7 @@ namespace PeriDeal
                                                      const std::vector<unsigned int> &, \
                                                      CrackSideFactors::Sums &);         \
   template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                \
-  template void FEMOperator<dim>::check_material() const;                               \
+  template void FEMOperator<dim>::take_material_at(const Vector &);                     \
   template void FEMOperator<dim>::assemble();
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

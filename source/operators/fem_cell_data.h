@@ -3,9 +3,6 @@
 
 #pragma once
 
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
-
 #include <perideal/operators/fem_operator.h>
 
 #include "local_bound.h"
@@ -18,23 +15,14 @@ namespace PeriDeal
   struct FEMOperator<dim>::CellData
   {
     explicit CellData(const dealii::FiniteElement<dim> &fe)
-      : values(fe,
-               dealii::QGauss<dim>(fe.degree + 1),
-               dealii::update_values | dealii::update_gradients | dealii::update_quadrature_points |
-                 dealii::update_JxW_values)
-      , stiffness(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
+      : stiffness(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
       , mass(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
       , convection(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
       , indices(fe.n_dofs_per_cell())
-      , temperatures(values.n_quadrature_points, 0.)
-      , temperatures_after(temperatures)
     {}
 
-    dealii::FEValues<dim>                        values;
     dealii::FullMatrix<double>                   stiffness, mass, convection;
     std::vector<dealii::types::global_dof_index> indices;
-    std::vector<double>                          temperatures;       // at the quadrature points
-    std::vector<double>                          temperatures_after; // heat_between(): there
   };
 
 

@@ -225,9 +225,10 @@ namespace PeriDeal
     double    lowest = std::numeric_limits<double>::infinity();
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned() && assemble_whole_cell(cell, data))
-        lowest = std::min(lowest,
-                          lowest_eigenvalue(data.stiffness) /
-                            (center_conductivity(cell) * std::pow(cell->measure(), 1. - 2. / dim)));
+        lowest =
+          std::min(lowest,
+                   lowest_eigenvalue(data.stiffness) / (cell_material.center_conductivity(cell) *
+                                                        std::pow(cell->measure(), 1. - 2. / dim)));
     return Utilities::MPI::min(lowest, dofs.get_communicator());
   }
 

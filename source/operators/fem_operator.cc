@@ -46,6 +46,7 @@ namespace PeriDeal
     , layout(layout_of(dofs, this->coupling.get()))
     , hanging(dofs, *layout)
     , loads(dofs, layout, scene.boundary_conditions, scene.initial_and_source.source, hanging)
+    , cell_material(dofs, scene.material, scene.initial_and_source.initial_value, scene.time.steady)
     , prescribed(dofs, *layout, scene.boundary_conditions, hanging, loads.part_unknowns())
     , history(scene.crack_history())
     , cracks_of(history.representative(start))
@@ -57,7 +58,6 @@ namespace PeriDeal
   {
     if (this->coupling && start > 0.)
       this->coupling->set_cracks_of(cracks_of);
-    check_material();
     cut_by_cracks.set(history.pieces(cracks_of), history.transmission(cracks_of));
     bonds_apart = this->coupling && this->coupling->has_form();
     assemble();
@@ -351,6 +351,55 @@ namespace PeriDeal
     size.form = form ? form->name() : "matrix";
     return size;
   }
+
+  template <int dim>
+  bool FEMOperator<dim>::depends_on_solution() const
+  {
+    return scene.material.depends_on_temperature();
+  }
+
+
+  template <int dim>
+  bool FEMOperator<dim>::capacity_depends_on_solution() const
+  {
+    return scene.material.storage_depends_on_temperature();
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::heat_between(Vector &y, const Vector &u, const Vector &v) const
+  {
+    if (capacity_depends_on_solution())
+      {
+        cell_material.heat_between(y, u, v, capacity_is_diagonal());
+        hanging.condense(y);
+        return;
+      }
+    Operator::heat_between(y, u, v);
+    hanging.set(y, 0.); // the nodes they follow from have all of it
+  }
+
+
+  template <int dim>
+  double FEMOperator<dim>::heat(const Vector &u) const
+  {
+    return Utilities::MPI::sum(heat_of(u), dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  double FEMOperator<dim>::heat_of(const Vector &u) const
+  {
+    if (capacity_depends_on_solution() || scene.time.steady)
+      return cell_material.content(u);
+    double heat = 0.;
+    for (unsigned int i = 0; i < capacity.locally_owned_size(); ++i)
+      heat += capacity.local_element(i) * u.local_element(i);
+    for (const unsigned int node : hanging.owned())
+      heat -= capacity.local_element(node) * u.local_element(node);
+    return heat;
+  }
+
 
   template <int dim>
   const DoFHandler<dim> &FEMOperator<dim>::dof_handler() const

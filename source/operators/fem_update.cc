@@ -291,7 +291,7 @@ namespace PeriDeal
                   cell,
                   a,
                   b,
-                  [&] { return center_conductivity(cell); },
+                  [&] { return cell_material.center_conductivity(cell); },
                   &crossed);
                 for (const auto &[crack, side] : crossed)
                   balance.cracks[crack] +=

@@ -8,6 +8,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <perideal/mesh/cell_search.h>
+#include <perideal/operators/cell_material.h>
 #include <perideal/operators/coupling.h>
 #include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/cut_cells.h>
@@ -167,11 +168,8 @@ namespace PeriDeal
     void     scale_beside_cracks(CellData &data) const;
     void     update_rows(const bool zone_moves);
     void     add_crack_heat(const Vector &u, Balance &balance) const;
-    void     check_material() const;
     void     assemble();
     void     fill();
-    void     find_temperatures(CellData &data) const;
-    double   center_conductivity(const Cell &cell) const;
     double   heat_of(const Vector &u) const;
     bool assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
     void assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
@@ -193,25 +191,25 @@ namespace PeriDeal
     const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout; // of vectors
     const HangingNodes<dim>                                          hanging;
     const HeatLoads<dim>                                             loads;
+    CellMaterial<dim>                                                cell_material;
     const PrescribedValues<dim>                                      prescribed;
     const CrackHistory<dim>                                          history;
     double                                 cracks_of; // representative time of the cracks in K
     CutCells<dim>                          cut_by_cracks;
     dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
     Vector                                 capacity, stiffness_diagonal;
-    Vector temperatures;        // that K and C are those of, with ghosts; empty: initial values
-    bool   bonds_apart = false; // in the form; else in the matrix
-    std::unique_ptr<BondForm>        form;
-    RemainderRows                    remainder;
-    std::vector<double>              bond_sums; // of each owned node, from the form
-    mutable unsigned long long       n_bonds       = 0;
-    mutable bool                     recount_bonds = true;
-    std::shared_ptr<CellData>        cell_data; // memory of the cell loops
-    std::shared_ptr<EventData>       event;     // of update(), made for the first event
-    CrackSideFactors                 crack_factors;
-    double                           gershgorin = 0.;
-    mutable Spectrum                 bounds;
-    mutable Vector                   noise_values; // of noise()
-    std::unique_ptr<CellSearch<dim>> search;       // made for the first event
+    bool                                   bonds_apart = false; // in the form; else in the matrix
+    std::unique_ptr<BondForm>              form;
+    RemainderRows                          remainder;
+    std::vector<double>                    bond_sums; // of each owned node, from the form
+    mutable unsigned long long             n_bonds       = 0;
+    mutable bool                           recount_bonds = true;
+    std::shared_ptr<CellData>              cell_data; // memory of the cell loops
+    std::shared_ptr<EventData>             event;     // of update(), made for the first event
+    CrackSideFactors                       crack_factors;
+    double                                 gershgorin = 0.;
+    mutable Spectrum                       bounds;
+    mutable Vector                         noise_values; // of noise()
+    std::unique_ptr<CellSearch<dim>>       search;       // made for the first event
   };
 } // namespace PeriDeal
