@@ -170,8 +170,8 @@ namespace PeriDeal
         double bound = 0.;
         for (const unsigned int i : rows)
           bound = std::max(bound, row_bound(i));
-        gershgorin = std::max(gershgorin, Utilities::MPI::max(bound, bonds.nodes().communicator()));
-        bounds     = Spectrum();
+        bounds.set(
+          std::max(bounds.safe(), Utilities::MPI::max(bound, bonds.nodes().communicator())));
       }
     constraints->mask(bond_diagonal, 1.);
     recount_bonds = true;
@@ -248,7 +248,7 @@ namespace PeriDeal
     double bound = 0.;
     for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
       bound = std::max(bound, row_bound(i));
-    gershgorin = Utilities::MPI::max(bound, bonds.nodes().communicator());
+    bounds.set(Utilities::MPI::max(bound, bonds.nodes().communicator()));
     constraints->mask(bond_diagonal, 1.);
   }
 

@@ -93,8 +93,6 @@ namespace PeriDeal
     if (coupling)
       add_bond_traces(nodes, sums);
     crack_factors.find(nodes, sums);
-    sums.clear(owned_unknowns_of(cells));
-    sums.clear(nodes);
   }
 
 

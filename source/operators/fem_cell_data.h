@@ -5,9 +5,6 @@
 
 #include <perideal/operators/fem_operator.h>
 
-#include "local_bound.h"
-#include "row_set.h"
-
 namespace PeriDeal
 {
   /** Scratch memory of the cell loops. */
@@ -23,22 +20,5 @@ namespace PeriDeal
 
     dealii::FullMatrix<double>                   stiffness, mass, convection;
     std::vector<dealii::types::global_dof_index> indices;
-  };
-
-
-  /** Memory of update(), so that an event costs what changes and not what there is. */
-  template <int dim>
-  struct FEMOperator<dim>::EventData
-  {
-    explicit EventData(const Vector &layout)
-      : touched(layout)
-      , held(layout)
-      , factors(layout)
-      , bound(layout)
-    {}
-
-    RowSet                 touched, held; // rows of K that the event changes; that are not free
-    CrackSideFactors::Sums factors;
-    LocalBound             bound;
   };
 } // namespace PeriDeal

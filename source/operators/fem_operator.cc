@@ -55,6 +55,7 @@ namespace PeriDeal
                      scene.cracks.mesh == CrackMesh::removed,
                      scene.cracks.contact_conductance,
                      [&scene] { return scene.horizon(); }})
+    , bounds(*this, [this](Vector &vector) { fill_noise(vector); })
   {
     if (this->coupling && start > 0.)
       this->coupling->set_cracks_of(cracks_of);
@@ -91,7 +92,7 @@ namespace PeriDeal
         bound = std::max(bound, row_sums[i] / capacity.local_element(i));
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
-    gershgorin = Utilities::MPI::max(bound, dofs.get_communicator());
+    bounds.set(Utilities::MPI::max(bound, dofs.get_communicator()));
     prescribed.mask(stiffness_diagonal, 1.);
   }
 
@@ -196,9 +197,13 @@ namespace PeriDeal
   template <int dim>
   const Vector &FEMOperator<dim>::noise() const
   {
-    if (noise_values.size() > 0)
-      return noise_values;
-    noise_values.reinit(layout);
+    return bounds.noise();
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::fill_noise(Vector &vector) const
+  {
     const MappingQ1<dim>                 mapping;
     std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
     for (const auto &cell : dofs.active_cell_iterators())
@@ -206,25 +211,17 @@ namespace PeriDeal
         {
           cell->get_dof_indices(indices);
           for (unsigned int i = 0; i < indices.size(); ++i)
-            if (noise_values.in_local_range(indices[i]))
-              noise_values(indices[i]) = position_noise(
+            if (vector.in_local_range(indices[i]))
+              vector(indices[i]) = position_noise(
                 mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i)));
         }
-    return noise_values;
   }
 
 
   template <int dim>
   Spectrum FEMOperator<dim>::spectrum() const
   {
-    if (depends_on_solution()) // changes with each step: the safe bound, which costs nothing
-      return {gershgorin, gershgorin};
-    if (bounds.safe == 0.)
-      {
-        bounds.sharp = sharp_bound(*this, gershgorin, [&](Vector &vector) { vector = noise(); });
-        bounds.safe  = gershgorin;
-      }
-    return bounds;
+    return bounds.get();
   }
 
   template <int dim>

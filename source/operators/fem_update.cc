@@ -8,11 +8,8 @@
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/fem_operator.h>
-#include <perideal/operators/spectrum.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "fem_cell_data.h"
 
@@ -24,63 +21,6 @@ namespace PeriDeal
   double FEMOperator<dim>::next_event(const double t) const
   {
     return history.next_event(t);
-  }
-
-
-  namespace
-  {
-    /**
-     * One box for all that joins the zone beside each cut, the same on all processes: a cell may
-     * feel what happens a little farther away than its own process knows of. Collective.
-     */
-    template <int dim>
-    std::vector<BoundingBox<dim>> boxes_beside(const std::vector<BoundingBox<dim>> &cuts,
-                                               const std::vector<BoundingBox<dim>> &joins,
-                                               const MPI_Comm                       communicator)
-    {
-      std::vector<double> lowest(2 * dim * cuts.size(), std::numeric_limits<double>::max());
-      for (const BoundingBox<dim> &join : joins)
-        {
-          std::size_t nearest = 0;
-          for (std::size_t k = 1; k < cuts.size(); ++k)
-            if (join.center().distance(cuts[k].center()) <
-                join.center().distance(cuts[nearest].center()))
-              nearest = k;
-          double *const box = lowest.data() + 2 * dim * nearest;
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              box[d]       = std::min(box[d], join.lower_bound(d));
-              box[dim + d] = std::min(box[dim + d], -join.upper_bound(d));
-            }
-        }
-      std::vector<double> all(lowest.size());
-      Utilities::MPI::min(lowest, communicator, all);
-      std::vector<BoundingBox<dim>> boxes;
-      for (const double *box = all.data(); box != all.data() + all.size(); box += 2 * dim)
-        if (box[0] < std::numeric_limits<double>::max())
-          {
-            Point<dim> low, high;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                low[d]  = box[d];
-                high[d] = -box[dim + d];
-              }
-            boxes.push_back({{low, high}});
-          }
-      return boxes;
-    }
-  } // namespace
-
-
-  template <int dim>
-  void FEMOperator<dim>::prepare_event()
-  {
-    if (event)
-      return;
-    search = std::make_unique<CellSearch<dim>>(dofs);
-    event  = std::make_shared<EventData>(capacity);
-    for (const unsigned int i : prescribed.held())
-      event->held.insert(i);
   }
 
 
@@ -96,7 +36,8 @@ namespace PeriDeal
         cracks_of = time;
         return false;
       }
-    prepare_event();
+    if (!event)
+      event = std::make_unique<EventWork<dim>>(dofs, capacity, prescribed.held());
     const auto joins =
       boxes_beside(cuts,
                    coupling ? coupling->joining_by(time) : std::vector<BoundingBox<dim>>(),
@@ -107,7 +48,7 @@ namespace PeriDeal
     const double reach  = coupling ? coupling->families().weights().reach() : 0.;
     // The factors of crack-side scaling change at the vertices of the cells whose own matrix does,
     // and of all cells around these.
-    const double                    wide = scaled ? search->largest_diameter() : 0.;
+    const double                    wide = scaled ? event->search.largest_diameter() : 0.;
     const std::vector<Cell>         near = cells_near(cuts, joins, wide);
     std::vector<FullMatrix<double>> old(near.size());
     for (std::size_t k = 0; k < near.size(); ++k)
@@ -132,25 +73,13 @@ namespace PeriDeal
       }
     cut_by_cracks.set(near, history.pieces(time), history.transmission(time));
     if (scaled)
-      find_crack_factors(near, owned_unknowns_of(cells_near(cuts, joins, 0.)), event->factors);
-    for (std::size_t k = 0; k < near.size(); ++k)
-      if (near[k]->is_locally_owned())
-        {
-          assemble_cell(near[k], data);
-          scale_beside_cracks(data);
-          data.stiffness.add(-1., old[k]);
-          if (data.stiffness.linfty_norm() == 0.)
-            continue;
-          if (!(bonds_apart && coupling->leaves_nothing(near[k])))
-            hanging.add_to(stiffness, data.stiffness, data.indices);
-          for (const auto i : data.indices)
-            {
-              event->touched.insert(layout->global_to_local(i));
-              if (const auto *masters = hanging.constraints().get_constraint_entries(i))
-                for (const auto &master : *masters)
-                  event->touched.insert(layout->global_to_local(master.first));
-            }
-        }
+      {
+        const auto beside = owned_unknowns<dim>(cells_near(cuts, joins, 0.), *layout);
+        find_crack_factors(near, beside, event->factors);
+        event->factors.clear(owned_unknowns<dim>(near, *layout));
+        event->factors.clear(beside);
+      }
+    add_changes(near, old);
     if (coupling && !bonds_apart)
       change_bonds(nodes, old_rows);
     stiffness.compress(VectorOperation::add);
@@ -161,6 +90,26 @@ namespace PeriDeal
     update_rows(!joins.empty());
     event->touched.clear();
     return true;
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::add_changes(const std::vector<Cell>               &cells,
+                                     const std::vector<FullMatrix<double>> &old)
+  {
+    CellData &data = *cell_data;
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      if (cells[k]->is_locally_owned())
+        {
+          assemble_cell(cells[k], data);
+          scale_beside_cracks(data);
+          data.stiffness.add(-1., old[k]);
+          if (data.stiffness.linfty_norm() == 0.)
+            continue;
+          if (!(bonds_apart && coupling->leaves_nothing(cells[k])))
+            hanging.add_to(stiffness, data.stiffness, data.indices);
+          event->touch(data.indices, hanging);
+        }
   }
 
 
@@ -182,7 +131,7 @@ namespace PeriDeal
         });
         bound = std::max(bound, sum / capacity.local_element(i));
         // Cells are taken away by subtraction, which leaves round-off behind.
-        if (!(sum > 1e-13 * gershgorin * capacity.local_element(i)) && message.empty())
+        if (!(sum > 1e-13 * bounds.safe() * capacity.local_element(i)) && message.empty())
           message =
             coupling ?
               "The node at " + place_of(i) +
@@ -198,36 +147,18 @@ namespace PeriDeal
     if (stiffer || zone_moves || !crack_factors.empty() || history.may_close())
       {
         // Rates can have grown. Where cells are only cut, the old bounds still hold.
-        gershgorin = std::max(gershgorin, Utilities::MPI::max(bound, dofs.get_communicator()));
-        raise_bounds();
+        bounds.raise(Utilities::MPI::max(bound, dofs.get_communicator()),
+                     event->touched.rows(),
+                     [&](const double enough) {
+                       return form || !symmetric() ? -1. :
+                                                     event->bound(stiffness,
+                                                                  capacity,
+                                                                  event->held,
+                                                                  event->touched.rows(),
+                                                                  noise(),
+                                                                  enough);
+                     });
       }
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::raise_bounds()
-  {
-    if (bounds.safe == 0.) // nobody has asked yet
-      return;
-    // The fastest field may have changed where the rows have, and only there: iterations that start
-    // there see it soon.
-    const std::vector<unsigned int> &rows  = event->touched.rows();
-    double                           local = -1.;
-    if (!form && symmetric())
-      local = event->bound(stiffness, capacity, event->held, rows, noise(), bounds.sharp);
-    if (local >= 0.)
-      local = std::min(round_up(local), gershgorin);
-    else
-      local = sharp_bound(
-        *this,
-        gershgorin,
-        [&](Vector &vector) {
-          for (const unsigned int i : rows)
-            vector.local_element(i) = noise().local_element(i);
-        },
-        bounds.sharp);
-    bounds.sharp = std::max(bounds.sharp, local);
-    bounds.safe  = gershgorin;
   }
 
 
@@ -238,32 +169,11 @@ namespace PeriDeal
     const double                         wide) const
   {
     // Bonds change the cells that they pass.
-    const double      reach = coupling ? coupling->families().weights().reach() : 0.;
-    std::vector<Cell> near;
-    search->find(cuts, wide + (!crack_factors.empty() ? reach : 0.), near);
-    search->find(joins, wide + reach, near);
-    std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
-    return near;
-  }
-
-
-  template <int dim>
-  std::vector<unsigned int> FEMOperator<dim>::owned_unknowns_of(
-    const std::vector<Cell> &cells) const
-  {
-    std::vector<unsigned int>            list;
-    std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
-    for (const Cell &cell : cells)
-      {
-        cell->get_dof_indices(indices);
-        for (const auto i : indices)
-          if (layout->in_local_range(i))
-            list.push_back(layout->global_to_local(i));
-      }
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    return list;
+    const double reach = coupling ? coupling->families().weights().reach() : 0.;
+    return event->cells_near(cuts,
+                             wide + (crack_factors.empty() ? 0. : reach),
+                             joins,
+                             wide + reach);
   }
 
 
@@ -304,12 +214,10 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                      \
-  template double                    FEMOperator<dim>::next_event(const double) const; \
-  template std::vector<unsigned int> FEMOperator<dim>::owned_unknowns_of(              \
-    const std::vector<Cell> &) const;                                                  \
-  template bool FEMOperator<dim>::update(const double);                                \
-  template void FEMOperator<dim>::add_crack_heat(const Vector &, Balance &) const;
+#define PERIDEAL_INSTANTIATE(dim)                                   \
+  template double FEMOperator<dim>::next_event(const double) const; \
+  template bool   FEMOperator<dim>::update(const double);           \
+  template void   FEMOperator<dim>::add_crack_heat(const Vector &, Balance &) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -16,8 +16,9 @@
 namespace PeriDeal
 {
   /**
-   * Conductivity kappa and capacity rho c in the cells of finite elements, by quadrature. Where they
-   * depend on the temperature it is that of the last take(), before the first one the initial value.
+   * Conductivity kappa and capacity rho c in the cells of finite elements, by quadrature. Where
+   * they depend on the temperature it is that of the last take(), before the first one the initial
+   * value.
    *
    * The arguments of the constructor must outlive this.
    */
@@ -52,8 +53,8 @@ namespace PeriDeal
     double center_conductivity(const Cell &cell) const;
 
     /**
-     * y = what each unknown takes up from the temperatures u to v, whatever take() was given; hanging
-     * nodes keep theirs.
+     * y = what each unknown takes up from the temperatures u to v, whatever take() was given;
+     * hanging nodes keep theirs.
      * @param lumped by the change of each unknown, else by that of the field
      *
      * Collective.

@@ -7,15 +7,16 @@
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
-#include <perideal/mesh/cell_search.h>
 #include <perideal/operators/cell_material.h>
 #include <perideal/operators/coupling.h>
 #include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/cut_cells.h>
+#include <perideal/operators/event_work.h>
 #include <perideal/operators/hanging_nodes.h>
 #include <perideal/operators/heat_loads.h>
 #include <perideal/operators/operator.h>
 #include <perideal/operators/prescribed_values.h>
+#include <perideal/operators/spectrum.h>
 #include <perideal/scene/scene.h>
 
 #include <functional>
@@ -129,7 +130,6 @@ namespace PeriDeal
 
   private:
     struct CellData;
-    struct EventData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
     /** Some rows of bonds: numbers of neighbours (local) and conductances. */
@@ -173,17 +173,17 @@ namespace PeriDeal
     double   heat_of(const Vector &u) const;
     bool assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
     void assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
-    void raise_bounds();
-    std::vector<Cell>         cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
-                                         const std::vector<dealii::BoundingBox<dim>> &joins,
-                                         const double                                 wide) const;
-    std::vector<unsigned int> owned_unknowns_of(const std::vector<Cell> &cells) const;
-    void                      prepare_event();
-    void                      find_crack_factors();
-    void                      find_crack_factors(const std::vector<Cell>         &cells,
-                                                 const std::vector<unsigned int> &nodes,
-                                                 CrackSideFactors::Sums          &sums);
-    void                      find_gershgorin();
+    std::vector<Cell> cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
+                                 const std::vector<dealii::BoundingBox<dim>> &joins,
+                                 const double                                 wide) const;
+    void              add_changes(const std::vector<Cell>                       &cells,
+                                  const std::vector<dealii::FullMatrix<double>> &old);
+    void              fill_noise(Vector &vector) const;
+    void              find_crack_factors();
+    void              find_crack_factors(const std::vector<Cell>         &cells,
+                                         const std::vector<unsigned int> &nodes,
+                                         CrackSideFactors::Sums          &sums);
+    void              find_gershgorin();
 
     const dealii::DoFHandler<dim> &dofs;
     const Scene<dim>              &scene;
@@ -205,11 +205,8 @@ namespace PeriDeal
     mutable unsigned long long             n_bonds       = 0;
     mutable bool                           recount_bonds = true;
     std::shared_ptr<CellData>              cell_data; // memory of the cell loops
-    std::shared_ptr<EventData>             event;     // of update(), made for the first event
+    std::unique_ptr<EventWork<dim>>        event;     // made for the first event
     CrackSideFactors                       crack_factors;
-    double                                 gershgorin = 0.;
-    mutable Spectrum                       bounds;
-    mutable Vector                         noise_values; // of noise()
-    std::unique_ptr<CellSearch<dim>>       search;       // made for the first event
+    SpectralBounds                         bounds;
   };
 } // namespace PeriDeal
