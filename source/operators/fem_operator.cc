@@ -21,11 +21,12 @@ namespace PeriDeal
   {
     /** With the halo of the nodes, or of finite elements alone with the locally relevant dofs. */
     template <int dim>
-    std::shared_ptr<const Utilities::MPI::Partitioner> layout_of(const DoFHandler<dim> &dofs,
-                                                                 const Coupling<dim>   *coupling)
+    std::shared_ptr<const Utilities::MPI::Partitioner> layout_of(
+      const DoFHandler<dim>          &dofs,
+      const BondsBesideElements<dim> *bonds)
     {
-      if (coupling != nullptr)
-        return coupling->families().nodes().partitioner();
+      if (bonds != nullptr)
+        return bonds->coupling().families().nodes().partitioner();
       IndexSet relevant;
       DoFTools::extract_locally_relevant_dofs(dofs, relevant);
       return std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
@@ -42,8 +43,10 @@ namespace PeriDeal
                                 const double                   start)
     : dofs(dof_handler)
     , scene(scene)
-    , coupling(std::move(coupling))
-    , layout(layout_of(dofs, this->coupling.get()))
+    , zone_bonds(coupling ?
+                   std::make_unique<BondsBesideElements<dim>>(std::move(coupling), crack_factors) :
+                   nullptr)
+    , layout(layout_of(dofs, zone_bonds.get()))
     , hanging(dofs, *layout)
     , loads(dofs, layout, scene.boundary_conditions, scene.initial_and_source.source, hanging)
     , cell_material(dofs, scene.material, scene.initial_and_source.initial_value, scene.time.steady)
@@ -57,13 +60,29 @@ namespace PeriDeal
                      [&scene] { return scene.horizon(); }})
     , bounds(*this, [this](Vector &vector) { fill_noise(vector); })
   {
-    if (this->coupling && start > 0.)
-      this->coupling->set_cracks_of(cracks_of);
+    if (zone_bonds && start > 0.)
+      zone_bonds->set_cracks_of(cracks_of, {});
     cut_by_cracks.set(history.pieces(cracks_of), history.transmission(cracks_of));
-    bonds_apart = this->coupling && this->coupling->has_form();
     assemble();
     find_diagonal();
     find_gershgorin();
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::find_diagonal()
+  {
+    stiffness_diagonal.reinit(layout);
+    if (apart())
+      {
+        zone_bonds->make_form();
+        for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
+          stiffness_diagonal.local_element(i) = zone_bonds->sum_of(i);
+      }
+    for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
+      if (column == layout->local_to_global(i))
+        stiffness_diagonal.local_element(i) += value;
+    });
   }
 
 
@@ -73,8 +92,8 @@ namespace PeriDeal
     std::string         message;
     double              bound = 0.;
     std::vector<double> row_sums(stiffness_diagonal.locally_owned_size(), 0.);
-    for (unsigned int i = 0; i < bond_sums.size(); ++i)
-      row_sums[i] = 2. * bond_sums[i];
+    for (unsigned int i = 0; zone_bonds && i < row_sums.size(); ++i)
+      row_sums[i] = 2. * zone_bonds->sum_of(i);
     for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
       row_sums[row] += std::abs(value);
     });
@@ -84,7 +103,7 @@ namespace PeriDeal
       {
         if (!(stiffness_diagonal.local_element(i) > 0.))
           message =
-            coupling ?
+            zone_bonds ?
               "The node at " + place_of(i) +
                 " is isolated: the cracks of section 'Cracks' cut all of its bonds and pairs." :
               "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
@@ -108,6 +127,33 @@ namespace PeriDeal
   const HangingNodes<dim> &FEMOperator<dim>::hanging_nodes() const
   {
     return hanging;
+  }
+
+
+  template <int dim>
+  bool FEMOperator<dim>::apart() const
+  {
+    return zone_bonds && zone_bonds->apart();
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const
+  {
+    if (apart())
+      {
+        zone_bonds->multiply_then(y, x, finish);
+        return;
+      }
+    stiffness.vmult(y, x);
+    finish(0, y.locally_owned_size());
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::multiply(Vector &y, const Vector &x) const
+  {
+    multiply_then(y, x, [](const unsigned int, const unsigned int) {});
   }
 
 
@@ -173,7 +219,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::capacity_is_diagonal() const
   {
-    return coupling || !scene.finite_elements.consistent_capacity; // bonds need it diagonal
+    return zone_bonds || !scene.finite_elements.consistent_capacity; // bonds need it diagonal
   }
 
   template <int dim>
@@ -227,7 +273,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::symmetric() const
   {
-    return !coupling || coupling->symmetric();
+    return !zone_bonds || zone_bonds->coupling().symmetric();
   }
 
   template <int dim>
@@ -246,7 +292,7 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    if (form)
+    if (apart())
       assemble_surrogate(matrix);
     else
       matrix.copy_from(stiffness);
@@ -265,7 +311,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::surrogate_is_exact() const
   {
-    return !form;
+    return !apart();
   }
 
 
@@ -324,28 +370,20 @@ namespace PeriDeal
   {
     OperatorSize size;
     size.unknowns = dofs.n_dofs();
-    size.nonzeros = form ? Utilities::MPI::sum(remainder.values.size() + form->n_stored(),
-                                               dofs.get_communicator()) :
-                           stiffness.n_nonzero_elements();
-    if (!form)
+    size.form     = "matrix";
+    size.nonzeros = stiffness.n_nonzero_elements();
+    size.memory   = stiffness.memory_consumption() + mass.memory_consumption() +
+                  capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
+                  loads.memory_consumption();
+    if (!apart())
       {
         const Utilities::MPI::MinMaxAvg work =
           Utilities::MPI::min_max_avg(stiffness.trilinos_matrix().NumMyNonzeros(),
                                       dofs.get_communicator());
         size.busiest = work.max / work.avg;
       }
-    size.memory = stiffness.memory_consumption() + mass.memory_consumption() +
-                  capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
-                  loads.memory_consumption();
-    if (coupling)
-      {
-        if (recount_bonds)
-          count_bonds();
-        size.bonds = n_bonds;
-        size.memory +=
-          coupling->memory_consumption() + coupling->families().nodes().memory_consumption();
-      }
-    size.form = form ? form->name() : "matrix";
+    if (zone_bonds)
+      zone_bonds->add_to(size);
     return size;
   }
 
@@ -419,8 +457,8 @@ namespace PeriDeal
   template <int dim>
   const Coupling<dim> &FEMOperator<dim>::bonds() const
   {
-    Assert(coupling, ExcMessage("Finite elements alone have no bonds."));
-    return *coupling;
+    Assert(zone_bonds, ExcMessage("Finite elements alone have no bonds."));
+    return zone_bonds->coupling();
   }
 
 

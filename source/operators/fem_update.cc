@@ -38,14 +38,14 @@ namespace PeriDeal
       }
     if (!event)
       event = std::make_unique<EventWork<dim>>(dofs, capacity, prescribed.held());
-    const auto joins =
-      boxes_beside(cuts,
-                   coupling ? coupling->joining_by(time) : std::vector<BoundingBox<dim>>(),
-                   dofs.get_communicator());
+    const auto joins    = boxes_beside(cuts,
+                                    zone_bonds ? zone_bonds->coupling().joining_by(time) :
+                                                    std::vector<BoundingBox<dim>>(),
+                                    dofs.get_communicator());
     cracks_of           = time;
     CellData    &data   = *cell_data;
     const bool   scaled = !crack_factors.empty();
-    const double reach  = coupling ? coupling->families().weights().reach() : 0.;
+    const double reach  = zone_bonds ? zone_bonds->coupling().families().weights().reach() : 0.;
     // The factors of crack-side scaling change at the vertices of the cells whose own matrix does,
     // and of all cells around these.
     const double                    wide = scaled ? event->search.largest_diameter() : 0.;
@@ -58,18 +58,15 @@ namespace PeriDeal
           scale_beside_cracks(data);
           old[k] = data.stiffness;
         }
-    std::vector<unsigned int> nodes;
-    BondRows                  old_rows;
-    if (coupling)
+    std::vector<unsigned int>               nodes;
+    typename BondsBesideElements<dim>::Rows old_rows;
+    if (zone_bonds)
       {
         const double beyond = scaled ? reach + wide : 0.; // bonds have the factors of both ends
         auto         boxes  = cuts;
         boxes.insert(boxes.end(), joins.begin(), joins.end());
-        nodes = coupling->families().neighbors().nodes_near(boxes, reach + beyond);
-        if (!bonds_apart)
-          old_rows = bond_rows(nodes);
-        coupling->set_cracks_of(time);
-        recount_bonds = true;
+        nodes    = zone_bonds->coupling().families().neighbors().nodes_near(boxes, reach + beyond);
+        old_rows = zone_bonds->set_cracks_of(time, nodes);
       }
     cut_by_cracks.set(near, history.pieces(time), history.transmission(time));
     if (scaled)
@@ -80,11 +77,14 @@ namespace PeriDeal
         event->factors.clear(beside);
       }
     add_changes(near, old);
-    if (coupling && !bonds_apart)
-      change_bonds(nodes, old_rows);
+    if (zone_bonds)
+      zone_bonds->add_changes(nodes, old_rows, stiffness, event->touched);
     stiffness.compress(VectorOperation::add);
-    if (bonds_apart)
-      change_form(nodes);
+    if (apart())
+      {
+        zone_bonds->change_form(nodes, event->touched);
+        zone_bonds->take_remainder(stiffness);
+      }
     event->touched.compress();
     event->touched.sort();
     update_rows(!joins.empty());
@@ -106,7 +106,7 @@ namespace PeriDeal
           data.stiffness.add(-1., old[k]);
           if (data.stiffness.linfty_norm() == 0.)
             continue;
-          if (!(bonds_apart && coupling->leaves_nothing(cells[k])))
+          if (!(zone_bonds && zone_bonds->leaves_nothing(cells[k])))
             hanging.add_to(stiffness, data.stiffness, data.indices);
           event->touch(data.indices, hanging);
         }
@@ -121,8 +121,8 @@ namespace PeriDeal
     double      bound = 0.;
     for (const unsigned int i : event->touched.rows())
       {
-        double       sum                    = bonds_apart ? 2. * bond_sums[i] : 0.;
-        const double from_form              = bonds_apart ? bond_sums[i] : 0.;
+        const double from_form              = zone_bonds ? zone_bonds->sum_of(i) : 0.;
+        double       sum                    = 2. * from_form;
         stiffness_diagonal.local_element(i) = from_form;
         for_each_entry_of_row(stiffness, i, [&](const auto column, const double value) {
           sum += std::abs(value);
@@ -133,7 +133,7 @@ namespace PeriDeal
         // Cells are taken away by subtraction, which leaves round-off behind.
         if (!(sum > 1e-13 * bounds.safe() * capacity.local_element(i)) && message.empty())
           message =
-            coupling ?
+            zone_bonds ?
               "The node at " + place_of(i) +
                 " becomes isolated: the growing cracks cut all of its bonds and pairs." :
               "'Mesh' in section 'Cracks': the growing cracks leave the finite element node at " +
@@ -150,13 +150,13 @@ namespace PeriDeal
         bounds.raise(Utilities::MPI::max(bound, dofs.get_communicator()),
                      event->touched.rows(),
                      [&](const double enough) {
-                       return form || !symmetric() ? -1. :
-                                                     event->bound(stiffness,
-                                                                  capacity,
-                                                                  event->held,
-                                                                  event->touched.rows(),
-                                                                  noise(),
-                                                                  enough);
+                       return apart() || !symmetric() ? -1. :
+                                                        event->bound(stiffness,
+                                                                     capacity,
+                                                                     event->held,
+                                                                     event->touched.rows(),
+                                                                     noise(),
+                                                                     enough);
                      });
       }
   }
@@ -169,7 +169,7 @@ namespace PeriDeal
     const double                         wide) const
   {
     // Bonds change the cells that they pass.
-    const double reach = coupling ? coupling->families().weights().reach() : 0.;
+    const double reach = zone_bonds ? zone_bonds->coupling().families().weights().reach() : 0.;
     return event->cells_near(cuts,
                              wide + (crack_factors.empty() ? 0. : reach),
                              joins,
@@ -183,8 +183,8 @@ namespace PeriDeal
     balance.cracks.assign(scene.cracks.cracks.size(), 0.);
     if (!scene.cracks.conduct())
       return;
-    if (coupling)
-      add_bond_heat(u, balance);
+    if (zone_bonds)
+      zone_bonds->add_heat(u, balance);
     CellData                                 &data = *cell_data;
     std::vector<std::pair<unsigned int, int>> crossed;
     u.update_ghost_values();

@@ -7,9 +7,8 @@
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <perideal/operators/bonds_beside_elements.h>
 #include <perideal/operators/cell_material.h>
-#include <perideal/operators/coupling.h>
-#include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/cut_cells.h>
 #include <perideal/operators/event_work.h>
 #include <perideal/operators/hanging_nodes.h>
@@ -132,45 +131,18 @@ namespace PeriDeal
     struct CellData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
-    /** Some rows of bonds: numbers of neighbours (local) and conductances. */
-    using BondRows = std::vector<std::vector<std::pair<unsigned int, double>>>;
+    /** The bonds are a form of their own. */
+    bool apart() const;
 
-    /**
-     * The rows of the cells' matrix that are not empty, by local numbers, where the bonds are a
-     * form of their own.
-     */
-    struct RemainderRows
-    {
-      std::vector<unsigned int> rows, starts, columns;
-      std::vector<double>       values;
-    };
-
-    void     find_diagonal();
-    void     extract_remainder();
-    void     add_remainder(Vector            &y,
-                           const Vector      &x,
-                           const unsigned int begin,
-                           const unsigned int end) const;
-    void     multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const;
-    void     set_form_factors();
-    void     assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
-    void     add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
-    BondRows bond_rows(const std::vector<unsigned int> &nodes) const;
-    void     add_bonds(const std::vector<unsigned int> &nodes, const BondRows &rows);
-    void     change_bonds(const std::vector<unsigned int> &nodes, const BondRows &old);
-    void     change_form(const std::vector<unsigned int> &nodes);
-    void     mark_broken_bonds(const std::vector<unsigned int> &nodes,
-                               CrackSideFactors::Sums          &sums) const;
-    void     add_bond_traces(const std::vector<unsigned int> &nodes,
-                             CrackSideFactors::Sums          &sums) const;
-    void     add_bond_heat(const Vector &u, Balance &balance) const;
-    void     count_bonds() const;
-    void     scale_beside_cracks(CellData &data) const;
-    void     update_rows(const bool zone_moves);
-    void     add_crack_heat(const Vector &u, Balance &balance) const;
-    void     assemble();
-    void     fill();
-    double   heat_of(const Vector &u) const;
+    void   find_diagonal();
+    void   multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const;
+    void   assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
+    void   scale_beside_cracks(CellData &data) const;
+    void   update_rows(const bool zone_moves);
+    void   add_crack_heat(const Vector &u, Balance &balance) const;
+    void   assemble();
+    void   fill();
+    double heat_of(const Vector &u) const;
     bool assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
     void assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
     std::vector<Cell> cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
@@ -185,9 +157,10 @@ namespace PeriDeal
                                          CrackSideFactors::Sums          &sums);
     void              find_gershgorin();
 
-    const dealii::DoFHandler<dim> &dofs;
-    const Scene<dim>              &scene;
-    std::unique_ptr<Coupling<dim>> coupling; // null: finite elements alone
+    const dealii::DoFHandler<dim>                  &dofs;
+    const Scene<dim>                               &scene;
+    CrackSideFactors                                crack_factors;
+    const std::unique_ptr<BondsBesideElements<dim>> zone_bonds; // null: finite elements alone
     const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout; // of vectors
     const HangingNodes<dim>                                          hanging;
     const HeatLoads<dim>                                             loads;
@@ -198,15 +171,8 @@ namespace PeriDeal
     CutCells<dim>                          cut_by_cracks;
     dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
     Vector                                 capacity, stiffness_diagonal;
-    bool                                   bonds_apart = false; // in the form; else in the matrix
-    std::unique_ptr<BondForm>              form;
-    RemainderRows                          remainder;
-    std::vector<double>                    bond_sums; // of each owned node, from the form
-    mutable unsigned long long             n_bonds       = 0;
-    mutable bool                           recount_bonds = true;
     std::shared_ptr<CellData>              cell_data; // memory of the cell loops
     std::unique_ptr<EventWork<dim>>        event;     // made for the first event
-    CrackSideFactors                       crack_factors;
     SpectralBounds                         bounds;
   };
 } // namespace PeriDeal
