@@ -197,7 +197,7 @@ namespace PeriDeal
     op.initialize_vector(held);
     for (const BoundaryShare &share : op.bonds().families().nodes().boundary_shares())
       held.local_element(share.node) = 1.;
-    op.set_hanging(held, 1.);
+    op.hanging_nodes().set(held, 1.);
     CouplingCertificate result = examine<dim>(op, held, op.noise(), symmetric, 1);
     result.kept_share          = op.bonds().kept_share();
     return result;

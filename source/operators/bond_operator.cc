@@ -23,6 +23,10 @@ namespace PeriDeal
     , bonds(families, scene)
     , constraints(std::make_unique<NodeConstraints<dim>>(bonds, scene))
     , cracks_of(bonds.cracks().history().representative(0.))
+    , bounds(*this, [this](Vector &vector) {
+      for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+        vector.local_element(i) = position_noise(bonds.nodes().position(i));
+    })
   {
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       if (constraints->kind(i) != NodeConstraints<dim>::free)
@@ -133,7 +137,7 @@ namespace PeriDeal
     double bound = 0.;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       bound = std::max(bound, row_bound(i));
-    gershgorin = Utilities::MPI::max(bound, nodes.communicator());
+    bounds.set(Utilities::MPI::max(bound, nodes.communicator()));
     count_bonds(n_own);
     constraints->mask(bond_diagonal, 1.);
   }
@@ -386,17 +390,7 @@ namespace PeriDeal
   template <int dim>
   Spectrum BondOperator<dim>::spectrum() const
   {
-    if (depends_on_solution()) // changes with each step: the safe bound, which costs nothing
-      return {gershgorin, gershgorin};
-    if (bounds.safe == 0.)
-      {
-        bounds.sharp = sharp_bound(*this, gershgorin, [&](Vector &vector) {
-          for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
-            vector.local_element(i) = position_noise(bonds.nodes().position(i));
-        });
-        bounds.safe  = gershgorin;
-      }
-    return bounds;
+    return bounds.get();
   }
 
   template <int dim>

@@ -7,6 +7,7 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/operators/bond_operator.h>
+#include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/heat_content.h>
 
 #include <algorithm>
@@ -50,7 +51,7 @@ namespace PeriDeal
       double trace = 0.;
       for (unsigned int d = 0; d < dim; ++d)
         trace += 0.5 * sums[d];
-      return cut && trace > 0. ? std::clamp(dim * kappa_volume / trace, 0.5, 4.) : 1.;
+      return crack_side_factor(cut, dim * kappa_volume, trace);
     }
   } // namespace
 
@@ -169,8 +170,8 @@ namespace PeriDeal
         double bound = 0.;
         for (const unsigned int i : rows)
           bound = std::max(bound, row_bound(i));
-        gershgorin = std::max(gershgorin, Utilities::MPI::max(bound, bonds.nodes().communicator()));
-        bounds     = Spectrum();
+        bounds.set(
+          std::max(bounds.safe(), Utilities::MPI::max(bound, bonds.nodes().communicator())));
       }
     constraints->mask(bond_diagonal, 1.);
     recount_bonds = true;
@@ -247,7 +248,7 @@ namespace PeriDeal
     double bound = 0.;
     for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
       bound = std::max(bound, row_bound(i));
-    gershgorin = Utilities::MPI::max(bound, bonds.nodes().communicator());
+    bounds.set(Utilities::MPI::max(bound, bonds.nodes().communicator()));
     constraints->mask(bond_diagonal, 1.);
   }
 

@@ -8,31 +8,18 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/user_error.h>
-#include <perideal/mesh/cut_cells.h>
 #include <perideal/operators/spectrum.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "elastic_cell_data.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
-
-  template <int dim>
-  void ElasticElements<dim>::find_cut_cells()
-  {
-    cut.assign(dofs.get_triangulation().n_active_cells(), false);
-    if (scene.cracks.mesh == CrackMesh::faces)
-      return;
-    const auto cracks = make_open_geometries(scene.cracks.pieces(0.));
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (!cell->is_artificial())
-        cut[cell->active_cell_index()] = is_removed(cell, cracks);
-  }
-
 
   template <int dim>
   bool ElasticElements<dim>::any_thermal() const
@@ -63,14 +50,8 @@ namespace PeriDeal
         data.stiffness.vmult(data.thermal, free);
         data.thermal_energy = 0.5 * (free * data.thermal);
       }
-    double factor = cut[cell->active_cell_index()] ? 0. : 1.;
-    if (crack_factors.size() > 0)
-      {
-        double sum = 0.;
-        for (const auto i : data.indices)
-          sum += crack_factors(i);
-        factor *= sum / data.indices.size();
-      }
+    double factor = cut_by_cracks.is_cut(cell) ? 0. : 1.;
+    factor *= crack_factors.of_cell(data.indices);
     if (factor == 1.)
       return;
     data.stiffness *= factor;
@@ -102,15 +83,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  double ElasticElements<dim>::bond_factor(const unsigned int i, const unsigned int j) const
-  {
-    return crack_factors.size() == 0 ?
-             1. :
-             0.5 * (crack_factors.local_element(i) + crack_factors.local_element(j));
-  }
-
-
-  template <int dim>
   void ElasticElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &matrix,
                                        const bool                      intact) const
   {
@@ -133,7 +105,7 @@ namespace PeriDeal
           {
             if (bond.cut && !intact)
               continue;
-            const double factor = intact ? 1. : bond_factor(i, bond.neighbor);
+            const double factor = intact ? 1. : crack_factors.of_bond(i, bond.neighbor);
             for (unsigned int e = 0; e < dim; ++e)
               columns.push_back(dim * nodes->local_to_global(bond.neighbor) + e);
             for (unsigned int c = 0; c < dim; ++c)
@@ -163,7 +135,7 @@ namespace PeriDeal
           {
             if (bond.cut)
               continue;
-            const double         factor = bond_factor(i, bond.neighbor);
+            const double         factor = crack_factors.of_bond(i, bond.neighbor);
             const Tensor<1, dim> xi     = positions[bond.neighbor] - positions[i];
             const double         strain =
               0.5 * (this->thermal_strain_at(i) + this->thermal_strain_at(bond.neighbor));
@@ -180,52 +152,38 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::find_crack_factors()
   {
-    Vector    marked(nodes), trace(nodes), expected(nodes), factors(nodes);
-    CellData &data = *cell_data;
+    const Vector                                     layout(nodes);
+    CrackSideFactors::Sums                           sums(layout);
+    std::vector<unsigned int>                        owned(nodes->locally_owned_size());
     std::vector<typename ElasticCoupling<dim>::Bond> bonds;
+    std::iota(owned.begin(), owned.end(), 0);
     for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && cut[cell->active_cell_index()])
+      if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
         {
-          cell->get_dof_indices(data.indices);
-          for (const auto i : data.indices)
-            marked(i) = 1.;
+          cell->get_dof_indices(cell_data->indices);
+          sums.mark(cell_data->indices);
         }
-    marked.compress(VectorOperation::add);
-    for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
+    sums.marked.compress(VectorOperation::max);
+    for (const unsigned int i : owned)
       {
         coupling->bonds_of(i, bonds);
         if (std::any_of(bonds.begin(), bonds.end(), [](const auto &bond) { return bond.cut; }))
-          marked.local_element(i) = 1.;
+          sums.marked.local_element(i) = 1.;
         for (const auto &bond : bonds)
           if (!bond.cut)
-            trace.local_element(i) += 0.5 * dealii::trace(bond.block) *
-                                      (positions[bond.neighbor] - positions[i]).norm_square();
+            sums.trace.local_element(i) +=
+              0.5 * trace(bond.block) * (positions[bond.neighbor] - positions[i]).norm_square();
       }
     for_each_own_cell([&](const Cell &cell, CellData &data) {
       change_cell(cell, data);
       const Moduli moduli = scene.material.moduli(cell->center());
       const double mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear,
                    lambda = dim == 1 ? 0. : lambda_of(moduli, dim, scene.elasticity.plane);
-      const double share =
-        (dim * lambda + dim * (dim + 1) * mu) * cell->measure() / data.indices.size();
-      for (unsigned int a = 0; a < data.indices.size(); ++a)
-        {
-          expected(data.indices[a]) += share;
-          for (unsigned int b = 0; b < data.indices.size(); ++b)
-            for (unsigned int d = 0; d < dim; ++d)
-              trace(data.indices[a]) -= 0.5 * data.stiffness(dim * a + d, dim * b + d) *
-                                        (cell->vertex(b) - cell->vertex(a)).norm_square();
-        }
+      sums.add(cell, data.indices, data.stiffness, dim * lambda + dim * (dim + 1) * mu);
     });
-    trace.compress(VectorOperation::add);
-    expected.compress(VectorOperation::add);
-    for (unsigned int i = 0; i < nodes->locally_owned_size(); ++i)
-      factors.local_element(i) =
-        marked.local_element(i) > 0. && trace.local_element(i) > 0. ?
-          std::clamp(expected.local_element(i) / trace.local_element(i), 0.5, 4.) :
-          1.;
-    factors.update_ghost_values();
-    crack_factors.swap(factors);
+    sums.compress();
+    crack_factors.start(layout);
+    crack_factors.find(owned, sums);
   }
 
 
@@ -297,7 +255,6 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template void ElasticElements<dim>::find_cut_cells();                                            \
   template void ElasticElements<dim>::change_cell(const Cell &, CellData &) const;                 \
   template void ElasticElements<dim>::add_bond_pattern(TrilinosWrappers::SparsityPattern &) const; \
   template void ElasticElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &, const bool)      \

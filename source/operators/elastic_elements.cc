@@ -27,6 +27,11 @@ namespace PeriDeal
     : SolidOperator<dim>(scene)
     , dofs(dof_handler)
     , coupling(std::move(given_coupling))
+    , cut_by_cracks(dofs,
+                    {scene.cracks.mesh == CrackMesh::faces,
+                     true,
+                     scene.cracks.contact_conductance,
+                     [&scene] { return scene.horizon(); }})
     , condition_faces(dofs, scene.boundary_conditions)
   {
     IndexSet relevant;
@@ -38,7 +43,7 @@ namespace PeriDeal
                                                                      dofs.get_communicator()));
     find_positions();
     find_conditions();
-    find_cut_cells();
+    cut_by_cracks.set(scene.cracks.pieces(0.), 0.);
     assemble();
     this->keep_constant_loads();
   }

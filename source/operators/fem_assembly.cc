@@ -2,20 +2,19 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
+#include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
-#include <perideal/laws/crack_conductance.h>
-#include <perideal/mesh/cut_cells.h>
 #include <perideal/operators/fem_operator.h>
+#include <perideal/operators/spectrum.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
-#include <sstream>
 
 #include "fem_cell_data.h"
 
@@ -24,137 +23,12 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  void FEMOperator<dim>::find_cut_cells()
-  {
-    cut.assign(dofs.get_triangulation().n_active_cells(), false);
-    if (scene.cracks.mesh == CrackMesh::faces)
-      return;
-    const bool removes = scene.cracks.mesh == CrackMesh::removed;
-    const auto open    = make_open_geometries(history.pieces(cracks_of));
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (!cell->is_artificial())
-        cut[cell->active_cell_index()] = removes ? is_removed(cell, open) : is_cut(cell, cracks);
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::check_material() const
-  {
-    std::string   message;
-    FEValues<dim> values(dofs.get_fe(),
-                         QGauss<dim>(dofs.get_fe().degree + 1),
-                         update_quadrature_points);
-    if (!scene.material.conductivity.is_constant() || !scene.material.density.is_constant() ||
-        !scene.material.heat_capacity.is_constant())
-      for (const auto &cell : dofs.active_cell_iterators())
-        if (cell->is_locally_owned() && message.empty())
-          {
-            values.reinit(cell);
-            for (const Point<dim> &p : values.get_quadrature_points())
-              {
-                std::ostringstream where;
-                where << " at (" << p << "); it must be positive everywhere in the body.";
-                const double T = scene.initial_and_source.initial_value.value(p);
-                if (!(scene.material.conductivity.value(p, T) > 0.))
-                  message = "'Conductivity' in section 'Material' is not positive" + where.str();
-                else if (!scene.time.steady && !(scene.material.storage(p, T) > 0.))
-                  message =
-                    "'Density' times 'Heat capacity' in section 'Material' is not positive" +
-                    where.str();
-              }
-          }
-    throw_on_all_if_any(dofs.get_communicator(), message);
-  }
-
-
-  template <int dim>
-  double FEMOperator<dim>::kept_fraction(const Cell                                &cell,
-                                         const unsigned int                         a,
-                                         const unsigned int                         b,
-                                         std::vector<std::pair<unsigned int, int>> *crossed) const
-  {
-    const Tensor<1, dim> xi      = cell->vertex(b) - cell->vertex(a);
-    const bool           contact = scene.cracks.contact_conductance >= 0.;
-    double               kept    = 1.;
-    for (std::size_t k = 0; k < cracks.size();)
-      {
-        double fraction = 1.; // several pieces of a crack between two vertices are one crossing
-        const unsigned int crack = cracks[k].crack;
-        bool               seen  = false;
-        for (; k < cracks.size() && cracks[k].crack == crack; ++k)
-          {
-            if (!cracks[k].separates(cell->vertex(a), cell->vertex(b)))
-              continue;
-            if (crossed != nullptr && !seen)
-              crossed->emplace_back(crack,
-                                    cracks[k].signed_distance(cell->vertex(a)) > 0. ? 1 : -1);
-            seen = true;
-            if (!contact && (transmission == 0. || transmission >= 1.)) // needs no horizon
-              {
-                fraction = std::min(fraction, transmission);
-                continue;
-              }
-            const double kappa = center_conductivity(cell);
-            const double H     = contact ? scene.cracks.contact_conductance :
-                                           contact_conductance_of_transmission(
-                                         transmission,
-                                         kappa,
-                                         scene.horizon(),
-                                         scene.horizon() / cell->minimum_vertex_distance());
-            fraction =
-              std::min(fraction, contact_fraction(H, std::abs(xi * cracks[k].normal()), kappa));
-          }
-        kept *= fraction;
-      }
-    return kept;
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::keep_unseparated_pairs(const Cell &cell, CellData &data) const
-  {
-    FullMatrix<double> original = data.stiffness;
-    data.stiffness              = 0.;
-    for (const unsigned int a : cell->vertex_indices())
-      for (unsigned int b = 0; b < a; ++b)
-        {
-          const double w = std::max(0., -original(a, b)) * kept_fraction(cell, a, b, nullptr);
-          pairs_stiffer  = pairs_stiffer || original(a, b) > 1e-12 * original(a, a);
-          data.stiffness(a, b) -= w;
-          data.stiffness(b, a) -= w;
-          data.stiffness(a, a) += w;
-          data.stiffness(b, b) += w;
-        }
-  }
-
-
-  template <int dim>
   bool FEMOperator<dim>::assemble_whole_cell(const Cell &cell,
                                              CellData   &data,
                                              const bool  with_bonds) const
   {
-    data.values.reinit(cell);
-    find_temperatures(data);
-    data.stiffness       = 0.;
-    data.mass            = 0.;
-    const unsigned int n = data.indices.size();
-    for (const unsigned int q : data.values.quadrature_point_indices())
-      {
-        const Point<dim> &p       = data.values.quadrature_point(q);
-        const double      T       = data.temperatures[q];
-        const double      kappa   = scene.material.conductivity.value(p, T) * data.values.JxW(q);
-        const double      storage = // steady: it only sets a scale
-          (scene.time.steady ? 1. : scene.material.storage(p, T)) * data.values.JxW(q);
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j < n; ++j)
-            {
-              data.stiffness(i, j) +=
-                kappa * (data.values.shape_grad(i, q) * data.values.shape_grad(j, q));
-              data.mass(i, j) +=
-                storage * data.values.shape_value(i, q) * data.values.shape_value(j, q);
-            }
-      }
-    return coupling && with_bonds && coupling->change_cell(cell, data.stiffness);
+    cell_material.assemble(cell, data.stiffness, data.mass);
+    return zone_bonds && with_bonds && zone_bonds->coupling().change_cell(cell, data.stiffness);
   }
 
 
@@ -164,35 +38,14 @@ namespace PeriDeal
                                        const bool  with_bonds) const
   {
     assemble_whole_cell(cell, data, with_bonds);
-    data.convection      = 0.;
-    const unsigned int n = data.indices.size();
-    if (cut[cell->active_cell_index()])
-      {
-        if (scene.cracks.mesh == CrackMesh::removed)
-          data.stiffness = 0.;
-        else
-          keep_unseparated_pairs(cell, data);
-      }
-    if (coupling && with_bonds)
-      coupling->finish_cell(cell, data.stiffness);
-    for (const unsigned int f : cell->face_indices())
-      if (cell->face(f)->at_boundary())
-        condition_faces.for_each(scene.boundary_conditions.convection,
-                                 cell,
-                                 f,
-                                 data.face_values,
-                                 [&](const SideCondition &condition, const auto &values) {
-                                   for (const unsigned int q : values.quadrature_point_indices())
-                                     {
-                                       const double h =
-                                         condition.coefficient.value(values.quadrature_point(q)) *
-                                         values.JxW(q);
-                                       for (unsigned int i = 0; i < n; ++i)
-                                         for (unsigned int j = 0; j < n; ++j)
-                                           data.convection(i, j) += h * values.shape_value(i, q) *
-                                                                    values.shape_value(j, q);
-                                     }
-                                 });
+    if (cut_by_cracks.is_cut(cell))
+      cut_by_cracks.cut_matrix(
+        cell,
+        [&] { return cell_material.center_conductivity(cell); },
+        data.stiffness);
+    if (zone_bonds && with_bonds)
+      zone_bonds->coupling().finish_cell(cell, data.stiffness);
+    loads.find_convection(cell, data.convection);
     cell->get_dof_indices(data.indices);
   }
 
@@ -204,82 +57,55 @@ namespace PeriDeal
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial())
         cells.push_back(cell);
-    initialize_vector(crack_factors);
-    std::vector<unsigned int> nodes(crack_factors.locally_owned_size());
+    const Vector zero(layout);
+    crack_factors.start(zero);
+    std::vector<unsigned int> nodes(zero.locally_owned_size());
     std::iota(nodes.begin(), nodes.end(), 0);
-    FactorData factors(crack_factors);
-    find_crack_factors(cells, nodes, factors);
+    CrackSideFactors::Sums sums(zero);
+    find_crack_factors(cells, nodes, sums);
   }
 
 
   template <int dim>
   void FEMOperator<dim>::find_crack_factors(const std::vector<Cell>         &cells,
                                             const std::vector<unsigned int> &nodes,
-                                            FactorData                      &factors)
+                                            CrackSideFactors::Sums          &sums)
   {
-    // Crack-side scaling: g_i = d kappa V_i / (-(1/2) sum_j K_ij r_ij^2) on vertices of cut cells.
-    CellData &data   = *cell_data;
-    Vector   &marked = factors.marked, &trace = factors.trace, &expected = factors.expected;
+    CellData &data = *cell_data;
     for (const Cell &cell : cells)
-      if (cell->is_locally_owned() && cut[cell->active_cell_index()])
+      if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
         {
           cell->get_dof_indices(data.indices);
-          for (const auto i : data.indices)
-            marked(i) = 1.;
+          sums.mark(data.indices);
         }
-    marked.compress(VectorOperation::max);
-    if (coupling)
-      mark_broken_bonds(nodes, marked);
-    marked.update_ghost_values();
+    sums.marked.compress(VectorOperation::max);
+    if (zone_bonds)
+      zone_bonds->mark_broken(nodes, sums);
+    sums.marked.update_ghost_values();
     for (const Cell &cell : cells)
       if (cell->is_locally_owned())
         {
           cell->get_dof_indices(data.indices);
-          if (std::none_of(data.indices.begin(), data.indices.end(), [&](const auto i) {
-                return marked(i) > 0.;
-              }))
+          if (!sums.any_marked(data.indices))
             continue;
           assemble_cell(cell, data);
-          const double share =
-            dim * center_conductivity(cell) * cell->measure() / data.indices.size();
-          for (unsigned int a = 0; a < data.indices.size(); ++a)
-            {
-              expected(data.indices[a]) += share;
-              for (unsigned int b = 0; b < data.indices.size(); ++b)
-                trace(data.indices[a]) -=
-                  0.5 * data.stiffness(a, b) * (cell->vertex(b) - cell->vertex(a)).norm_square();
-            }
+          sums.add(cell,
+                   data.indices,
+                   data.stiffness,
+                   dim * cell_material.center_conductivity(cell));
         }
-    trace.compress(VectorOperation::add);
-    expected.compress(VectorOperation::add);
-    if (coupling)
-      add_bond_traces(nodes, marked, trace);
-    for (const unsigned int i : nodes)
-      crack_factors.local_element(i) =
-        marked.local_element(i) > 0. && trace.local_element(i) > 0. ?
-          std::clamp(expected.local_element(i) / trace.local_element(i), 0.5, 4.) :
-          1.;
-    crack_factors.update_ghost_values();
-    const std::vector<unsigned int> around = owned_unknowns_of(cells);
-    for (Vector *v : {&marked, &trace, &expected})
-      {
-        v->zero_out_ghost_values();
-        for (const auto *list : {&around, &nodes})
-          for (const unsigned int i : *list)
-            v->local_element(i) = 0.;
-      }
+    sums.compress();
+    if (zone_bonds)
+      zone_bonds->add_traces(nodes, sums);
+    crack_factors.find(nodes, sums);
   }
 
 
   template <int dim>
   void FEMOperator<dim>::scale_beside_cracks(CellData &data) const
   {
-    if (crack_factors.size() == 0)
-      return;
-    double mean = 0.;
-    for (const auto i : data.indices)
-      mean += crack_factors(i) / data.indices.size();
-    data.stiffness *= mean;
+    if (!crack_factors.empty())
+      data.stiffness *= crack_factors.of_cell(data.indices);
   }
 
 
@@ -290,15 +116,15 @@ namespace PeriDeal
     IndexSet        relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
-    if (!bonds_apart)
-      DoFTools::make_sparsity_pattern(dofs, pattern, constraints, false);
-    if (coupling)
-      add_bond_pattern(pattern);
+    if (!apart())
+      DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
+    if (zone_bonds)
+      zone_bonds->add_pattern(dofs, pattern);
     pattern.compress();
     stiffness.reinit(pattern);
     if (!capacity_is_diagonal())
       mass.reinit(pattern);
-    initialize_vector(capacity);
+    capacity.reinit(layout);
     cell_data = std::make_shared<CellData>(dofs.get_fe());
     fill();
   }
@@ -314,185 +140,190 @@ namespace PeriDeal
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          const bool empty = bonds_apart && coupling->leaves_nothing(cell);
+          const bool empty = zone_bonds && zone_bonds->leaves_nothing(cell);
           assemble_cell(cell, data);
           scale_beside_cracks(data);
           data.stiffness.add(1., data.convection);
           if (!empty)
-            add_to(stiffness, data.stiffness, data.indices);
+            hanging.add_to(stiffness, data.stiffness, data.indices);
           if (!capacity_is_diagonal())
-            add_to(mass, data.mass, data.indices);
+            hanging.add_to(mass, data.mass, data.indices);
           for (unsigned int a = 0; a < data.indices.size(); ++a)
             for (unsigned int b = 0; b < data.indices.size(); ++b)
               capacity(data.indices[a]) += data.mass(a, b);
         }
-    if (coupling && !bonds_apart)
-      {
-        std::vector<unsigned int> nodes(capacity.locally_owned_size());
-        std::iota(nodes.begin(), nodes.end(), 0);
-        add_bonds(nodes, bond_rows(nodes));
-      }
+    if (zone_bonds)
+      zone_bonds->add_to(stiffness);
     stiffness.compress(VectorOperation::add);
-    if (bonds_apart)
-      extract_remainder();
+    if (apart())
+      zone_bonds->take_remainder(stiffness);
     if (!capacity_is_diagonal())
       mass.compress(VectorOperation::add);
     capacity.compress(VectorOperation::add);
-    condense(capacity);
-    if (any_hanging) // any value that is positive
-      set_hanging(capacity, capacity.l2_norm() / std::sqrt(capacity.size()));
+    hanging.condense(capacity);
+    if (hanging.any()) // any value that is positive
+      hanging.set(capacity, capacity.l2_norm() / std::sqrt(capacity.size()));
   }
 
 
   template <int dim>
-  void FEMOperator<dim>::assemble_loads(Vector &loads, const double t) const
+  void FEMOperator<dim>::take_material_at(const Vector &u)
   {
-    const Expression &source     = scene.initial_and_source.source;
-    const bool        any_source = !source.is_constant() || source.value(Point<dim>()) != 0.;
-    CellData         &data       = *cell_data;
-    loads                        = 0.;
-    for (const auto &cell : dofs.active_cell_iterators())
+    if (!depends_on_solution())
+      return;
+    cell_material.take(u);
+    stiffness = 0.;
+    mass      = 0.;
+    capacity  = 0.;
+    fill();
+    std::string message;
+    for (unsigned int i = 0; i < capacity.locally_owned_size() && message.empty(); ++i)
       {
-        if (!cell->is_locally_owned() || !(any_source || cell->at_boundary()))
-          continue;
-        cell->get_dof_indices(data.indices);
-        if (any_source)
-          {
-            data.values.reinit(cell);
-            for (const unsigned int q : data.values.quadrature_point_indices())
-              for (unsigned int i = 0; i < data.indices.size(); ++i)
-                loads(data.indices[i]) += source.value(data.values.quadrature_point(q), t) *
-                                          data.values.shape_value(i, q) * data.values.JxW(q);
-          }
-        for (const unsigned int f : cell->face_indices())
-          {
-            if (!cell->face(f)->at_boundary())
-              continue;
-            const auto add = [&](const auto &values, const auto &entering) {
-              for (const unsigned int q : values.quadrature_point_indices())
-                {
-                  const double heat = entering(values.quadrature_point(q)) * values.JxW(q);
-                  for (unsigned int i = 0; i < data.indices.size(); ++i)
-                    loads(data.indices[i]) += heat * values.shape_value(i, q);
-                }
-            };
-            const auto &conditions = scene.boundary_conditions;
-            condition_faces.for_each(
-              conditions.flux,
-              cell,
-              f,
-              data.face_values,
-              [&](const SideCondition &flux, const auto &values) {
-                add(values, [&](const Point<dim> &p) { return flux.value.value(p, t); });
-              });
-            condition_faces.for_each(conditions.convection,
-                                     cell,
-                                     f,
-                                     data.face_values,
-                                     [&](const SideCondition &convection, const auto &values) {
-                                       add(values, [&](const Point<dim> &p) {
-                                         return convection.coefficient.value(p) *
-                                                convection.value.value(p, t);
-                                       });
-                                     });
-          }
+        const auto index                    = capacity.get_partitioner()->local_to_global(i);
+        stiffness_diagonal.local_element(i) = stiffness.diag_element(index);
+        if (!(stiffness_diagonal.local_element(i) > 0.) || !(capacity.local_element(i) > 0.))
+          message =
+            "'Conductivity', 'Density' or 'Heat capacity' in section 'Material' is not positive at the temperatures near " +
+            place_of(i) + "; they must be positive at every temperature that the run reaches.";
       }
-    for_each_part_flux([&](const PartUnknown<dim> &unknown, const SideCondition &flux) {
-      loads.local_element(unknown.node) += unknown.share * flux.value.value(unknown.position, t);
-    });
-    loads.compress(VectorOperation::add);
-    condense(loads);
+    throw_on_all_if_any(dofs.get_communicator(), message);
+    find_gershgorin();
   }
 
 
   template <int dim>
-  void FEMOperator<dim>::add_side_and_source_heat(const Vector &u,
-                                                  const double  t,
-                                                  Balance      &balance) const
+  void FEMOperator<dim>::visit_conductances(
+    const std::function<void(const unsigned int, const unsigned int, const double)> &visit) const
   {
-    const Expression &source     = scene.initial_and_source.source;
-    const bool        any_source = !source.is_constant() || source.value(Point<dim>()) != 0.;
-    CellData         &data       = *cell_data;
-    u.update_ghost_values();
-    for (const auto &cell : dofs.active_cell_iterators())
-      {
-        if (!cell->is_locally_owned() || !(any_source || cell->at_boundary()))
-          continue;
-        if (any_source)
-          {
-            data.values.reinit(cell);
-            for (const unsigned int q : data.values.quadrature_point_indices())
-              balance.sources +=
-                source.value(data.values.quadrature_point(q), t) * data.values.JxW(q);
-          }
-        for (const unsigned int f : cell->face_indices())
-          {
-            if (!cell->face(f)->at_boundary())
-              continue;
-            condition_faces.for_each(
-              scene.boundary_conditions.flux,
-              cell,
-              f,
-              data.face_values,
-              [&](const SideCondition &flux, const auto &values) {
-                for (const unsigned int q : values.quadrature_point_indices())
-                  balance.sides[flux.name] +=
-                    flux.value.value(values.quadrature_point(q), t) * values.JxW(q);
-              });
-            cell->get_dof_indices(data.indices);
-            condition_faces.for_each(
-              scene.boundary_conditions.convection,
-              cell,
-              f,
-              data.face_values,
-              [&](const SideCondition &convection, const auto &values) {
-                for (const unsigned int q : values.quadrature_point_indices())
-                  {
-                    const Point<dim> &p           = values.quadrature_point(q);
-                    double            temperature = 0.;
-                    for (unsigned int i = 0; i < data.indices.size(); ++i)
-                      temperature += u(data.indices[i]) * values.shape_value(i, q);
-                    balance.sides[convection.name] += convection.coefficient.value(p) *
-                                                      (convection.value.value(p, t) - temperature) *
-                                                      values.JxW(q);
-                  }
-              });
-          }
-      }
-    for_each_part_flux([&](const PartUnknown<dim> &unknown, const SideCondition &flux) {
-      balance.sides[flux.name] += unknown.share * flux.value.value(unknown.position, t);
+    for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
+      // The neighbours of a hanging node's neighbours may be unknown here.
+      if (!layout->in_local_range(column) && !layout->is_ghost_entry(column))
+        return;
+      const unsigned int j = layout->global_to_local(column);
+      if (i != j && value != 0.)
+        visit(i, j, -value);
     });
-    u.set_ghost_state(false);
+    if (!apart())
+      return;
+    std::vector<unsigned int> node(1);
+    for (node[0] = 0; node[0] < layout->locally_owned_size(); ++node[0])
+      {
+        const auto rows = zone_bonds->rows(node);
+        for (const auto &[neighbor, conductance] : rows[0])
+          visit(node[0], neighbor, conductance);
+      }
   }
 
-#define PERIDEAL_INSTANTIATE(dim)                                                       \
-  template void FEMOperator<dim>::add_side_and_source_heat(const Vector &,              \
-                                                           const double,                \
-                                                           Balance &) const;            \
-  template struct FEMOperator<dim>::CellData;                                           \
-  template void   FEMOperator<dim>::fill();                                             \
-  template void   FEMOperator<dim>::find_cut_cells();                                   \
-  template double FEMOperator<dim>::kept_fraction(                                      \
-    const typename DoFHandler<dim>::active_cell_iterator &,                             \
-    const unsigned int,                                                                 \
-    const unsigned int,                                                                 \
-    std::vector<std::pair<unsigned int, int>> *) const;                                 \
-  template bool FEMOperator<dim>::assemble_whole_cell(                                  \
-    const typename DoFHandler<dim>::active_cell_iterator &,                             \
-    CellData &,                                                                         \
-    const bool) const;                                                                  \
-  template void FEMOperator<dim>::assemble_cell(                                        \
-    const typename DoFHandler<dim>::active_cell_iterator &,                             \
-    CellData &,                                                                         \
-    const bool) const;                                                                  \
-  template void FEMOperator<dim>::find_crack_factors();                                 \
-  template void FEMOperator<dim>::find_crack_factors(const std::vector<Cell> &,         \
-                                                     const std::vector<unsigned int> &, \
-                                                     FactorData &);                     \
-  template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                \
-  template void FEMOperator<dim>::check_material() const;                               \
-  template void FEMOperator<dim>::assemble();                                           \
-  template void FEMOperator<dim>::assemble_loads(Vector &, const double) const;
+
+  template <int dim>
+  double FEMOperator<dim>::lowest_remainder() const
+  {
+    CellData &data   = *cell_data;
+    double    lowest = std::numeric_limits<double>::infinity();
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && assemble_whole_cell(cell, data))
+        lowest =
+          std::min(lowest,
+                   lowest_eigenvalue(data.stiffness) / (cell_material.center_conductivity(cell) *
+                                                        std::pow(cell->measure(), 1. - 2. / dim)));
+    return Utilities::MPI::min(lowest, dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &matrix,
+                                         const bool                      with_bonds) const
+  {
+    const IndexSet &owned = dofs.locally_owned_dofs();
+    IndexSet        relevant;
+    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
+    DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
+    std::vector<typename Coupling<dim>::Bond> bonds;
+    std::vector<types::global_dof_index>      columns;
+    std::vector<double>                       values;
+    const auto                                for_each_row = [&](const auto &visit) {
+      for (unsigned int i = 0; i < layout->locally_owned_size() && with_bonds; ++i)
+        {
+          zone_bonds->coupling().bonds_of(i, bonds);
+          const auto own = layout->local_to_global(i);
+          columns.assign(1, own);
+          values.assign(1, 0.);
+          for (const auto &bond : bonds)
+            {
+              columns.push_back(layout->local_to_global(bond.neighbor));
+              values.push_back(-bond.intact);
+              values[0] += bond.intact;
+            }
+          visit(own);
+        }
+    };
+    for_each_row([&](const auto row) { pattern.add_entries(row, columns.begin(), columns.end()); });
+    pattern.compress();
+    matrix.reinit(pattern);
+    for_each_row(
+      [&](const auto row) { matrix.add(row, columns.size(), columns.data(), values.data()); });
+    CellData &data = *cell_data;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          assemble_whole_cell(cell, data, with_bonds);
+          if (with_bonds)
+            zone_bonds->coupling().finish_cell(cell, data.stiffness);
+          cell->get_dof_indices(data.indices);
+          hanging.add_to(matrix, data.stiffness, data.indices);
+        }
+    matrix.compress(VectorOperation::add);
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    // Finite elements with the same cracks conduct nearly like the bonds.
+    const IndexSet &owned = dofs.locally_owned_dofs();
+    IndexSet        relevant;
+    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
+    DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
+    pattern.compress();
+    matrix.reinit(pattern);
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          assemble_cell(cell, *cell_data, false);
+          scale_beside_cracks(*cell_data);
+          cell_data->stiffness.add(1., cell_data->convection);
+          hanging.add_to(matrix, cell_data->stiffness, cell_data->indices);
+        }
+    matrix.compress(VectorOperation::add);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template struct FEMOperator<dim>::CellData;                                                      \
+  template void FEMOperator<dim>::fill();                                                          \
+  template bool FEMOperator<dim>::assemble_whole_cell(                                             \
+    const typename DoFHandler<dim>::active_cell_iterator &,                                        \
+    CellData &,                                                                                    \
+    const bool) const;                                                                             \
+  template void FEMOperator<dim>::assemble_cell(                                                   \
+    const typename DoFHandler<dim>::active_cell_iterator &,                                        \
+    CellData &,                                                                                    \
+    const bool) const;                                                                             \
+  template void FEMOperator<dim>::find_crack_factors();                                            \
+  template void FEMOperator<dim>::find_crack_factors(const std::vector<Cell> &,                    \
+                                                     const std::vector<unsigned int> &,            \
+                                                     CrackSideFactors::Sums &);                    \
+  template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                           \
+  template void FEMOperator<dim>::take_material_at(const Vector &);                                \
+  template void FEMOperator<dim>::visit_conductances(                                              \
+    const std::function<void(const unsigned int, const unsigned int, const double)> &visit) const; \
+  template double FEMOperator<dim>::lowest_remainder() const;                                      \
+  template void   FEMOperator<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &, const bool)  \
+    const;                                                                                         \
+  template void FEMOperator<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &) const;      \
+  template void FEMOperator<dim>::assemble();
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

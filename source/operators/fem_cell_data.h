@@ -3,13 +3,7 @@
 
 #pragma once
 
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
-
 #include <perideal/operators/fem_operator.h>
-
-#include "local_bound.h"
-#include "row_set.h"
 
 namespace PeriDeal
 {
@@ -18,70 +12,13 @@ namespace PeriDeal
   struct FEMOperator<dim>::CellData
   {
     explicit CellData(const dealii::FiniteElement<dim> &fe)
-      : values(fe,
-               dealii::QGauss<dim>(fe.degree + 1),
-               dealii::update_values | dealii::update_gradients | dealii::update_quadrature_points |
-                 dealii::update_JxW_values)
-      , face_values(fe,
-                    dealii::QGauss<dim - 1>(fe.degree + 1),
-                    dealii::update_values | dealii::update_quadrature_points |
-                      dealii::update_JxW_values)
-      , stiffness(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
+      : stiffness(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
       , mass(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
       , convection(fe.n_dofs_per_cell(), fe.n_dofs_per_cell())
       , indices(fe.n_dofs_per_cell())
-      , temperatures(values.n_quadrature_points, 0.)
-      , temperatures_after(temperatures)
     {}
 
-    dealii::FEValues<dim>                        values;
-    dealii::FEFaceValues<dim>                    face_values;
     dealii::FullMatrix<double>                   stiffness, mass, convection;
     std::vector<dealii::types::global_dof_index> indices;
-    std::vector<double>                          temperatures;       // at the quadrature points
-    std::vector<double>                          temperatures_after; // heat_between(): there
   };
-
-
-  /** Memory of find_crack_factors(). Zero outside of it. */
-  template <int dim>
-  struct FEMOperator<dim>::FactorData
-  {
-    explicit FactorData(const Vector &layout)
-      : marked(layout.get_partitioner())
-      , trace(layout.get_partitioner())
-      , expected(layout.get_partitioner())
-    {}
-
-    Vector marked, trace, expected;
-  };
-
-
-  /** Memory of update(), so that an event costs what changes and not what there is. */
-  template <int dim>
-  struct FEMOperator<dim>::EventData
-  {
-    explicit EventData(const Vector &layout)
-      : touched(layout)
-      , held(layout)
-      , factors(layout)
-      , bound(layout)
-    {}
-
-    RowSet     touched, held; // rows of K that the event changes; that are not free
-    FactorData factors;
-    LocalBound bound;
-  };
-
-
-  /** Call visit(unknown, flux) for the regions and points in `Flux`. */
-  template <int dim>
-  template <typename Visit>
-  void FEMOperator<dim>::for_each_part_flux(const Visit &visit) const
-  {
-    for (const PartUnknown<dim> &unknown : part_unknowns)
-      for (const SideCondition &flux : scene.boundary_conditions.flux)
-        if (flux.id == unknown.id)
-          visit(unknown, flux);
-  }
 } // namespace PeriDeal

@@ -11,12 +11,30 @@
 #include <perideal/operators/spectrum.h>
 
 #include <algorithm>
-#include <map>
 #include <sstream>
 
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** With the halo of the nodes, or of finite elements alone with the locally relevant dofs. */
+    template <int dim>
+    std::shared_ptr<const Utilities::MPI::Partitioner> layout_of(
+      const DoFHandler<dim>          &dofs,
+      const BondsBesideElements<dim> *bonds)
+    {
+      if (bonds != nullptr)
+        return bonds->coupling().families().nodes().partitioner();
+      IndexSet relevant;
+      DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+      return std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
+                                                                 relevant,
+                                                                 dofs.get_communicator());
+    }
+  } // namespace
+
 
   template <int dim>
   FEMOperator<dim>::FEMOperator(const DoFHandler<dim>         &dof_handler,
@@ -25,96 +43,46 @@ namespace PeriDeal
                                 const double                   start)
     : dofs(dof_handler)
     , scene(scene)
-    , coupling(std::move(coupling))
+    , zone_bonds(coupling ?
+                   std::make_unique<BondsBesideElements<dim>>(std::move(coupling), crack_factors) :
+                   nullptr)
+    , layout(layout_of(dofs, zone_bonds.get()))
+    , hanging(dofs, *layout)
+    , loads(dofs, layout, scene.boundary_conditions, scene.initial_and_source.source, hanging)
+    , cell_material(dofs, scene.material, scene.initial_and_source.initial_value, scene.time.steady)
+    , prescribed(dofs, *layout, scene.boundary_conditions, hanging, loads.part_unknowns())
     , history(scene.crack_history())
     , cracks_of(history.representative(start))
-    , cracks(make_crack_geometries(history.pieces(cracks_of)))
-    , transmission(history.transmission(cracks_of))
-    , condition_faces(dofs, scene.boundary_conditions)
+    , cut_by_cracks(dofs,
+                    {scene.cracks.mesh == CrackMesh::faces,
+                     scene.cracks.mesh == CrackMesh::removed,
+                     scene.cracks.contact_conductance,
+                     [&scene] { return scene.horizon(); }})
+    , bounds(*this, [this](Vector &vector) { fill_noise(vector); })
   {
-    if (this->coupling && start > 0.)
-      this->coupling->set_cracks_of(cracks_of);
-    check_material();
-    find_cut_cells();
-    find_hanging();
-    find_prescribed();
-    bonds_apart = this->coupling && this->coupling->has_form();
+    if (zone_bonds && start > 0.)
+      zone_bonds->set_cracks_of(cracks_of, {});
+    cut_by_cracks.set(history.pieces(cracks_of), history.transmission(cracks_of));
     assemble();
     find_diagonal();
     find_gershgorin();
-    loads_vary = scene.initial_and_source.source.depends_on_time() ||
-                 scene.boundary_conditions.depends_on_time();
-    initialize_vector(scratch);
-    initialize_vector(constant_loads);
-    if (!loads_vary)
-      {
-        assemble_loads(constant_loads, 0.);
-        free_loads = sum_of_free_loads(constant_loads);
-      }
-    find_convection_sums();
   }
 
 
   template <int dim>
-  void FEMOperator<dim>::find_prescribed()
+  void FEMOperator<dim>::find_diagonal()
   {
-    Vector layout;
-    initialize_vector(layout);
-    const auto                          &fe = dofs.get_fe();
-    std::vector<types::global_dof_index> indices(fe.n_dofs_per_cell());
-    // For each dof the place in the list of the condition that holds: the one named first.
-    std::map<unsigned int, std::pair<unsigned int, Point<dim>>> found;
-    const auto                     &dirichlet = scene.boundary_conditions.dirichlet;
-    std::vector<unsigned long long> n_nodes(dirichlet.size(), 0);
-    const auto hold = [&](const unsigned int dof, const unsigned int k, const Point<dim> &p) {
-      const auto [entry, is_new] = found.try_emplace(dof, k, p);
-      entry->second.first        = std::min(entry->second.first, k);
-      ++n_nodes[k];
-    };
-    for (const auto &cell : dofs.active_cell_iterators())
+    stiffness_diagonal.reinit(layout);
+    if (apart())
       {
-        if (cell->is_artificial() || !cell->at_boundary())
-          continue;
-        cell->get_dof_indices(indices);
-        for (const unsigned int f : cell->face_indices())
-          for (unsigned int k = 0; k < dirichlet.size(); ++k)
-            if (cell->face(f)->at_boundary() &&
-                scene.boundary_conditions.side_of(dirichlet[k].id) == cell->face(f)->boundary_id())
-              for (unsigned int i = 0; i < indices.size(); ++i)
-                if (fe.has_support_on_face(i, f) && layout.in_local_range(indices[i]) &&
-                    !(any_hanging && constraints.is_constrained(indices[i])))
-                  {
-                    const Point<dim> p =
-                      MappingQ1<dim>().transform_unit_to_real_cell(cell, fe.unit_support_point(i));
-                    if (scene.boundary_conditions.holds_at(dirichlet[k].id, p))
-                      hold(layout.get_partitioner()->global_to_local(indices[i]), k, p);
-                  }
+        zone_bonds->make_form();
+        for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
+          stiffness_diagonal.local_element(i) = zone_bonds->sum_of(i);
       }
-    part_unknowns = unknowns_of_parts(dofs, scene.boundary_conditions);
-    for (const PartUnknown<dim> &unknown : part_unknowns)
-      for (unsigned int k = 0; k < dirichlet.size(); ++k)
-        if (dirichlet[k].id == unknown.id &&
-            !(any_hanging &&
-              constraints.is_constrained(layout.get_partitioner()->local_to_global(unknown.node))))
-          hold(unknown.node, k, unknown.position);
-    std::vector<unsigned long long> n_held(dirichlet.size(), 0);
-    for (const auto &[dof, entry] : found)
-      {
-        prescribed.push_back({dof, entry.second, &dirichlet[entry.first]});
-        ++n_held[entry.first];
-      }
-    require_held_parts(scene.boundary_conditions,
-                       dirichlet,
-                       n_nodes,
-                       n_held,
-                       "Dirichlet",
-                       dofs.get_communicator());
-    for (const Prescribed &entry : prescribed)
-      held.push_back(entry.dof);
-    for (const HangingNode &node : hanging)
-      held.push_back(node.dof);
-    std::sort(held.begin(), held.end());
-    any_prescribed = Utilities::MPI::max(prescribed.empty() ? 0 : 1, dofs.get_communicator()) > 0;
+    for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
+      if (column == layout->local_to_global(i))
+        stiffness_diagonal.local_element(i) += value;
+    });
   }
 
 
@@ -124,18 +92,18 @@ namespace PeriDeal
     std::string         message;
     double              bound = 0.;
     std::vector<double> row_sums(stiffness_diagonal.locally_owned_size(), 0.);
-    for (unsigned int i = 0; i < bond_sums.size(); ++i)
-      row_sums[i] = 2. * bond_sums[i];
+    for (unsigned int i = 0; zone_bonds && i < row_sums.size(); ++i)
+      row_sums[i] = 2. * zone_bonds->sum_of(i);
     for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
       row_sums[row] += std::abs(value);
     });
-    for (const HangingNode &node : hanging)
-      row_sums[node.dof] = 0.;
+    for (const unsigned int node : hanging.owned())
+      row_sums[node] = 0.;
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
       {
         if (!(stiffness_diagonal.local_element(i) > 0.))
           message =
-            coupling ?
+            zone_bonds ?
               "The node at " + place_of(i) +
                 " is isolated: the cracks of section 'Cracks' cut all of its bonds and pairs." :
               "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
@@ -143,42 +111,49 @@ namespace PeriDeal
         bound = std::max(bound, row_sums[i] / capacity.local_element(i));
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
-    gershgorin = Utilities::MPI::max(bound, dofs.get_communicator());
-    mask(stiffness_diagonal, 1.);
+    bounds.set(Utilities::MPI::max(bound, dofs.get_communicator()));
+    prescribed.mask(stiffness_diagonal, 1.);
   }
 
 
   template <int dim>
   void FEMOperator<dim>::initialize_vector(Vector &vector) const
   {
-    if (coupling)
+    vector.reinit(layout);
+  }
+
+
+  template <int dim>
+  const HangingNodes<dim> &FEMOperator<dim>::hanging_nodes() const
+  {
+    return hanging;
+  }
+
+
+  template <int dim>
+  bool FEMOperator<dim>::apart() const
+  {
+    return zone_bonds && zone_bonds->apart();
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const
+  {
+    if (apart())
       {
-        vector.reinit(coupling->families().nodes().partitioner());
+        zone_bonds->multiply_then(y, x, finish);
         return;
       }
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
-    vector.reinit(dofs.locally_owned_dofs(), relevant, dofs.get_communicator());
+    stiffness.vmult(y, x);
+    finish(0, y.locally_owned_size());
   }
 
 
   template <int dim>
-  void FEMOperator<dim>::mask(Vector &y, const double value) const
+  void FEMOperator<dim>::multiply(Vector &y, const Vector &x) const
   {
-    mask(y, value, 0, y.locally_owned_size());
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::mask(Vector            &y,
-                              const double       value,
-                              const unsigned int begin,
-                              const unsigned int end) const
-  {
-    for (auto dof = std::lower_bound(held.begin(), held.end(), begin);
-         dof != held.end() && *dof < end;
-         ++dof)
-      y.local_element(*dof) = value;
+    multiply_then(y, x, [](const unsigned int, const unsigned int) {});
   }
 
 
@@ -193,10 +168,10 @@ namespace PeriDeal
   void FEMOperator<dim>::apply_then(Vector &y, const Vector &x, const RowsAction &finish) const
   {
     ++applications;
-    entering_now = through_convection(x);
+    entering_now = loads.through_convection(x);
     multiply_then(y, x, [&](const unsigned int begin, const unsigned int end) {
-      entering_now += through_prescribed(y, begin, end);
-      mask(y, 0., begin, end);
+      entering_now += prescribed.sum(y, begin, end);
+      prescribed.mask(y, 0., begin, end);
       finish(begin, end);
     });
   }
@@ -207,34 +182,32 @@ namespace PeriDeal
   {
     ++applications;
     multiply(r, u);
-    if (loads_vary)
-      assemble_loads(scratch, t);
-    const Vector &loads = loads_vary ? scratch : constant_loads;
-    entering_now        = through_convection(u) + through_prescribed(r, 0, r.locally_owned_size()) +
-                   (loads_vary ? sum_of_free_loads(loads) : free_loads);
-    r.sadd(-1., 1., loads);
-    mask(r);
+    const Vector      &now = loads.at(t);
+    const unsigned int n   = r.locally_owned_size();
+    entering_now           = loads.through_convection(u) + prescribed.sum(r, 0, n) +
+                   (loads.sum() - prescribed.sum(now, 0, n));
+    r.sadd(-1., 1., now);
+    prescribed.mask(r);
   }
 
 
   template <int dim>
   void FEMOperator<dim>::distribute(Vector &u, const double t) const
   {
-    for (const Prescribed &entry : prescribed)
-      u.local_element(entry.dof) = entry.condition->value.value(entry.position, t);
-    interpolate_hanging(u);
+    prescribed.distribute(u, t);
+    hanging.interpolate(u);
   }
 
   template <int dim>
   void FEMOperator<dim>::distribute_homogeneous(Vector &x) const
   {
-    mask(x);
+    prescribed.mask(x);
   }
 
   template <int dim>
   void FEMOperator<dim>::clear_constrained(Vector &y) const
   {
-    mask(y);
+    prescribed.mask(y);
   }
 
   template <int dim>
@@ -246,7 +219,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::capacity_is_diagonal() const
   {
-    return coupling || !scene.finite_elements.consistent_capacity; // bonds need it diagonal
+    return zone_bonds || !scene.finite_elements.consistent_capacity; // bonds need it diagonal
   }
 
   template <int dim>
@@ -270,9 +243,13 @@ namespace PeriDeal
   template <int dim>
   const Vector &FEMOperator<dim>::noise() const
   {
-    if (noise_values.size() > 0)
-      return noise_values;
-    initialize_vector(noise_values);
+    return bounds.noise();
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::fill_noise(Vector &vector) const
+  {
     const MappingQ1<dim>                 mapping;
     std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
     for (const auto &cell : dofs.active_cell_iterators())
@@ -280,56 +257,47 @@ namespace PeriDeal
         {
           cell->get_dof_indices(indices);
           for (unsigned int i = 0; i < indices.size(); ++i)
-            if (noise_values.in_local_range(indices[i]))
-              noise_values(indices[i]) = position_noise(
+            if (vector.in_local_range(indices[i]))
+              vector(indices[i]) = position_noise(
                 mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i)));
         }
-    return noise_values;
   }
 
 
   template <int dim>
   Spectrum FEMOperator<dim>::spectrum() const
   {
-    if (depends_on_solution()) // changes with each step: the safe bound, which costs nothing
-      return {gershgorin, gershgorin};
-    if (bounds.safe == 0.)
-      {
-        bounds.sharp = sharp_bound(*this, gershgorin, [&](Vector &vector) { vector = noise(); });
-        bounds.safe  = gershgorin;
-      }
-    return bounds;
+    return bounds.get();
   }
 
   template <int dim>
   bool FEMOperator<dim>::symmetric() const
   {
-    return !coupling || coupling->symmetric();
+    return !zone_bonds || zone_bonds->coupling().symmetric();
   }
 
   template <int dim>
   bool FEMOperator<dim>::depends_on_time() const
   {
-    return loads_vary;
+    return loads.depends_on_time();
   }
 
   template <int dim>
   bool FEMOperator<dim>::has_steady_state() const
   {
-    return any_prescribed || !scene.boundary_conditions.convection.empty();
+    return prescribed.any() || !scene.boundary_conditions.convection.empty();
   }
 
 
   template <int dim>
   void FEMOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    if (form)
+    if (apart())
       assemble_surrogate(matrix);
     else
       matrix.copy_from(stiffness);
-    Vector marked;
-    initialize_vector(marked);
-    mask(marked, 1.);
+    Vector marked(layout);
+    prescribed.mask(marked, 1.);
     const Vector held = with_columns_as_ghosts(marked, matrix);
     for_each_entry(matrix, [&](const unsigned int i, const auto column, double &value) {
       const bool is_held = held.local_element(i) > 0.;
@@ -343,31 +311,27 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::surrogate_is_exact() const
   {
-    return !form;
+    return !apart();
   }
 
 
   template <int dim>
   Balance FEMOperator<dim>::balance(const Vector &u, const double t, const bool steady) const
   {
-    Vector heat, loads;
-    initialize_vector(heat);
-    initialize_vector(loads);
-    assemble_loads(loads, t);
+    Vector heat(layout);
     multiply(heat, u);
     // What leaves each unknown through the body; in a prescribed one it must come from outside.
-    heat -= loads;
+    heat -= loads.at(t);
     Balance     balance;
     const auto &conditions = scene.boundary_conditions;
     for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})
       for (const SideCondition &condition : *list)
         balance.sides[condition.name];
-    for (const Prescribed &entry : prescribed)
-      balance.sides[entry.condition->name] += heat.local_element(entry.dof);
-    add_side_and_source_heat(u, t, balance);
+    prescribed.add_to(balance.sides, heat);
+    loads.add_to(balance, u, t);
     add_crack_heat(u, balance);
     balance.content = heat_of(u);
-    mask(heat);
+    prescribed.mask(heat);
     if (!steady)
       for (unsigned int i = 0; i < heat.locally_owned_size(); ++i)
         balance.stored -= heat.local_element(i);
@@ -382,7 +346,7 @@ namespace PeriDeal
   template <int dim>
   std::string FEMOperator<dim>::place_of(const unsigned int local_index) const
   {
-    const auto dof = capacity.get_partitioner()->local_to_global(local_index);
+    const auto                           dof = layout->local_to_global(local_index);
     std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
     std::ostringstream                   out;
     for (const auto &cell : dofs.active_cell_iterators())
@@ -406,30 +370,71 @@ namespace PeriDeal
   {
     OperatorSize size;
     size.unknowns = dofs.n_dofs();
-    size.nonzeros = form ? Utilities::MPI::sum(remainder.values.size() + form->n_stored(),
-                                               dofs.get_communicator()) :
-                           stiffness.n_nonzero_elements();
-    if (!form)
+    size.form     = "matrix";
+    size.nonzeros = stiffness.n_nonzero_elements();
+    size.memory   = stiffness.memory_consumption() + mass.memory_consumption() +
+                  capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
+                  loads.memory_consumption();
+    if (!apart())
       {
         const Utilities::MPI::MinMaxAvg work =
           Utilities::MPI::min_max_avg(stiffness.trilinos_matrix().NumMyNonzeros(),
                                       dofs.get_communicator());
         size.busiest = work.max / work.avg;
       }
-    size.memory = stiffness.memory_consumption() + mass.memory_consumption() +
-                  capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
-                  constant_loads.memory_consumption() + scratch.memory_consumption();
-    if (coupling)
-      {
-        if (recount_bonds)
-          count_bonds();
-        size.bonds = n_bonds;
-        size.memory +=
-          coupling->memory_consumption() + coupling->families().nodes().memory_consumption();
-      }
-    size.form = form ? form->name() : "matrix";
+    if (zone_bonds)
+      zone_bonds->add_to(size);
     return size;
   }
+
+  template <int dim>
+  bool FEMOperator<dim>::depends_on_solution() const
+  {
+    return scene.material.depends_on_temperature();
+  }
+
+
+  template <int dim>
+  bool FEMOperator<dim>::capacity_depends_on_solution() const
+  {
+    return scene.material.storage_depends_on_temperature();
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::heat_between(Vector &y, const Vector &u, const Vector &v) const
+  {
+    if (capacity_depends_on_solution())
+      {
+        cell_material.heat_between(y, u, v, capacity_is_diagonal());
+        hanging.condense(y);
+        return;
+      }
+    Operator::heat_between(y, u, v);
+    hanging.set(y, 0.); // the nodes they follow from have all of it
+  }
+
+
+  template <int dim>
+  double FEMOperator<dim>::heat(const Vector &u) const
+  {
+    return Utilities::MPI::sum(heat_of(u), dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  double FEMOperator<dim>::heat_of(const Vector &u) const
+  {
+    if (capacity_depends_on_solution() || scene.time.steady)
+      return cell_material.content(u);
+    double heat = 0.;
+    for (unsigned int i = 0; i < capacity.locally_owned_size(); ++i)
+      heat += capacity.local_element(i) * u.local_element(i);
+    for (const unsigned int node : hanging.owned())
+      heat -= capacity.local_element(node) * u.local_element(node);
+    return heat;
+  }
+
 
   template <int dim>
   const DoFHandler<dim> &FEMOperator<dim>::dof_handler() const
@@ -446,14 +451,14 @@ namespace PeriDeal
   template <int dim>
   const std::vector<bool> &FEMOperator<dim>::cut_cells() const
   {
-    return cut;
+    return cut_by_cracks.flags();
   }
 
   template <int dim>
   const Coupling<dim> &FEMOperator<dim>::bonds() const
   {
-    Assert(coupling, ExcMessage("Finite elements alone have no bonds."));
-    return *coupling;
+    Assert(zone_bonds, ExcMessage("Finite elements alone have no bonds."));
+    return zone_bonds->coupling();
   }
 
 

@@ -7,13 +7,9 @@
 
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
-#include <perideal/mesh/cut_cells.h>
 #include <perideal/operators/fem_operator.h>
-#include <perideal/operators/spectrum.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "fem_cell_data.h"
 
@@ -25,63 +21,6 @@ namespace PeriDeal
   double FEMOperator<dim>::next_event(const double t) const
   {
     return history.next_event(t);
-  }
-
-
-  namespace
-  {
-    /**
-     * One box for all that joins the zone beside each cut, the same on all processes: a cell may
-     * feel what happens a little farther away than its own process knows of. Collective.
-     */
-    template <int dim>
-    std::vector<BoundingBox<dim>> boxes_beside(const std::vector<BoundingBox<dim>> &cuts,
-                                               const std::vector<BoundingBox<dim>> &joins,
-                                               const MPI_Comm                       communicator)
-    {
-      std::vector<double> lowest(2 * dim * cuts.size(), std::numeric_limits<double>::max());
-      for (const BoundingBox<dim> &join : joins)
-        {
-          std::size_t nearest = 0;
-          for (std::size_t k = 1; k < cuts.size(); ++k)
-            if (join.center().distance(cuts[k].center()) <
-                join.center().distance(cuts[nearest].center()))
-              nearest = k;
-          double *const box = lowest.data() + 2 * dim * nearest;
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              box[d]       = std::min(box[d], join.lower_bound(d));
-              box[dim + d] = std::min(box[dim + d], -join.upper_bound(d));
-            }
-        }
-      std::vector<double> all(lowest.size());
-      Utilities::MPI::min(lowest, communicator, all);
-      std::vector<BoundingBox<dim>> boxes;
-      for (const double *box = all.data(); box != all.data() + all.size(); box += 2 * dim)
-        if (box[0] < std::numeric_limits<double>::max())
-          {
-            Point<dim> low, high;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                low[d]  = box[d];
-                high[d] = -box[dim + d];
-              }
-            boxes.push_back({{low, high}});
-          }
-      return boxes;
-    }
-  } // namespace
-
-
-  template <int dim>
-  void FEMOperator<dim>::prepare_event()
-  {
-    if (event)
-      return;
-    search = std::make_unique<CellSearch<dim>>(dofs);
-    event  = std::make_shared<EventData>(capacity);
-    for (const unsigned int i : held)
-      event->held.insert(i);
   }
 
 
@@ -97,18 +36,19 @@ namespace PeriDeal
         cracks_of = time;
         return false;
       }
-    prepare_event();
-    const auto joins =
-      boxes_beside(cuts,
-                   coupling ? coupling->joining_by(time) : std::vector<BoundingBox<dim>>(),
-                   dofs.get_communicator());
+    if (!event)
+      event = std::make_unique<EventWork<dim>>(dofs, capacity, prescribed.held());
+    const auto joins    = boxes_beside(cuts,
+                                    zone_bonds ? zone_bonds->coupling().joining_by(time) :
+                                                    std::vector<BoundingBox<dim>>(),
+                                    dofs.get_communicator());
     cracks_of           = time;
     CellData    &data   = *cell_data;
-    const bool   scaled = crack_factors.size() > 0;
-    const double reach  = coupling ? coupling->families().weights().reach() : 0.;
+    const bool   scaled = !crack_factors.empty();
+    const double reach  = zone_bonds ? zone_bonds->coupling().families().weights().reach() : 0.;
     // The factors of crack-side scaling change at the vertices of the cells whose own matrix does,
     // and of all cells around these.
-    const double                    wide = scaled ? search->largest_diameter() : 0.;
+    const double                    wide = scaled ? event->search.largest_diameter() : 0.;
     const std::vector<Cell>         near = cells_near(cuts, joins, wide);
     std::vector<FullMatrix<double>> old(near.size());
     for (std::size_t k = 0; k < near.size(); ++k)
@@ -118,56 +58,58 @@ namespace PeriDeal
           scale_beside_cracks(data);
           old[k] = data.stiffness;
         }
-    std::vector<unsigned int> nodes;
-    BondRows                  old_rows;
-    if (coupling)
+    std::vector<unsigned int>               nodes;
+    typename BondsBesideElements<dim>::Rows old_rows;
+    if (zone_bonds)
       {
         const double beyond = scaled ? reach + wide : 0.; // bonds have the factors of both ends
         auto         boxes  = cuts;
         boxes.insert(boxes.end(), joins.begin(), joins.end());
-        nodes = coupling->families().neighbors().nodes_near(boxes, reach + beyond);
-        if (!bonds_apart)
-          old_rows = bond_rows(nodes);
-        coupling->set_cracks_of(time);
-        recount_bonds = true;
+        nodes    = zone_bonds->coupling().families().neighbors().nodes_near(boxes, reach + beyond);
+        old_rows = zone_bonds->set_cracks_of(time, nodes);
       }
-    cracks             = make_crack_geometries(history.pieces(time));
-    transmission       = history.transmission(time);
-    const bool removes = scene.cracks.mesh == CrackMesh::removed;
-    const auto open    = make_open_geometries(history.pieces(time));
-    for (const Cell &cell : near)
-      cut[cell->active_cell_index()] = removes ? is_removed(cell, open) : is_cut(cell, cracks);
+    cut_by_cracks.set(near, history.pieces(time), history.transmission(time));
     if (scaled)
-      find_crack_factors(near, owned_unknowns_of(cells_near(cuts, joins, 0.)), event->factors);
-    const auto &layout = *capacity.get_partitioner();
-    for (std::size_t k = 0; k < near.size(); ++k)
-      if (near[k]->is_locally_owned())
-        {
-          assemble_cell(near[k], data);
-          scale_beside_cracks(data);
-          data.stiffness.add(-1., old[k]);
-          if (data.stiffness.linfty_norm() == 0.)
-            continue;
-          if (!(bonds_apart && coupling->leaves_nothing(near[k])))
-            add_to(stiffness, data.stiffness, data.indices);
-          for (const auto i : data.indices)
-            {
-              event->touched.insert(layout.global_to_local(i));
-              if (const auto *masters = constraints.get_constraint_entries(i))
-                for (const auto &master : *masters)
-                  event->touched.insert(layout.global_to_local(master.first));
-            }
-        }
-    if (coupling && !bonds_apart)
-      change_bonds(nodes, old_rows);
+      {
+        const auto beside = owned_unknowns<dim>(cells_near(cuts, joins, 0.), *layout);
+        find_crack_factors(near, beside, event->factors);
+        event->factors.clear(owned_unknowns<dim>(near, *layout));
+        event->factors.clear(beside);
+      }
+    add_changes(near, old);
+    if (zone_bonds)
+      zone_bonds->add_changes(nodes, old_rows, stiffness, event->touched);
     stiffness.compress(VectorOperation::add);
-    if (bonds_apart)
-      change_form(nodes);
+    if (apart())
+      {
+        zone_bonds->change_form(nodes, event->touched);
+        zone_bonds->take_remainder(stiffness);
+      }
     event->touched.compress();
     event->touched.sort();
     update_rows(!joins.empty());
     event->touched.clear();
     return true;
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::add_changes(const std::vector<Cell>               &cells,
+                                     const std::vector<FullMatrix<double>> &old)
+  {
+    CellData &data = *cell_data;
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      if (cells[k]->is_locally_owned())
+        {
+          assemble_cell(cells[k], data);
+          scale_beside_cracks(data);
+          data.stiffness.add(-1., old[k]);
+          if (data.stiffness.linfty_norm() == 0.)
+            continue;
+          if (!(zone_bonds && zone_bonds->leaves_nothing(cells[k])))
+            hanging.add_to(stiffness, data.stiffness, data.indices);
+          event->touch(data.indices, hanging);
+        }
   }
 
 
@@ -179,8 +121,8 @@ namespace PeriDeal
     double      bound = 0.;
     for (const unsigned int i : event->touched.rows())
       {
-        double       sum                    = bonds_apart ? 2. * bond_sums[i] : 0.;
-        const double from_form              = bonds_apart ? bond_sums[i] : 0.;
+        const double from_form              = zone_bonds ? zone_bonds->sum_of(i) : 0.;
+        double       sum                    = 2. * from_form;
         stiffness_diagonal.local_element(i) = from_form;
         for_each_entry_of_row(stiffness, i, [&](const auto column, const double value) {
           sum += std::abs(value);
@@ -189,9 +131,9 @@ namespace PeriDeal
         });
         bound = std::max(bound, sum / capacity.local_element(i));
         // Cells are taken away by subtraction, which leaves round-off behind.
-        if (!(sum > 1e-13 * gershgorin * capacity.local_element(i)) && message.empty())
+        if (!(sum > 1e-13 * bounds.safe() * capacity.local_element(i)) && message.empty())
           message =
-            coupling ?
+            zone_bonds ?
               "The node at " + place_of(i) +
                 " becomes isolated: the growing cracks cut all of its bonds and pairs." :
               "'Mesh' in section 'Cracks': the growing cracks leave the finite element node at " +
@@ -200,42 +142,23 @@ namespace PeriDeal
           stiffness_diagonal.local_element(i) = 1.;
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
-    // Pairs of a cell with positive entries off the diagonal (of unequal sides) conduct more than
-    // it did as a whole.
-    const bool stiffer = Utilities::MPI::max(pairs_stiffer ? 1 : 0, dofs.get_communicator()) > 0;
-    if (stiffer || zone_moves || crack_factors.size() > 0 || history.may_close())
+    const bool stiffer =
+      Utilities::MPI::max(cut_by_cracks.pairs_are_stiffer() ? 1 : 0, dofs.get_communicator()) > 0;
+    if (stiffer || zone_moves || !crack_factors.empty() || history.may_close())
       {
         // Rates can have grown. Where cells are only cut, the old bounds still hold.
-        gershgorin = std::max(gershgorin, Utilities::MPI::max(bound, dofs.get_communicator()));
-        raise_bounds();
+        bounds.raise(Utilities::MPI::max(bound, dofs.get_communicator()),
+                     event->touched.rows(),
+                     [&](const double enough) {
+                       return apart() || !symmetric() ? -1. :
+                                                        event->bound(stiffness,
+                                                                     capacity,
+                                                                     event->held,
+                                                                     event->touched.rows(),
+                                                                     noise(),
+                                                                     enough);
+                     });
       }
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::raise_bounds()
-  {
-    if (bounds.safe == 0.) // nobody has asked yet
-      return;
-    // The fastest field may have changed where the rows have, and only there: iterations that start
-    // there see it soon.
-    const std::vector<unsigned int> &rows  = event->touched.rows();
-    double                           local = -1.;
-    if (!form && symmetric())
-      local = event->bound(stiffness, capacity, event->held, rows, noise(), bounds.sharp);
-    if (local >= 0.)
-      local = std::min(round_up(local), gershgorin);
-    else
-      local = sharp_bound(
-        *this,
-        gershgorin,
-        [&](Vector &vector) {
-          for (const unsigned int i : rows)
-            vector.local_element(i) = noise().local_element(i);
-        },
-        bounds.sharp);
-    bounds.sharp = std::max(bounds.sharp, local);
-    bounds.safe  = gershgorin;
   }
 
 
@@ -246,33 +169,11 @@ namespace PeriDeal
     const double                         wide) const
   {
     // Bonds change the cells that they pass.
-    const double      reach = coupling ? coupling->families().weights().reach() : 0.;
-    std::vector<Cell> near;
-    search->find(cuts, wide + (crack_factors.size() > 0 ? reach : 0.), near);
-    search->find(joins, wide + reach, near);
-    std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
-    return near;
-  }
-
-
-  template <int dim>
-  std::vector<unsigned int> FEMOperator<dim>::owned_unknowns_of(
-    const std::vector<Cell> &cells) const
-  {
-    const auto                          &layout = *capacity.get_partitioner();
-    std::vector<unsigned int>            list;
-    std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
-    for (const Cell &cell : cells)
-      {
-        cell->get_dof_indices(indices);
-        for (const auto i : indices)
-          if (layout.in_local_range(i))
-            list.push_back(layout.global_to_local(i));
-      }
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    return list;
+    const double reach = zone_bonds ? zone_bonds->coupling().families().weights().reach() : 0.;
+    return event->cells_near(cuts,
+                             wide + (crack_factors.empty() ? 0. : reach),
+                             joins,
+                             wide + reach);
   }
 
 
@@ -282,13 +183,13 @@ namespace PeriDeal
     balance.cracks.assign(scene.cracks.cracks.size(), 0.);
     if (!scene.cracks.conduct())
       return;
-    if (coupling)
-      add_bond_heat(u, balance);
+    if (zone_bonds)
+      zone_bonds->add_heat(u, balance);
     CellData                                 &data = *cell_data;
     std::vector<std::pair<unsigned int, int>> crossed;
     u.update_ghost_values();
     for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && cut[cell->active_cell_index()])
+      if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
         {
           assemble_cell(cell, data);
           scale_beside_cracks(data);
@@ -296,7 +197,12 @@ namespace PeriDeal
             for (unsigned int b = 0; b < a; ++b)
               {
                 crossed.clear();
-                kept_fraction(cell, a, b, &crossed);
+                cut_by_cracks.kept_fraction(
+                  cell,
+                  a,
+                  b,
+                  [&] { return cell_material.center_conductivity(cell); },
+                  &crossed);
                 for (const auto &[crack, side] : crossed)
                   balance.cracks[crack] +=
                     side * -data.stiffness(a, b) * (u(data.indices[b]) - u(data.indices[a]));
@@ -308,12 +214,10 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                      \
-  template double                    FEMOperator<dim>::next_event(const double) const; \
-  template std::vector<unsigned int> FEMOperator<dim>::owned_unknowns_of(              \
-    const std::vector<Cell> &) const;                                                  \
-  template bool FEMOperator<dim>::update(const double);                                \
-  template void FEMOperator<dim>::add_crack_heat(const Vector &, Balance &) const;
+#define PERIDEAL_INSTANTIATE(dim)                                   \
+  template double FEMOperator<dim>::next_event(const double) const; \
+  template bool   FEMOperator<dim>::update(const double);           \
+  template void   FEMOperator<dim>::add_crack_heat(const Vector &, Balance &) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

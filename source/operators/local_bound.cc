@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include "local_bound.h"
-
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/matrix_rows.h>
+#include <perideal/operators/local_bound.h>
 
 #include <cmath>
 #include <numeric>

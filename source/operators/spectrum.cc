@@ -72,6 +72,70 @@ namespace PeriDeal
   } // namespace
 
 
+  SpectralBounds::SpectralBounds(const Operator                      &op,
+                                 const std::function<void(Vector &)> &fill_noise)
+    : op(op)
+    , fill_noise(fill_noise)
+  {}
+
+
+  void SpectralBounds::set(const double gershgorin)
+  {
+    bounds = {gershgorin, 0.};
+  }
+
+
+  double SpectralBounds::safe() const
+  {
+    return bounds.safe;
+  }
+
+
+  Spectrum SpectralBounds::get() const
+  {
+    if (op.depends_on_solution()) // changes with each step
+      return {bounds.safe, bounds.safe};
+    if (bounds.sharp == 0.)
+      bounds.sharp = sharp_bound(op, bounds.safe, fill_noise);
+    return bounds;
+  }
+
+
+  const Vector &SpectralBounds::noise() const
+  {
+    if (kept_noise.size() == 0)
+      {
+        op.initialize_vector(kept_noise);
+        fill_noise(kept_noise);
+      }
+    return kept_noise;
+  }
+
+
+  void SpectralBounds::raise(const double                               gershgorin,
+                             const std::vector<unsigned int>           &rows,
+                             const std::function<double(const double)> &local_bound)
+  {
+    bounds.safe = std::max(bounds.safe, gershgorin);
+    if (bounds.sharp == 0.) // nobody has asked yet
+      return;
+    double        sharp = local_bound(bounds.sharp);
+    const Vector &start = noise();
+    if (sharp >= 0.)
+      sharp = std::min(round_up(sharp), bounds.safe);
+    else
+      sharp = sharp_bound(
+        op,
+        bounds.safe,
+        [&](Vector &vector) {
+          for (const unsigned int i : rows)
+            vector.local_element(i) = start.local_element(i);
+        },
+        bounds.sharp);
+    bounds.sharp = std::max(bounds.sharp, sharp);
+  }
+
+
   double lowest_eigenvalue(const dealii::FullMatrix<double> &matrix)
   {
     Eigen::MatrixXd copy(matrix.m(), matrix.n());

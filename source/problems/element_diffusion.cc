@@ -97,9 +97,9 @@ namespace PeriDeal
             integrate([](const Point<dim> &) { return 1.; }, volumes);
             if (scene.domain.coarsening > 0)
               {
-                fem->condense(u);
-                fem->condense(volumes);
-                fem->set_hanging(volumes, 1.);
+                fem->hanging_nodes().condense(u);
+                fem->hanging_nodes().condense(volumes);
+                fem->hanging_nodes().set(volumes, 1.);
               }
             for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
               u.local_element(i) /= volumes.local_element(i);
@@ -146,7 +146,7 @@ namespace PeriDeal
         Vector &u = this->solution;
         transfer->interpolate(u);
         transfer.reset();
-        fem->interpolate_hanging(u);
+        fem->hanging_nodes().interpolate(u);
         const double kept = fem->heat(u), lost = heat_before - kept;
         fem->distribute(u, t); // what new nodes on Dirichlet sides get comes from outside
         this->ledger.add(fem->heat(u) - kept);
@@ -295,7 +295,7 @@ namespace PeriDeal
           {
             fem->initialize_vector(centers[d]);
             integrate([d](const Point<dim> &p) { return p[d]; }, centers[d]);
-            fem->condense(centers[d]);
+            fem->hanging_nodes().condense(centers[d]);
           }
         Vector on_surface(u);
         on_surface = 0.;
@@ -346,7 +346,7 @@ namespace PeriDeal
             }
         share.compress(VectorOperation::max);
         fem->clear_constrained(share);
-        fem->interpolate_hanging(share);
+        fem->hanging_nodes().interpolate(share);
         const double capacity = fem->heat(share);
         if (capacity > 0.)
           u.add(lost / capacity, share);

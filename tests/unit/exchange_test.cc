@@ -75,7 +75,7 @@ namespace
           EXPECT_GT(problem.fem->lowest_remainder(), -1e-13) << name << ", m = " << m;
           Vector one = problem.values([](const dealii::Point<dim> &) { return 1.; }), image = one;
           problem.fem->multiply(image, one);
-          problem.fem->set_hanging(image, 0.);
+          problem.fem->hanging_nodes().set(image, 0.);
           EXPECT_LT(image.linfty_norm() / problem.fem->diagonal().linfty_norm(), 1e-13) << name;
         }
   }

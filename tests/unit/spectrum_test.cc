@@ -4,6 +4,8 @@
 #include <perideal/operators/spectrum.h>
 #include <perideal/solvers/linear_solver.h>
 
+#include <numeric>
+
 #include "operator_test_tools.h"
 #include "scene_test_tools.h"
 
@@ -174,5 +176,52 @@ namespace PeriDeal
     const Vector once(v);
     solve_steady(plate.op(), v, 0., 1e-6, 100);
     EXPECT_LT(largest_difference(v, once), 1e-11);
+  }
+
+
+  TEST(Spectrum, kept_until_rates_grow)
+  {
+    const Problem<2> problem(
+      {{"Domain/Cells", "8, 8"}, {"Boundary conditions/Dirichlet", "left: 0"}},
+      ModelKind::finite_elements);
+    const Operator           &op   = problem.op();
+    const double              safe = op.spectrum().safe, sharp = op.spectrum().sharp;
+    SpectralBounds            bounds(op, [&](Vector &v) {
+      for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+        v.local_element(i) = position_noise(problem.positions[i]);
+    });
+    std::vector<unsigned int> rows(problem.positions.size());
+    std::iota(rows.begin(), rows.end(), 0);
+    const auto not_asked = [](const double) -> double {
+      ADD_FAILURE();
+      return 0.;
+    };
+    bounds.set(0.5 * safe);
+    bounds.raise(safe, rows, not_asked); // nobody knows the sharp bound yet
+    EXPECT_EQ(bounds.safe(), safe);
+    EXPECT_EQ(bounds.get().sharp, sharp);
+    EXPECT_EQ(bounds.get().safe, safe);
+    const auto n = op.n_applications();
+    bounds.get();
+    EXPECT_EQ(op.n_applications(), n);
+    // A local bound counts where it is larger, rounded up and not above the safe one.
+    const auto raised = [&](const double gershgorin, const double local) {
+      bounds.raise(gershgorin, rows, [&](const double enough) {
+        EXPECT_EQ(enough, bounds.get().sharp);
+        return local;
+      });
+      return bounds.get();
+    };
+    EXPECT_EQ(raised(0., 0.5 * sharp).sharp, sharp);
+    EXPECT_EQ(raised(0., 100. * safe).sharp, safe);
+    EXPECT_EQ(raised(3. * safe, 2. * safe).sharp, round_up(2. * safe));
+    EXPECT_EQ(bounds.safe(), 3. * safe);
+    EXPECT_EQ(op.n_applications(), n);
+    // Where there is none iterations on the operator itself are asked, from noise in the rows.
+    bounds.set(safe);
+    EXPECT_EQ(bounds.get().sharp, sharp);
+    const auto before = op.n_applications();
+    EXPECT_EQ(raised(0., -1.).sharp, sharp);
+    EXPECT_GT(op.n_applications(), before);
   }
 } // namespace PeriDeal

@@ -6,6 +6,7 @@
 #include <perideal/operators/bond_form.h>
 #include <perideal/operators/node_constraints.h>
 #include <perideal/operators/operator.h>
+#include <perideal/operators/spectrum.h>
 
 #include <memory>
 
@@ -140,9 +141,9 @@ namespace PeriDeal
     std::vector<Vector>         node_factors; // of the surface correction, one for each direction
     mutable bool                recount_bonds = false;
     mutable unsigned long long  n_bonds = 0, n_nonzeros = 0;
-    double                      gershgorin = 0., free_loads = 0.; // sum of constant_loads
+    double                      free_loads = 0.; // sum of constant_loads
     mutable OutsideSums         outside_sums;
-    mutable Spectrum            bounds;
+    SpectralBounds              bounds;
     mutable std::vector<double> outside_values, outside_signs_only;
     mutable Vector              scratch;
   };

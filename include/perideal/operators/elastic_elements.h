@@ -8,6 +8,8 @@
 
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/condition_faces.h>
+#include <perideal/operators/crack_side_factors.h>
+#include <perideal/operators/cut_cells.h>
 #include <perideal/operators/elastic_coupling.h>
 #include <perideal/operators/solid_operator.h>
 
@@ -94,7 +96,7 @@ namespace PeriDeal
     /** Cells of this process that a crack cuts, by active cell index. */
     const std::vector<bool> &cut_cells() const
     {
-      return cut;
+      return cut_by_cracks.flags();
     }
 
     /**
@@ -133,7 +135,6 @@ namespace PeriDeal
     void   assemble();
     void   assemble_cell(CellData &data) const;
     void   change_cell(const Cell &cell, CellData &data) const;
-    void   find_cut_cells();
     void   find_crack_factors();
     void   add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
     void   add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
@@ -146,7 +147,6 @@ namespace PeriDeal
     void   add_thermal_families();
     bool   any_thermal() const;
     void   count_bonds(const double n_in_families);
-    double bond_factor(const unsigned int i, const unsigned int j) const;
     void   add_thermal(const CellData &data, double &energy);
     void   finish_thermal(const double energy);
     void   throw_if_isolated() const;
@@ -157,14 +157,14 @@ namespace PeriDeal
 
     const dealii::DoFHandler<dim>         &dofs;
     std::unique_ptr<ElasticCoupling<dim>>  coupling; // null: finite elements alone
+    CutCells<dim>                          cut_by_cracks;
     ConditionFaces<dim>                    condition_faces;
     std::vector<PartUnknown<dim>>          part_unknowns; // of regions and points
     std::vector<dealii::Point<dim>>        positions;
     dealii::TrilinosWrappers::SparseMatrix stiffness;
     std::unique_ptr<CellData>              cell_data;
     Vector                                 volumes;
-    std::vector<bool>                      cut;           // by active cell index
-    Vector                                 crack_factors; // of nodes; empty: none
+    CrackSideFactors                       crack_factors;
     unsigned long long                     n_bonds        = 0;
     double                                 thermal_energy = 0.; // of a body that is held everywhere
   };

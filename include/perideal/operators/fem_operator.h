@@ -4,15 +4,18 @@
 #pragma once
 
 #include <deal.II/dofs/dof_handler.h>
-#include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
-#include <perideal/mesh/cell_search.h>
-#include <perideal/operators/condition_faces.h>
-#include <perideal/operators/coupling.h>
+#include <perideal/operators/bonds_beside_elements.h>
+#include <perideal/operators/cell_material.h>
+#include <perideal/operators/cut_cells.h>
+#include <perideal/operators/event_work.h>
+#include <perideal/operators/hanging_nodes.h>
+#include <perideal/operators/heat_loads.h>
 #include <perideal/operators/operator.h>
-#include <perideal/scene/crack_geometry.h>
+#include <perideal/operators/prescribed_values.h>
+#include <perideal/operators/spectrum.h>
 #include <perideal/scene/scene.h>
 
 #include <functional>
@@ -116,17 +119,7 @@ namespace PeriDeal
      */
     double heat(const Vector &u) const;
 
-    /** Set the owned hanging nodes of v to what follows from their neighbours. Collective. */
-    void interpolate_hanging(Vector &v) const;
-
-    /**
-     * Give what owned hanging nodes have of an integral, a load for instance, to the nodes they
-     * follow from. Collective.
-     */
-    void condense(Vector &loads) const;
-
-    /** Set the entries of v for owned hanging nodes. Not collective. */
-    void set_hanging(Vector &v, const double value) const;
+    const HangingNodes<dim> &hanging_nodes() const;
 
     /**
      * Lowest eigenvalue of what the coupling leaves of any cell before cracks cut it, in units of
@@ -135,150 +128,51 @@ namespace PeriDeal
     double lowest_remainder() const;
 
   private:
-    struct Prescribed
-    {
-      unsigned int         dof; // local index
-      dealii::Point<dim>   position;
-      const SideCondition *condition;
-    };
-
-    /**
-     * An owned node on the side of a larger cell, and the nodes whose weighted mean it has (local
-     * numbers).
-     */
-    struct HangingNode
-    {
-      unsigned int                                 dof;
-      std::vector<std::pair<unsigned int, double>> masters;
-    };
-
     struct CellData;
-    struct FactorData;
-    struct EventData;
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
-    /** Some rows of bonds: numbers of neighbours (local) and conductances. */
-    using BondRows = std::vector<std::vector<std::pair<unsigned int, double>>>;
+    /** The bonds are a form of their own. */
+    bool apart() const;
 
-    /**
-     * The rows of the cells' matrix that are not empty, by local numbers, where the bonds are a
-     * form of their own.
-     */
-    struct RemainderRows
-    {
-      std::vector<unsigned int> rows, starts, columns;
-      std::vector<double>       values;
-    };
-
-    void     find_prescribed();
-    void     find_hanging();
-    void     add_to(dealii::TrilinosWrappers::SparseMatrix             &matrix,
-                    const dealii::FullMatrix<double>                   &of_cell,
-                    const std::vector<dealii::types::global_dof_index> &indices) const;
-    void     find_diagonal();
-    void     extract_remainder();
-    void     add_remainder(Vector            &y,
-                           const Vector      &x,
-                           const unsigned int begin,
-                           const unsigned int end) const;
-    void     multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const;
-    void     set_form_factors();
-    void     assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
-    void     add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
-    BondRows bond_rows(const std::vector<unsigned int> &nodes) const;
-    void     add_bonds(const std::vector<unsigned int> &nodes, const BondRows &rows);
-    void     change_bonds(const std::vector<unsigned int> &nodes, const BondRows &old);
-    void     change_form(const std::vector<unsigned int> &nodes);
-    void     mark_broken_bonds(const std::vector<unsigned int> &nodes, Vector &marked) const;
-    void     add_bond_traces(const std::vector<unsigned int> &nodes,
-                             const Vector                    &marked,
-                             Vector                          &trace) const;
-    void     add_bond_heat(const Vector &u, Balance &balance) const;
-    void     count_bonds() const;
-    void     find_cut_cells();
-    double   kept_fraction(const Cell                                &cell,
-                           const unsigned int                         a,
-                           const unsigned int                         b,
-                           std::vector<std::pair<unsigned int, int>> *crossed) const;
-    void     scale_beside_cracks(CellData &data) const;
-    void     update_rows(const bool zone_moves);
-    void     add_crack_heat(const Vector &u, Balance &balance) const;
-    void     check_material() const;
-    void     assemble();
-    void     fill();
-    void     find_temperatures(CellData &data) const;
-    double   center_conductivity(const Cell &cell) const;
-    double   heat_of(const Vector &u) const;
+    void   find_diagonal();
+    void   multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const;
+    void   assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
+    void   scale_beside_cracks(CellData &data) const;
+    void   update_rows(const bool zone_moves);
+    void   add_crack_heat(const Vector &u, Balance &balance) const;
+    void   assemble();
+    void   fill();
+    double heat_of(const Vector &u) const;
     bool assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
     void assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
-    void raise_bounds();
-    std::vector<Cell>         cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
-                                         const std::vector<dealii::BoundingBox<dim>> &joins,
-                                         const double                                 wide) const;
-    std::vector<unsigned int> owned_unknowns_of(const std::vector<Cell> &cells) const;
-    void                      prepare_event();
-    void                      keep_unseparated_pairs(const Cell &cell, CellData &data) const;
-    void                      assemble_loads(Vector &loads, const double t) const;
-    void                      find_convection_sums();
+    std::vector<Cell> cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
+                                 const std::vector<dealii::BoundingBox<dim>> &joins,
+                                 const double                                 wide) const;
+    void              add_changes(const std::vector<Cell>                       &cells,
+                                  const std::vector<dealii::FullMatrix<double>> &old);
+    void              fill_noise(Vector &vector) const;
+    void              find_crack_factors();
+    void              find_crack_factors(const std::vector<Cell>         &cells,
+                                         const std::vector<unsigned int> &nodes,
+                                         CrackSideFactors::Sums          &sums);
+    void              find_gershgorin();
 
-    // The parts of entering(), each of this process: what the rows [begin, end) of prescribed
-    // unknowns say, loads left out; the part of convection that is linear in x; and the sum of
-    // loads of all unknowns but the prescribed ones.
-    double through_prescribed(const Vector      &y,
-                              const unsigned int begin,
-                              const unsigned int end) const;
-    double through_convection(const Vector &x) const;
-    double sum_of_free_loads(const Vector &loads) const;
-    void   add_side_and_source_heat(const Vector &u, const double t, Balance &balance) const;
-    void   find_crack_factors();
-    template <typename Visit>
-    void for_each_part_flux(const Visit &visit) const;
-    void find_crack_factors(const std::vector<Cell>         &cells,
-                            const std::vector<unsigned int> &nodes,
-                            FactorData                      &factors);
-    void find_gershgorin();
-    void mask(Vector &y, const double value = 0.) const;
-    void mask(Vector            &y,
-              const double       value,
-              const unsigned int begin,
-              const unsigned int end) const;
-
-    const dealii::DoFHandler<dim>         &dofs;
-    const Scene<dim>                      &scene;
-    std::unique_ptr<Coupling<dim>>         coupling; // null: finite elements alone
-    const CrackHistory<dim>                history;
+    const dealii::DoFHandler<dim>                  &dofs;
+    const Scene<dim>                               &scene;
+    CrackSideFactors                                crack_factors;
+    const std::unique_ptr<BondsBesideElements<dim>> zone_bonds; // null: finite elements alone
+    const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout; // of vectors
+    const HangingNodes<dim>                                          hanging;
+    const HeatLoads<dim>                                             loads;
+    CellMaterial<dim>                                                cell_material;
+    const PrescribedValues<dim>                                      prescribed;
+    const CrackHistory<dim>                                          history;
     double                                 cracks_of; // representative time of the cracks in K
-    std::vector<CrackGeometry<dim>>        cracks;
-    double                                 transmission;
+    CutCells<dim>                          cut_by_cracks;
     dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
-    Vector                                 capacity, stiffness_diagonal, constant_loads;
-    mutable Vector                         scratch;
-    Vector temperatures;        // that K and C are those of, with ghosts; empty: initial values
-    bool   bonds_apart = false; // in the form; else in the matrix
-    std::unique_ptr<BondForm>     form;
-    RemainderRows                 remainder;
-    std::vector<double>           bond_sums; // of each owned node, from the form
-    mutable unsigned long long    n_bonds       = 0;
-    mutable bool                  recount_bonds = true;
-    std::shared_ptr<CellData>     cell_data; // memory of the cell loops
-    ConditionFaces<dim>           condition_faces;
-    std::vector<PartUnknown<dim>> part_unknowns; // of regions and points
-    std::shared_ptr<EventData>    event;         // of update(), made for the first event
-    std::vector<Prescribed>       prescribed;    // in the order of unknowns
-    std::vector<std::pair<unsigned int, double>>
-           convection_sums; // coefficient times area of each unknown that has some
-    double free_loads = 0.; // the sum of constant_loads that are not prescribed unknowns'
-    std::vector<HangingNode>          hanging;             // likewise
-    std::vector<unsigned int>         held;                // both: unknowns that are not free
-    bool                              any_hanging = false; // on any process
-    dealii::AffineConstraints<double> constraints;         // of hanging nodes
-    std::vector<bool>                 cut;                 // by active cell index
-    Vector                            crack_factors;
-    bool                              loads_vary = false, any_prescribed = false;
-    double                            gershgorin = 0.;
-    mutable Spectrum                  bounds;
-    mutable Vector                    noise_values; // of noise()
-    std::unique_ptr<CellSearch<dim>>  search;       // made for the first event
-    mutable bool pairs_stiffer = false; // some cut cell's pairs conduct more than the cell
+    Vector                                 capacity, stiffness_diagonal;
+    std::shared_ptr<CellData>              cell_data; // memory of the cell loops
+    std::unique_ptr<EventWork<dim>>        event;     // made for the first event
+    SpectralBounds                         bounds;
   };
 } // namespace PeriDeal

@@ -8,6 +8,7 @@
 #include <perideal/operators/operator.h>
 
 #include <functional>
+#include <vector>
 
 namespace PeriDeal
 {
@@ -26,6 +27,57 @@ namespace PeriDeal
                      const std::function<void(Vector &vector)> &fill,
                      const double                               enough = 0.,
                      const Vector                              *metric = nullptr);
+
+  /**
+   * The spectrum of an operator: its Gershgorin bound, and the sharp one, which is found when
+   * somebody first asks and kept.
+   */
+  class SpectralBounds
+  {
+  public:
+    /**
+     * @param op         must outlive this
+     * @param fill_noise sets numbers in [-1, 1] that look random but depend on the unknowns'
+     *                   positions alone; collective
+     */
+    SpectralBounds(const Operator &op, const std::function<void(Vector &)> &fill_noise);
+
+    /** Take the Gershgorin bound of a new K. Not collective. */
+    void set(const double gershgorin);
+
+    /** The Gershgorin bound. Not collective. */
+    double safe() const;
+
+    /**
+     * Both bounds; where K depends on the solution the safe one twice, which costs nothing.
+     * Collective.
+     */
+    Spectrum get() const;
+
+    /** A vector of fill_noise, which is kept. Collective. */
+    const Vector &noise() const;
+
+    /**
+     * Some rows of K have changed and no others. The fastest field may have, too, and only there:
+     * iterations that start there see it soon.
+     *
+     * @param gershgorin  bound of these rows
+     * @param local_bound what iterations from noise in these rows find, which end once they come
+     *                    down to its argument; negative if they are not possible. Then the whole
+     *                    operator is asked.
+     *
+     * Collective.
+     */
+    void raise(const double                               gershgorin,
+               const std::vector<unsigned int>           &rows,
+               const std::function<double(const double)> &local_bound);
+
+  private:
+    const Operator                     &op;
+    const std::function<void(Vector &)> fill_noise;
+    mutable Spectrum                    bounds; // sharp is 0 while nobody has asked
+    mutable Vector                      kept_noise;
+  };
 
   /** Of a symmetric matrix. Not collective. */
   double lowest_eigenvalue(const dealii::FullMatrix<double> &matrix);

@@ -6,8 +6,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <perideal/base/types.h>
-
-#include "row_set.h"
+#include <perideal/operators/row_set.h>
 
 namespace PeriDeal
 {

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/full_matrix.h>
+
+#include <perideal/scene/crack_geometry.h>
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * What cracks do to the cells of a finite element mesh, at one time. A cell is cut if a crack
+   * separates two of its vertices; where cut cells are removed, if is_removed() says so.
+   *
+   * In a cut cell that is not removed (Q1, one unknown at each vertex) pairs of vertices conduct
+   * w_ab = k_ab max(0, -K_ab), where k_ab is the product over the cracks between the two of what
+   * each crack lets through: its transmission, or what a contact conductance does in series with
+   * the cell. Where several pieces of one crack lie between them, the one counts that lets least
+   * through.
+   *
+   * No function is collective.
+   */
+  template <int dim>
+  class CutCells
+  {
+  public:
+    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+
+    struct Rule
+    {
+      bool                    in_mesh; // cracks are cut into the mesh, so that no cell is cut
+      bool                    removes; // cut cells carry nothing
+      double                  contact; // conductance per area of a crack; negative: transmission
+      std::function<double()> horizon; // asked only where a transmission lies between 0 and 1
+    };
+
+    /** No cell is cut yet. The dofs must outlive this. */
+    CutCells(const dealii::DoFHandler<dim> &dofs, const Rule &rule);
+
+    /** Take the cracks of another time, of which all cells may know. */
+    void set(const std::vector<CrackPiece<dim>> &pieces, const double transmission);
+
+    /** The same where nothing has changed outside the given cells. */
+    void set(const std::vector<Cell>            &cells,
+             const std::vector<CrackPiece<dim>> &pieces,
+             const double                        transmission);
+
+    /** A cell of this process or a ghost. */
+    bool is_cut(const Cell &cell) const;
+
+    /** Of all cells, by active cell index; false for artificial ones. */
+    const std::vector<bool> &flags() const;
+
+    bool removes() const;
+
+    /**
+     * k_ab.
+     *
+     * @param conductivity of the cell, asked only where it counts
+     * @param crossed      if given, the cracks between the two vertices are appended, with 1 where
+     *                     vertex a lies on their left and else -1
+     */
+    double kept_fraction(const Cell                                &cell,
+                         const unsigned int                         a,
+                         const unsigned int                         b,
+                         const std::function<double()>             &conductivity,
+                         std::vector<std::pair<unsigned int, int>> *crossed = nullptr) const;
+
+    /** Turn the matrix of a whole cell into that of a cut one: of its pairs, or nothing. */
+    void cut_matrix(const Cell                    &cell,
+                    const std::function<double()> &conductivity,
+                    dealii::FullMatrix<double>    &stiffness) const;
+
+    /**
+     * The pairs of some cell conduct more than it did as a whole, since K_ab > 0 somewhere (cells
+     * of very unequal sides). Of all calls of cut_matrix() until now, on this process.
+     */
+    bool pairs_are_stiffer() const;
+
+  private:
+    const dealii::DoFHandler<dim>  &dofs;
+    const Rule                      rule;
+    std::vector<CrackGeometry<dim>> cracks;
+    double                          transmission = 0.;
+    std::vector<bool>               cut;
+    mutable bool                    stiffer = false;
+  };
+} // namespace PeriDeal
