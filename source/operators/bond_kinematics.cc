@@ -67,6 +67,20 @@ namespace PeriDeal
 
 
   template <int dim>
+  void BondKinematics<dim>::find_tensions(double              *tau,
+                                          const double        *u,
+                                          const NodeLaws<dim> &laws) const
+  {
+    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+      {
+        double sum = 0.;
+        rows.for_each(i, [&](const Bond &bond) { sum += extension_moment(u, i, bond); });
+        tau[i] = laws.tension(i, sum);
+      }
+  }
+
+
+  template <int dim>
   void BondKinematics<dim>::find_forces(Vector &y, const double *u, const Vector &tau) const
   {
     const double *const t = tau.begin();

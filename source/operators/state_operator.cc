@@ -156,17 +156,10 @@ namespace PeriDeal
   {
     if (!solid.laws.volumetric)
       return;
-    if (!strained)
-      solid.rows.find_tensions(tau.begin(), u.begin());
+    if (strained)
+      solid.kinematics.find_tensions(tau.begin(), u.begin(), solid.laws);
     else
-      for (unsigned int i = 0; i < solid.families.nodes().n_owned(); ++i)
-        {
-          double sum = 0.;
-          solid.rows.for_each(i, [&](const auto &bond) {
-            sum += solid.kinematics.extension_moment(u.begin(), i, bond);
-          });
-          tau.local_element(i) = solid.laws.tension(i, sum);
-        }
+      solid.rows.find_tensions(tau.begin(), u.begin());
     if (solid.beyond)
       solid.beyond->add_tensions(tau, u, solid.laws, strained);
     tau.update_ghost_values();

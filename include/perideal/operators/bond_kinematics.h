@@ -68,6 +68,9 @@ namespace PeriDeal
       return across[bond.number];
     }
 
+    /** tau = c theta/q of the owned nodes, from extensions. */
+    void find_tensions(double *tau, const double *u, const NodeLaws<dim> &laws) const;
+
     /** y = -F of the deformed body, with tau = c theta/q. */
     void find_forces(Vector &y, const double *u, const Vector &tau) const;
 
