@@ -35,8 +35,6 @@ parallel_environment()
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     export OMPI_MCA_hwloc_base_binding_policy=none
     export OMPI_MCA_btl_vader_single_copy_mechanism=none
-    # The time that mpirun gives a run that is told to end to keep its state: 1 s by default, then it kills.
-    export OMPI_MCA_odls_base_sigkill_timeout=${OMPI_MCA_odls_base_sigkill_timeout:-60}
     export PMIX_MCA_gds=hash # else a full folder for temporary files (TMPDIR) ends in a bus error
 }
 
