@@ -199,19 +199,16 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::pass_output_times()
   {
-    set_stoppable(!scene.time.steady);
+    const StoppableWhile stoppable(!scene.time.steady);
     for (const std::vector<double> times = output_times(); place.output < times.size();)
       {
         const double t = times[place.output];
         advance_to(t);
         progress.update(scene.time.steady ? 1. : t / scene.time.end_time);
         write_output(t);
-        place.stops.clear();
-        place.stop = 0;
         if (++place.output < times.size())
           offer_checkpoint(t);
       }
-    set_stoppable(false);
   }
 
 
@@ -406,12 +403,13 @@ namespace PeriDeal
   {
     if (scene.time.steady)
       return find_steady_state();
-    if (!(t > place.now))
-      return;
-    if (place.stops.empty())
-      place.stops = stops_until(t);
-    while (place.stop < place.stops.size())
+    while (place.now < t)
       {
+        if (place.stop == place.stops.size())
+          {
+            place.stops = stops_until(t);
+            place.stop  = 0;
+          }
         for (const double stop = place.stops[place.stop]; place.now < stop;)
           {
             const double next = grading ? grading->next_adaptation(place.now) :
@@ -430,7 +428,7 @@ namespace PeriDeal
           end_output(place.now);
         }
         progress.update(place.now / scene.time.end_time);
-        if (place.stop < place.stops.size())
+        if (place.now < t)
           offer_checkpoint(place.now);
       }
   }

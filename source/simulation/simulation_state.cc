@@ -74,7 +74,6 @@ namespace PeriDeal
   void Simulation<dim>::Place::exchange(Archive &archive)
   {
     archive.exchange("now", now);
-    archive.exchange("next output", output);
     archive.exchange("stops", stops);
     archive.exchange("next stop", stop);
     archive.exchange("problem", problem);
@@ -124,6 +123,7 @@ namespace PeriDeal
     exchange_mesh(saved);
     begin();
     exchange(saved);
+    find_next_output();
     wall_time_before = saved.header().wall_time;
     progress.line("resumed at t = " + number_text(saved.header().time) + ", after " +
                   readable_duration(wall_time_before));
@@ -133,6 +133,28 @@ namespace PeriDeal
         record->notes.push_back(note);
       }
     output->files().has_resumed();
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::find_next_output()
+  {
+    // What is on its way to a time goes there, whatever times of output there are now.
+    const bool   is_on_its_way = place.stop < place.stops.size();
+    const double next          = is_on_its_way ? place.stops.back() : place.now;
+    AssertThrow(
+      next <= scene.time.end_time && place.now < scene.time.end_time,
+      UserError("'End time' in section 'Time' is " + number_text(scene.time.end_time) +
+                ", but the run that is to be resumed is on its way to t = " + number_text(next) +
+                ". Choose a later one, or begin anew with --overwrite."));
+    const std::vector<double> times = output_times();
+    const auto first = is_on_its_way ? std::lower_bound(times.begin(), times.end(), next) :
+                                       std::upper_bound(times.begin(), times.end(), next);
+    place.output     = first - times.begin();
+    if (first != times.begin() && *(first - 1) > place.now)
+      record->notes.push_back("no results are written at t = " + number_text(*(first - 1)) +
+                              ": the run that was resumed at t = " + number_text(place.now) +
+                              " was on its way to t = " + number_text(next) + ".");
   }
 
 

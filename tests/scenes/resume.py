@@ -206,8 +206,14 @@ def check_mistakes():
     # What may differ.
     folder = new_folder()
     check_stopped(run(scene, folder, {**overrides, **stop}), folder, scene)
-    result = run(scene, folder, {**overrides, "Title": "Another", "Checkpoint/Keep": "5"}, ["--resume"])
-    check(result.returncode == 0, f"another title: {result.stderr[-500:]}")
+    refused(run(scene, folder, {**overrides, "Time/End time": "0.01", "Output/Write at": ""}, ["--resume"]), "End time",
+            "on its way to t = 0.05")
+    others = {"Title": "Another", "Checkpoint/Keep": "5", "Time/End time": "2.2", "Output/Write at": "0.02, 0.5, 1.7"}
+    result = run(scene, folder, {**overrides, **others}, ["--resume"])
+    check(result.returncode == 0, f"other times: {result.stderr[-500:]}")
+    times = sorted({float(row[0]) for row in tables_of(folder)["totals.csv"][1:]})
+    check(times == [0.5, 1.7, 2.2], f"other times of output: {times}")
+    check("no results are written at t = 0.02" in result.stdout, "a time that was passed over is told")
 
 
 def run_with_signals(kind, took, scene, settings, ranks):

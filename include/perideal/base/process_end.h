@@ -72,6 +72,23 @@ namespace PeriDeal
    */
   void set_stoppable(const bool run_asks);
 
+  /** set_stoppable() while this lives. */
+  struct StoppableWhile
+  {
+    explicit StoppableWhile(const bool run_asks)
+    {
+      set_stoppable(run_asks);
+    }
+
+    ~StoppableWhile()
+    {
+      set_stoppable(false);
+    }
+
+    StoppableWhile(const StoppableWhile &)            = delete;
+    StoppableWhile &operator=(const StoppableWhile &) = delete;
+  };
+
   /** Whether a signal has asked this process to stop. Others may not know yet. */
   bool stop_requested();
 

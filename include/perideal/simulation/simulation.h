@@ -106,6 +106,7 @@ namespace PeriDeal
 
     bool resumes() const; // and has not done so yet
     void resume();
+    void find_next_output();
 
     /** Where the state can be kept: keeps it if that is due, and stops if it has to. */
     void offer_checkpoint(const double t);
