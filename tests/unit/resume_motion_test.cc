@@ -164,12 +164,14 @@ namespace PeriDeal
   TEST(Resume, verlet_goes_on_to_the_last_bit)
   {
     constexpr auto bonds = ModelKind::peridynamics;
+    // On another number of processes sums over nodes beyond the sides have another order, and steps
+    // that follow the body come from sums over all processes.
+    constexpr double round_off = 1e-13;
     for (const unsigned int n_before : {1u, 12u, 26u})
-      expect_resumable(brittle, bonds, "verlet", n_before, 0., 0.);
-    expect_resumable(brittle + centers, bonds, "verlet", 26, 0., 0.);
-    // Steps that follow the body come from sums over all processes.
-    expect_resumable(brittle + full, bonds, "verlet", 26, 0., 1e-13);
-    expect_resumable(full + centers, bonds, "verlet", 26, 0., 1e-13);
+      expect_resumable(brittle, bonds, "verlet", n_before, 0., round_off);
+    expect_resumable(brittle + centers, bonds, "verlet", 26, 0., round_off);
+    expect_resumable(brittle + full, bonds, "verlet", 26, 0., round_off);
+    expect_resumable(full + centers, bonds, "verlet", 26, 0., round_off);
     expect_resumable({}, ModelKind::finite_elements, "verlet", 20, 0., 1e-12);
   }
 
