@@ -112,6 +112,7 @@ namespace PeriDeal
         of_run.n_processes = index.at("processes").get<unsigned int>();
         of_run.time        = index.at("time").get<double>();
         of_run.wall_time   = index.at("wall time").get<double>();
+        of_run.files       = index.value("files", std::map<std::string, std::string>());
         const auto split   = [this](const char *kind, const auto &all, auto &parts) {
           std::size_t done = 0;
           for (const Json &part : index.value(kind, Json::array()))

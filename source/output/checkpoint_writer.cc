@@ -232,6 +232,7 @@ namespace PeriDeal
         index["processes"] = header.n_processes;
         index["time"]      = header.time;
         index["wall time"] = header.wall_time;
+        index["files"]     = header.files;
         add("scene", header.scene);
         add("index", index.dump(-1, ' ', false, Json::error_handler_t::replace));
         add("numbers", numbers);

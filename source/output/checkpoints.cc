@@ -13,6 +13,8 @@
 #include <filesystem>
 #include <map>
 
+#include "checksum.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -85,6 +87,16 @@ namespace PeriDeal
         if (!std::isspace(static_cast<unsigned char>(c)))
           all += c;
       return all;
+    }
+
+
+    /** `'Cells' in section 'Domain'` of `Domain/Cells`. */
+    std::string in_its_section(const std::string &entry)
+    {
+      const std::size_t slash = entry.rfind('/');
+      return slash == std::string::npos ?
+               "'" + entry + "' outside all sections" :
+               "'" + entry.substr(slash + 1) + "' in section '" + entry.substr(0, slash) + "'";
     }
 
 
@@ -234,34 +246,53 @@ namespace PeriDeal
   }
 
 
+  std::string checksum_of_file(const std::string &file_name, const MPI_Comm communicator)
+  {
+    std::string sum;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      {
+        std::string       fault;
+        const std::string bytes = read_file(file_name, most_bytes_of_data, fault);
+        if (fault.empty())
+          sum = std::to_string(checksum(bytes.data(), bytes.size()));
+      }
+    share_text(sum, communicator);
+    return sum;
+  }
+
+
   void require_same_run(const CheckpointHeader &saved,
-                        const std::string      &scene,
+                        const CheckpointHeader &now,
                         const std::string      &name)
   {
     const std::string remedy =
       " Take that of the checkpoint, or begin the run anew with --overwrite.";
-    AssertThrow(saved.program == PERIDEAL_VERSION,
+    AssertThrow(saved.program == now.program,
                 UserError("The checkpoint '" + name + "' is one of PeriDeal " + saved.program +
-                          ", and this is PeriDeal " PERIDEAL_VERSION "." + remedy));
-    const SceneEntries then = entries_of(saved.scene), now = entries_of(scene);
-    SceneEntries       all = now;
+                          ", and this is PeriDeal " + now.program + "." + remedy));
+    const SceneEntries then = entries_of(saved.scene), today = entries_of(now.scene);
+    SceneEntries       all = today;
     all.insert(all.end(), then.begin(), then.end());
     for (const auto &[entry, value] : all)
       {
-        const auto *const before = find_entry(then, entry), *const after = find_entry(now, entry);
+        const auto *const before = find_entry(then, entry), *const after = find_entry(today, entry);
         if (may_differ(entry) || (before != nullptr && after != nullptr &&
                                   without_blanks(before->second) == without_blanks(after->second)))
           continue;
-        const std::size_t slash = entry.rfind('/');
-        const std::string where =
-          slash == std::string::npos ?
-            "'" + entry + "' outside all sections" :
-            "'" + entry.substr(slash + 1) + "' in section '" + entry.substr(0, slash) + "'";
         throw UserError(
-          "Entry " + where + ": the checkpoint '" + name + "' has " + in_quotes(before) +
-          ", and the scene has " + in_quotes(after) + "." + remedy +
+          "Entry " + in_its_section(entry) + ": the checkpoint '" + name + "' has " +
+          in_quotes(before) + ", and the scene has " + in_quotes(after) + "." + remedy +
           " Only 'Title', 'Output directory', 'End time' in section 'Time', 'Tolerance' and 'Maximum iterations' in section 'Solver', the sections "
           "'Output', 'Checkpoint' and 'Guards', and the number of processes may differ.");
+      }
+    for (const auto &[entry, sum] : now.files)
+      {
+        const auto before = saved.files.find(entry);
+        AssertThrow(
+          before != saved.files.end() && before->second == sum,
+          UserError("Entry " + in_its_section(entry) +
+                    ": the file that it names is not the one that the run of the checkpoint '" +
+                    name + "' has read; it has changed since." + remedy));
       }
   }
 } // namespace PeriDeal

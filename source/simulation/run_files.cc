@@ -42,6 +42,22 @@ namespace PeriDeal
 
   namespace
   {
+    /** Of all that the scene reads besides itself. Collective. */
+    template <int dim>
+    std::map<std::string, std::string> checksums_of_files(const Scene<dim> &scene,
+                                                          const MPI_Comm    communicator)
+    {
+      std::map<std::string, std::string> sums;
+      const auto add = [&](const std::string &entry, const std::string &file_name) {
+        if (!file_name.empty())
+          sums[entry] = checksum_of_file(file_name, communicator);
+      };
+      add("Domain/Mesh file", scene.domain.mesh_file);
+      add("Domain/Image", scene.domain.image_file);
+      return sums;
+    }
+
+
     /** The newest checkpoint of a run of this scene. Throws UserError. Collective. */
     std::unique_ptr<CheckpointReader> open_checkpoint(const ResultFolder       &folder,
                                                       const CheckpointHeader   &header,
@@ -49,7 +65,7 @@ namespace PeriDeal
     {
       const std::string name   = newest_checkpoint(folder.directory(), folder.processes(), notes);
       auto              reader = std::make_unique<CheckpointReader>(name, folder.processes());
-      require_same_run(reader->header(), header.scene, name);
+      require_same_run(reader->header(), header, name);
       return reader;
     }
   } // namespace
@@ -69,7 +85,10 @@ namespace PeriDeal
     , header{PERIDEAL_VERSION,
              scene_with_defaults(),
              dim,
-             Utilities::MPI::n_mpi_processes(communicator)}
+             Utilities::MPI::n_mpi_processes(communicator),
+             0.,
+             0.,
+             checksums_of_files(scene, communicator)}
     , checkpoints(folder, scene.checkpoint.n_kept, communicator)
     , reader(mode == RunMode::resume ? open_checkpoint(folder, header, notes) : nullptr)
     , summary_file(folder, describe_start(scene, text, communicator), reader != nullptr)

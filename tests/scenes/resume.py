@@ -17,6 +17,7 @@ import json
 import math
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -44,6 +45,13 @@ SCENES = {
                ("fracture/branching_crack.prm", {"Domain/Cells": "61, 25", "Domain/Nodes": "cell centers", "Elasticity/Kinematics": "full"}, 0),
                ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],
     "loading": [("fracture/centre_crack.prm", {"Domain/Cells": "30, 60", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/thermal_stress.prm", {}, IMPLICIT)],
+}
+# Runs of some seconds, which signals can meet on their way.
+LONGER = {
+    "euler": {"Domain/Cells": "60, 60"}, "rk4": {"Domain/Cells": "60, 60"}, "rkc2": {"Domain/Cells": "96, 96"}, "chebyshev": {"Domain/Cells": "240, 240"},
+    "crank nicolson": {"Domain/Cells": "40, 40"}, "bdf2": {"Domain/Cells": "40, 40"}, "sdirk2": {"Domain/Cells": "40, 40"},
+    "coupling/adaptive_zone.prm": {"Domain/Cells": "96, 96"}, "elasticity/impact_on_strip.prm": {"Time/End time": "30"},
+    "fracture/branching_crack.prm": {"Domain/Cells": "121, 49"}, "heat/closing_crack.prm": {"Domain/Cells": "121, 121"},
 }
 
 
@@ -190,6 +198,15 @@ def check_mistakes():
     lost = [name for name in before if name not in after and ".perideal" not in name]
     check(not lost, f"a refused run has lost {lost}")
 
+    # An image that has changed since.
+    image = os.path.join(new_folder() + ".png")
+    shutil.copy(os.path.join(SOURCE_DIR, "prm/papers/le_2014/images/cross_section.png"), image)
+    of_image, folder = {**IMAGE, "Domain/Image": image}, new_folder()
+    check_stopped(run("papers/le_2014/cooling.prm", folder, {**of_image, **stop}), folder, "image")
+    with open(image, "ab") as file:
+        file.write(b"\n")
+    refused(run("papers/le_2014/cooling.prm", folder, of_image, ["--resume"]), "'Image' in section 'Domain'", "changed")
+
     # A torn file is named, the one before is taken.
     check(run(scene, folder, {**overrides, **stop}, ["--resume"]).returncode == 3, "a second stop")
     files = sorted(glob.glob(os.path.join(folder, "checkpoints", "*.h5")), key=lambda name: int(os.path.basename(name)[:-3]))
@@ -217,13 +234,13 @@ def check_mistakes():
     check("no results are written at t = 0.02" in result.stdout, "a time that was passed over is told")
 
 
-def run_with_signals(kind, took, scene, settings, ranks):
-    """A run that is ended at up to 5 random moments and goes on each time: its folder and how often it did."""
+def run_with_signals(kind, start, took, scene, settings, ranks):
+    """A run that is ended at up to 5 random moments, after there is something to keep at start, and goes on each time: its folder and how often."""
     folder, more, n_stops = new_folder(), [], 0
     for attempt in range(8):
         process = subprocess.Popen(command(scene, folder, settings, more, ranks), env=_environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
-            process.wait(random.uniform(0.2, 0.9) * took if attempt < 5 else 900)
+            process.wait(start + random.uniform(0., 0.4) * max(took - start, 0.5) if attempt < 5 else 900)
         except subprocess.TimeoutExpired:
             if kind == signal.SIGKILL and ranks > 1:
                 subprocess.run(["pkill", "-KILL", "-f", folder], check=False)
@@ -236,6 +253,14 @@ def run_with_signals(kind, took, scene, settings, ranks):
         more = ["--resume"] if resumes else ["--overwrite"]
     check(False, f"{scene} on {ranks}, {kind.name}: exit status {process.returncode}")
     return folder, n_stops
+
+
+def seconds_of(scene, folder, settings, ranks, status):
+    """What a run takes that is to end with an exit status."""
+    begin = time.monotonic()
+    found = run(scene, folder, settings, ranks=ranks).returncode
+    check(found == status, f"{scene} on {ranks}: exit status {found}, expected {status}")
+    return time.monotonic() - begin
 
 
 def complete(folder):
@@ -252,14 +277,14 @@ def check_signals():
     random.seed(4)
     for scene, overrides, tolerance in [one for part in SCENES.values() for one in part]:
         for ranks in (1, 2):
-            settings = {"Output/Fields": "hdf5", **overrides}
+            settings = {"Output/Fields": "hdf5", **overrides, **LONGER.get(overrides.get("Time/Stepper", scene), {})}
             whole = new_folder()
-            start = time.monotonic()
-            check(run(scene, whole, settings, ranks=ranks).returncode == 0, scene)
-            took = time.monotonic() - start
+            start = seconds_of(scene, new_folder(), {**settings, "Checkpoint/Wall time limit": "0.001 s"}, ranks, 3)
+            took = seconds_of(scene, whole, settings, ranks, 0)
             for kind in (signal.SIGTERM, signal.SIGKILL):
                 settings["Checkpoint/Every"] = "0.05 s" if kind == signal.SIGKILL else "0"
-                folder, n_stops = run_with_signals(kind, took, scene, settings, ranks)
+                folder, n_stops = run_with_signals(kind, start, took, scene, settings, ranks)
+                check(n_stops > 0, f"{scene} on {ranks}, {kind.name}: no run went on from a checkpoint")
                 found = compare(whole, folder, tolerance, f"{scene} on {ranks}, {kind.name}")
                 print(f"{scene} {overrides.get('Time/Stepper', '')} on {ranks}, {kind.name}: stopped {n_stops} times, difference {found:.1e}", flush=True)
 

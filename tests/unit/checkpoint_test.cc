@@ -375,10 +375,10 @@ namespace
   TEST(CheckpointHeaders, entries_that_differ_are_named)
   {
     const auto error = [](const std::string &from, const std::string &to) {
-      std::string scene = scene_text;
+      CheckpointHeader now = header;
       if (!from.empty())
-        scene.replace(scene.find(from), from.size(), to);
-      return error_of([&] { require_same_run(header, scene, "out/checkpoints/1.h5"); });
+        now.scene.replace(now.scene.find(from), from.size(), to);
+      return error_of([&] { require_same_run(header, now, "out/checkpoints/1.h5"); });
     };
     EXPECT_EQ(error("", ""), "");
     EXPECT_EQ(error("Title = a", "Title = b"), "");
@@ -394,7 +394,12 @@ namespace
     expect_in(error("set Stepper = rk4", ""), {"'Stepper'", "'rk4'", "missing"});
     CheckpointHeader other = header;
     other.program          = "0.0.1";
-    expect_in(error_of([&] { require_same_run(other, scene_text, "1.h5"); }),
+    expect_in(error_of([&] { require_same_run(other, header, "1.h5"); }),
               {"PeriDeal 0.0.1", "PeriDeal " PERIDEAL_VERSION});
+    other                       = header;
+    other.files["Domain/Image"] = "2";
+    expect_in(error_of([&] { require_same_run(header, other, "1.h5"); }),
+              {"'Image' in section 'Domain'", "1.h5", "changed"});
+    EXPECT_EQ(error_of([&] { require_same_run(other, other, "1.h5"); }), "");
   }
 } // namespace

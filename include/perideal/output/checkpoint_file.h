@@ -25,6 +25,8 @@ namespace PeriDeal
     unsigned int dim = 0, n_processes = 0;
     double       time      = 0.; // simulated
     double       wall_time = 0.; // spent until then, in seconds
+    /** Checksums of the files that the scene names, by `Section/Entry`. */
+    std::map<std::string, std::string> files;
   };
 
 

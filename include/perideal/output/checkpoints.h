@@ -64,12 +64,14 @@ namespace PeriDeal
                                 const MPI_Comm            communicator,
                                 std::vector<std::string> &notes);
 
+  /** The checksum of a file as it is now; empty if it cannot be read. Collective. */
+  std::string checksum_of_file(const std::string &file_name, const MPI_Comm communicator);
+
   /**
    * Throws a UserError that names the first entry that differs, with both values, and those that
-   * may, unless a run of this scene (with all defaults) by this version of PeriDeal can go on from
-   * the checkpoint.
+   * may, or a file that has changed, unless a run can go on from the checkpoint of another.
    */
   void require_same_run(const CheckpointHeader &saved,
-                        const std::string      &scene,
+                        const CheckpointHeader &now,
                         const std::string      &name);
 } // namespace PeriDeal
