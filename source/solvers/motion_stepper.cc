@@ -26,13 +26,13 @@ namespace PeriDeal
   } // namespace
 
 
-  MotionStepper::MotionStepper(ElasticOperator &op, const double dt)
+  MotionStepper::MotionStepper(ElasticOperator &op, const double dt, const double c)
     : op(op)
     , inverse_mass(inverse_capacity(op))
     , held(held_unknowns(op))
     , longest(dt)
     , shortest(dt)
-    , work_of_forces(op)
+    , account(op, inverse_mass, held, c)
   {
     for (Vector *v : {&unbalanced, &last, &last_velocity, &change})
       op.initialize_vector(*v);
@@ -60,80 +60,27 @@ namespace PeriDeal
   }
 
 
-  double MotionStepper::kinetic_energy(const Vector &v, const bool supports_only) const
-  {
-    double sum = 0.;
-    for (unsigned int i = 0; i < held.size(); ++i)
-      if (held[i] || !supports_only)
-        sum += v.local_element(i) * v.local_element(i) / inverse_mass[i];
-    return 0.5 * Utilities::MPI::sum(sum, v.get_mpi_communicator());
-  }
-
-
   MotionEnergy MotionStepper::energy(const Vector &u, const Vector &v) const
   {
-    MotionEnergy result;
-    result.kinetic  = kinetic_energy(v, false);
-    result.strain   = op.energy(u);
-    result.released = op.released_energy();
-    result.start    = started ? start : result.kinetic + result.strain;
-    // What supports give to the nodes that they hold themselves.
-    result.work      = started ? work + kinetic_energy(v, true) - support_start : 0.;
-    result.exchanged = std::max(exchanged, result.start + std::abs(result.work));
-    if (started)
-      result.drift = result.imbalance() - (kept_back(step_now) - jumps);
-    return result;
-  }
-
-
-  double MotionStepper::kept_back(const double dt) const
-  {
-    const double factor = kept_with_accelerations() * dt * dt;
-    if (factor == 0.)
-      return 0.;
-    double sum = 0.;
-    for (unsigned int i = 0; i < held.size(); ++i)
-      if (!held[i])
-        sum += unbalanced.local_element(i) * unbalanced.local_element(i) * inverse_mass[i];
-    return factor * Utilities::MPI::sum(sum, unbalanced.get_mpi_communicator());
+    return account.energy(u, v, unbalanced);
   }
 
 
   void MotionStepper::begin(const Vector &u, const Vector &v, const double t)
   {
-    // What is kept back at the end of the steps so far, or of none.
-    const double before = started ? kept_back(step_now) : 0.;
+    const double before = account.kept_back(unbalanced);
     op.unbalanced(unbalanced, u, t);
-    work_of_forces.begin(unbalanced, t);
-    jumps += kept_back(step_now) - before;
+    account.begin(u, v, unbalanced, t, before);
     fresh = false;
-    if (started)
-      return;
-    started       = true;
-    start         = kinetic_energy(v, false) + op.energy(u);
-    support_start = kinetic_energy(v, true);
   }
 
 
   void MotionStepper::check(const Vector &v, const double t)
   {
-    constexpr double too_much = 30.; // steps near the stable one exchange some energy with nothing
-    // A force that sets in gives a velocity before it has done any work, which it has a step later.
-    constexpr unsigned int later   = 10;
-    const double           kinetic = kinetic_energy(v, false) - kinetic_energy(v, true);
-    if (!(kinetic > too_much * (start + effort)))
-      suspected_at = never;
-    else if (suspected_at == never)
-      suspected_at = spent.steps;
-    std::ostringstream message;
-    if (!std::isfinite(kinetic))
-      message << "produced values that are not finite";
-    else if (suspected_at != never && spent.steps >= suspected_at + later)
-      message << "made a kinetic energy of " << kinetic << " where start and loads had brought in "
-              << start + effort;
+    const std::string fault = account.fault(v, spent.steps);
     AssertThrow(
-      message.str().empty(),
-      UserError("The run became unstable: stepper '" + name() + "' " + message.str() +
+      fault.empty(),
+      UserError("The run became unstable: stepper '" + name() + "' " + fault +
                 " before t = " + number(t) +
                 ". Choose a smaller 'Time step', or 'Stepper = newmark', in section 'Time'."));
   }
@@ -141,20 +88,13 @@ namespace PeriDeal
 
   void MotionStepper::check_drift(const Vector &u, const Vector &v, const double t)
   {
-    const MotionEnergy found = energy(u, v);
-    std::ostringstream message;
-    // Of the energies some may be differences of larger numbers (thermal strain).
-    constexpr double round_off = 1e-10;
-    const double     sizes     = found.kinetic + std::abs(found.strain) + effort;
-    if (!(std::abs(found.drift) <= allowed_drift * found.exchanged + round_off * sizes))
-      message << "The energy of the motion is not kept: before t = " << t << " stepper '" << name()
-              << "' has " << (found.drift < 0. ? "lost " : "made ") << std::abs(found.drift)
-              << " of it, more than " << 100. * allowed_drift
-              << " % of what start and loads have brought in, " << found.exchanged
-              << ". The body deforms too much within a step of " << step_now
-              << ": choose a 'Time step' of " << 0.5 * step_now
-              << " or less in section 'Time', or a smaller load.";
-    AssertThrow(message.str().empty(), UserError(message.str()));
+    const std::string fault = account.drift_fault(energy(u, v), allowed_drift);
+    AssertThrow(fault.empty(),
+                UserError("The energy of the motion is not kept: before t = " + number(t) +
+                          " stepper '" + name() + "' has " + fault +
+                          ". The body deforms too much within a step of " + number(account.step()) +
+                          ": choose a 'Time step' of " + number(0.5 * account.step()) +
+                          " or less in section 'Time', or a smaller load."));
   }
 
 
@@ -186,7 +126,7 @@ namespace PeriDeal
 
   void MotionStepper::examine(const Vector &u, const Vector &v, const double t)
   {
-    if (!started)
+    if (!account.has_begun())
       return;
     check(v, t);
     check_inversion(u, t);
@@ -200,11 +140,10 @@ namespace PeriDeal
     // order dt.
     if (op.break_bonds(u, t) == 0)
       return;
-    jumps -= kept_back(step_now);
+    const double before = account.kept_back(unbalanced);
     operator_changed();
     op.unbalanced(unbalanced, u, t);
-    work_of_forces.begin(unbalanced, t);
-    jumps += kept_back(step_now);
+    account.add_jump(unbalanced, t, before);
   }
 
 
@@ -237,23 +176,17 @@ namespace PeriDeal
 
   void MotionStepper::take_step(Vector &u, Vector &v)
   {
-    constexpr double same = 1e-6; // not another step, but round-off of the times
-    const double     next = span.n_done + 1 == span.n_steps ?
-                              span.end :
-                              span.start + (span.n_done + 1) * ((span.end - span.start) / span.n_steps);
-    if (std::abs(next - span.now - step_now) > same * step_now)
-      jumps += kept_back(next - span.now) - kept_back(step_now);
-    step_now      = next - span.now;
+    const double next = span.n_done + 1 == span.n_steps ?
+                          span.end :
+                          span.start + (span.n_done + 1) * ((span.end - span.start) / span.n_steps);
+    account.set_step(next - span.now, unbalanced);
     last          = u;
     last_velocity = v;
-    step(u, v, span.now, step_now);
+    step(u, v, span.now, account.step());
     ++spent.steps;
     change = u;
     change -= last;
-    const double gain = work_of_forces.step(change, unbalanced, next);
-    work += gain;
-    effort += std::abs(gain);
-    exchanged = std::max(exchanged, start + std::abs(work));
+    account.add_step(change, unbalanced, next);
     break_bonds(u, next);
     span.now = next;
     ++span.n_done;
@@ -283,19 +216,10 @@ namespace PeriDeal
     span.exchange(archive);
     spent.exchange(archive);
     archive.exchange("unbalanced", unbalanced, keys);
-    archive.exchange("started", started);
     archive.exchange("fresh", fresh);
-    archive.exchange("suspected at", suspected_at);
     archive.exchange("longest step", longest);
     archive.exchange("shortest step", shortest);
-    archive.exchange("last step", step_now);
-    archive.exchange("start", start);
-    archive.exchange("work", work);
-    archive.exchange("effort", effort);
-    archive.exchange("start of supports", support_start);
-    archive.exchange("jumps", jumps);
-    archive.exchange("exchanged", exchanged);
-    work_of_forces.exchange(archive, keys);
+    account.exchange(archive, keys);
     if (limit)
       limit->exchange(archive);
   }

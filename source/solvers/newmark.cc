@@ -22,7 +22,7 @@ namespace PeriDeal
     {
     public:
       Newmark(ElasticOperator &op, const StepperOptions &options)
-        : MotionStepper(op, options.time_step)
+        : MotionStepper(op, options.time_step, 0.)
         , tolerance(options.solver_tolerance)
         , solver(op, options.solver_tolerance, options.max_iterations, options.direct_up_to)
       {
@@ -36,11 +36,6 @@ namespace PeriDeal
       }
 
     protected:
-      double kept_with_accelerations() const override
-      {
-        return 0.;
-      }
-
       void step(Vector &u, Vector &v, const double t, const double dt) override
       {
         const double factor = 4. / (dt * dt);

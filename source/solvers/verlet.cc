@@ -15,7 +15,7 @@ namespace PeriDeal
     {
     public:
       Verlet(ElasticOperator &op, const double dt)
-        : MotionStepper(op, dt)
+        : MotionStepper(op, dt, 0.125)
       {
         op.initialize_vector(acceleration);
       }
@@ -26,11 +26,6 @@ namespace PeriDeal
       }
 
     protected:
-      double kept_with_accelerations() const override
-      {
-        return 0.125;
-      }
-
       void step(Vector &u, Vector &v, const double t, const double dt) override
       {
         accelerate(acceleration, unbalanced);

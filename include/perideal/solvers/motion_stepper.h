@@ -3,56 +3,22 @@
 
 #pragma once
 
-#include <perideal/operators/elastic_operator.h>
+#include <perideal/solvers/motion_energy.h>
 #include <perideal/solvers/step_limit.h>
 #include <perideal/solvers/stepper.h>
-#include <perideal/solvers/work_of_forces.h>
 
-#include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace PeriDeal
 {
-  /**
-   * Energies of a moving body (J; in 2D per unit thickness).
-   *
-   * With H the sum of kinetic and strain energy steps of `verlet` keep H - dt^2/8 a.Ma of linear
-   * bodies exactly, a the accelerations, those of `newmark` H. So with `verlet` H goes up and down
-   * with the accelerations, by an amount of order dt^2, and changes for good where these jump
-   * because a load sets in or bonds break: the imbalance. The drift is what the steps have made
-   * beside that.
-   */
-  struct MotionEnergy
-  {
-    double kinetic = 0., strain = 0.;
-    double start    = 0.; // kinetic and strain energy at the start
-    double work     = 0.; // of loads and supports since then
-    double released = 0.; // by broken bonds since then
-    double drift =
-      0.; // change of what the steps keep, less the work: of linear bodies round-off at any step
-    // The most that start and work together have been so far: what the others are to be compared
-    // with.
-    double exchanged = 0.;
-
-    /**
-     * What has come from nowhere: of order dt^2 with `verlet`, round-off of the linear solver with
-     * `newmark` and linear kinematics.
-     */
-    double imbalance() const
-    {
-      return kinetic + strain + released - start - work;
-    }
-  };
-
-
   /** Advances M d^2u/dt^2 = f(t) - K u, nonlinear or not, in time. Vectors are allocated once. */
   class MotionStepper
   {
   public:
-    MotionStepper(ElasticOperator &op, const double dt);
+    /** @param c steps of linear bodies keep the energy H - c dt^2 a.Ma */
+    MotionStepper(ElasticOperator &op, const double dt, const double c);
     virtual ~MotionStepper() = default;
 
     /** The name used in scenes. */
@@ -129,9 +95,6 @@ namespace PeriDeal
      */
     virtual void step(Vector &u, Vector &v, const double t, const double dt) = 0;
 
-    /** c, where steps of linear bodies keep the energy H - c dt^2 a.Ma. */
-    virtual double kept_with_accelerations() const = 0;
-
     /** Bonds have broken: K is another one. */
     virtual void operator_changed() {}
 
@@ -148,30 +111,21 @@ namespace PeriDeal
     StepperCost               spent;
 
   private:
-    void   begin(const Vector &u, const Vector &v, const double t);
-    void   take_step(Vector &u, Vector &v);
-    void   look_after(const Vector &u, const Vector &v);
-    double kinetic_energy(const Vector &v, const bool supports_only) const;
-    void   check(const Vector &v, const double t);
-    void   check_drift(const Vector &u, const Vector &v, const double t);
-    void   check_inversion(const Vector &u, const double t) const;
-    bool   follow_body(const Vector &u, const double t);
-    void   break_bonds(const Vector &u, const double t);
-    double kept_back(const double dt) const;
+    void begin(const Vector &u, const Vector &v, const double t);
+    void take_step(Vector &u, Vector &v);
+    void look_after(const Vector &u, const Vector &v);
+    void check(const Vector &v, const double t);
+    void check_drift(const Vector &u, const Vector &v, const double t);
+    void check_inversion(const Vector &u, const double t) const;
+    bool follow_body(const Vector &u, const double t);
+    void break_bonds(const Vector &u, const double t);
 
     StepSpan                   span;
     double                     longest, shortest;
     std::unique_ptr<StepLimit> limit; // null: none
-    bool                       started = false, fresh = true;
-    double                     start = 0., work = 0., effort = 0., support_start = 0.;
-    double                     step_now  = 0.; // the last one
-    double                     jumps     = 0.; // of what steps keep back
-    double                     exchanged = 0.; // the most that start and work have been so far
-    static constexpr auto      never     = std::numeric_limits<unsigned long long>::max();
-    unsigned long long         suspected_at =
-      never;             // the step since which there is more energy than has come in
-    Vector       change; // of a step
-    WorkOfForces work_of_forces;
+    bool                       fresh = true;
+    Vector                     change; // of a step
+    MotionAccount              account;
   };
 
 

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/solvers/motion_energy.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  MotionAccount::MotionAccount(ElasticOperator           &op,
+                               const std::vector<double> &inverse_mass,
+                               const std::vector<bool>   &held,
+                               const double               c)
+    : op(op)
+    , inverse_mass(inverse_mass)
+    , held(held)
+    , work_of_forces(op)
+    , c(c)
+  {}
+
+
+  double MotionAccount::kinetic_energy(const Vector &v, const bool supports_only) const
+  {
+    double sum = 0.;
+    for (unsigned int i = 0; i < held.size(); ++i)
+      if (held[i] || !supports_only)
+        sum += v.local_element(i) * v.local_element(i) / inverse_mass[i];
+    return 0.5 * Utilities::MPI::sum(sum, v.get_mpi_communicator());
+  }
+
+
+  double MotionAccount::kept_back(const double dt, const Vector &forces) const
+  {
+    const double factor = c * dt * dt;
+    if (factor == 0.)
+      return 0.;
+    double sum = 0.;
+    for (unsigned int i = 0; i < held.size(); ++i)
+      if (!held[i])
+        sum += forces.local_element(i) * forces.local_element(i) * inverse_mass[i];
+    return factor * Utilities::MPI::sum(sum, forces.get_mpi_communicator());
+  }
+
+
+  double MotionAccount::kept_back(const Vector &forces) const
+  {
+    return kept_back(step_now, forces);
+  }
+
+
+  void MotionAccount::begin(const Vector &u,
+                            const Vector &v,
+                            const Vector &forces,
+                            const double  t,
+                            const double  before)
+  {
+    work_of_forces.begin(forces, t);
+    jumps += kept_back(forces) - before;
+    if (started)
+      return;
+    started       = true;
+    start         = kinetic_energy(v, false) + op.energy(u);
+    support_start = kinetic_energy(v, true);
+  }
+
+
+  void MotionAccount::set_step(const double dt, const Vector &forces)
+  {
+    constexpr double same = 1e-6; // not another step, but round-off of the times
+    if (std::abs(dt - step_now) > same * step_now)
+      jumps += kept_back(dt, forces) - kept_back(forces);
+    step_now = dt;
+  }
+
+
+  void MotionAccount::add_step(const Vector &change, const Vector &forces, const double t)
+  {
+    const double gain = work_of_forces.step(change, forces, t);
+    work += gain;
+    effort += std::abs(gain);
+    exchanged = std::max(exchanged, start + std::abs(work));
+  }
+
+
+  void MotionAccount::add_jump(const Vector &forces, const double t, const double before)
+  {
+    jumps -= before;
+    work_of_forces.begin(forces, t);
+    jumps += kept_back(forces);
+  }
+
+
+  MotionEnergy MotionAccount::energy(const Vector &u, const Vector &v, const Vector &forces) const
+  {
+    MotionEnergy result;
+    result.kinetic  = kinetic_energy(v, false);
+    result.strain   = op.energy(u);
+    result.released = op.released_energy();
+    result.start    = started ? start : result.kinetic + result.strain;
+    // What supports give to the nodes that they hold themselves.
+    result.work      = started ? work + kinetic_energy(v, true) - support_start : 0.;
+    result.exchanged = std::max(exchanged, result.start + std::abs(result.work));
+    if (started)
+      result.drift = result.imbalance() - (kept_back(forces) - jumps);
+    return result;
+  }
+
+
+  std::string MotionAccount::fault(const Vector &v, const unsigned long long n_steps)
+  {
+    constexpr double too_much = 30.; // steps near the stable one exchange some energy with nothing
+    // A force that sets in gives a velocity before it has done any work, which it has a step later.
+    constexpr unsigned int later   = 10;
+    const double           kinetic = kinetic_energy(v, false) - kinetic_energy(v, true);
+    if (!(kinetic > too_much * (start + effort)))
+      suspected_at = never;
+    else if (suspected_at == never)
+      suspected_at = n_steps;
+    std::ostringstream message;
+    if (!std::isfinite(kinetic))
+      message << "produced values that are not finite";
+    else if (suspected_at != never && n_steps >= suspected_at + later)
+      message << "made a kinetic energy of " << kinetic << " where start and loads had brought in "
+              << start + effort;
+    return message.str();
+  }
+
+
+  std::string MotionAccount::drift_fault(const MotionEnergy &found, const double allowed) const
+  {
+    // Of the energies some may be differences of larger numbers (thermal strain).
+    constexpr double   round_off = 1e-10;
+    const double       sizes     = found.kinetic + std::abs(found.strain) + effort;
+    std::ostringstream message;
+    if (!(std::abs(found.drift) <= allowed * found.exchanged + round_off * sizes))
+      message << (found.drift < 0. ? "lost " : "made ") << std::abs(found.drift)
+              << " of it, more than " << 100. * allowed
+              << " % of what start and loads have brought in, " << found.exchanged;
+    return message.str();
+  }
+
+
+  void MotionAccount::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    archive.exchange("started", started);
+    archive.exchange("suspected at", suspected_at);
+    archive.exchange("last step", step_now);
+    archive.exchange("start", start);
+    archive.exchange("work", work);
+    archive.exchange("effort", effort);
+    archive.exchange("start of supports", support_start);
+    archive.exchange("jumps", jumps);
+    archive.exchange("exchanged", exchanged);
+    work_of_forces.exchange(archive, keys);
+  }
+} // namespace PeriDeal
