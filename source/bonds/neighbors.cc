@@ -133,14 +133,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  Tensor<1, dim> Neighbors<dim>::bond_vector(const unsigned int node,
-                                             const unsigned int neighbor) const
-  {
-    return position(neighbor) - position(node);
-  }
-
-
-  template <int dim>
   unsigned int Neighbors<dim>::node_at(const Index &site) const
   {
     return in_table(site) ? node_of_site[site_key(site)] : numbers::invalid_unsigned_int;

@@ -34,7 +34,7 @@ namespace PeriDeal
     template <int dim>
     std::optional<Lattice<dim>> lattice_of(const Domain<dim> &domain, const bool at_centers)
     {
-      if (domain.shape == Shape::mesh_file)
+      if (!domain.has_lattice())
         return {};
       Lattice<dim> lattice;
       lattice.lower      = domain.lower;
@@ -270,18 +270,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned int Nodes<dim>::n_owned() const
-  {
-    return owned_count;
-  }
-
-  template <int dim>
-  unsigned int Nodes<dim>::n_local() const
-  {
-    return static_cast<unsigned int>(positions.size());
-  }
-
-  template <int dim>
   types::global_dof_index Nodes<dim>::first_owned() const
   {
     return first;
@@ -291,20 +279,6 @@ namespace PeriDeal
   types::global_dof_index Nodes<dim>::n_global() const
   {
     return dofs->n_dofs();
-  }
-
-  template <int dim>
-  const Point<dim> &Nodes<dim>::position(const unsigned int node) const
-  {
-    AssertIndexRange(node, positions.size());
-    return positions[node];
-  }
-
-  template <int dim>
-  double Nodes<dim>::volume(const unsigned int node) const
-  {
-    AssertIndexRange(node, volumes.size());
-    return volumes[node];
   }
 
   template <int dim>

@@ -184,6 +184,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  inline dealii::Tensor<1, dim> Neighbors<dim>::bond_vector(const unsigned int node,
+                                                            const unsigned int neighbor) const
+  {
+    return position(neighbor) - position(node);
+  }
+
+
+  template <int dim>
   inline double Neighbors<dim>::volume(const unsigned int node) const
   {
     return is_real(node) ? own_nodes.volume(node) : beyond[node - own_nodes.n_local()].volume;

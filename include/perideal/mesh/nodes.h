@@ -168,6 +168,36 @@ namespace PeriDeal
   };
 
 
+  template <int dim>
+  inline unsigned int Nodes<dim>::n_owned() const
+  {
+    return owned_count;
+  }
+
+
+  template <int dim>
+  inline unsigned int Nodes<dim>::n_local() const
+  {
+    return static_cast<unsigned int>(positions.size());
+  }
+
+
+  template <int dim>
+  inline const dealii::Point<dim> &Nodes<dim>::position(const unsigned int node) const
+  {
+    AssertIndexRange(node, positions.size());
+    return positions[node];
+  }
+
+
+  template <int dim>
+  inline double Nodes<dim>::volume(const unsigned int node) const
+  {
+    AssertIndexRange(node, volumes.size());
+    return volumes[node];
+  }
+
+
   /**
    * Renumber dofs so that on each process x runs fastest, then y, then z. Only for meshes of a box.
    * Collective.
