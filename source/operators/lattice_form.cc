@@ -375,7 +375,7 @@ namespace PeriDeal
       void fill(const LatticePiece &piece, const double *values) const
       {
         double *to = grid.data() + piece.slot;
-        if (piece.varying == LatticePiece::none)
+        if (!piece.varies())
           NodeLoops::scale(to, values + piece.node, piece.volume, piece.n);
         else
           NodeLoops::scale(to,
@@ -387,7 +387,7 @@ namespace PeriDeal
 
       void combine(const LatticePiece &piece, const double *values, double *y) const
       {
-        if (piece.varying == LatticePiece::none)
+        if (!piece.varies())
           NodeLoops::combine(y + piece.node,
                              values + piece.node,
                              piece.volume,

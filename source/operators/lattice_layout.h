@@ -23,6 +23,11 @@ namespace PeriDeal
     std::uint32_t varying =
       none; // where the values begin in the lists of varying values, or none: then
     double volume = 0., family_sum = 0.; // all nodes of the piece have these
+
+    bool varies() const
+    {
+      return varying != none;
+    }
   };
 
 
@@ -66,14 +71,12 @@ namespace PeriDeal
 
     double volume(const LatticePiece &piece, const std::uint32_t k) const
     {
-      return piece.varying == LatticePiece::none ? piece.volume :
-                                                   varying_volumes[piece.varying + k];
+      return piece.varies() ? varying_volumes[piece.varying + k] : piece.volume;
     }
 
     double family_sum(const LatticePiece &piece, const std::uint32_t k) const
     {
-      return piece.varying == LatticePiece::none ? piece.family_sum :
-                                                   varying_sums[piece.varying + k];
+      return piece.varies() ? varying_sums[piece.varying + k] : piece.family_sum;
     }
 
     std::size_t memory_consumption() const;

@@ -21,7 +21,7 @@ namespace PeriDeal
         for (unsigned int d = 0; d < n_components; ++d)
           {
             double *row = to[d].data() + piece.slot;
-            if (piece.varying == LatticePiece::none)
+            if (!piece.varies())
               for (std::uint32_t k = 0; k < piece.n; ++k)
                 row[k] = piece.volume * from[n_components * k + d];
             else
