@@ -33,7 +33,7 @@ namespace PeriDeal
         mesh    = build_mesh(scene, MPI_COMM_WORLD, notes);
         handler = std::make_unique<dealii::DoFHandler<dim>>(*mesh);
         handler->distribute_dofs(dealii::FE_Q<dim>(1));
-        if (scene.domain.shape != Shape::mesh_file)
+        if (scene.domain.has_lattice())
           number_along_lattice(*handler, scene.domain);
       }
 

@@ -203,7 +203,7 @@ namespace PeriDeal
             room = std::min(
               {room, end[d] - scene.domain.body_lower[d], scene.domain.body_upper[d] - end[d]});
           room =
-            std::min({room, scene.domain.distance_to_holes(end), distance_to_parts(scene, end)});
+            std::min({room, scene.domain.holes.distance(end), distance_to_parts(scene, end)});
           for (unsigned int other = 0; other < cracks.size(); ++other)
             if (other != k)
               room = std::min(room, distance_to_piece(cracks[other], end));

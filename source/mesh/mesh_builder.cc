@@ -307,7 +307,7 @@ namespace PeriDeal
     CoarseMesh<dim> coarse;
     BoundaryIds     ids;
     unsigned int    n_refinements = 0;
-    if (domain.shape == Shape::mesh_file)
+    if (!domain.has_lattice())
       {
         coarse = read_mesh_file<dim>(domain.mesh_file, domain.scene_folder, communicator, ids);
         note_cracks_on_faces(coarse, cracks, notes);
@@ -315,7 +315,7 @@ namespace PeriDeal
     else if (domain.shape == Shape::plate_with_hole)
       {
         coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {
-          return !domain.in_hole(p);
+          return !domain.holes.contains(p);
         });
         AssertThrow(
           !coarse.cells.empty(),
@@ -362,7 +362,7 @@ namespace PeriDeal
           {
             const Point<dim> center = cell->face(f)->center();
             const auto       found  = ids.find({static_cast<unsigned int>(cell->index()), f});
-            cell->face(f)->set_boundary_id(domain.shape != Shape::mesh_file ?
+            cell->face(f)->set_boundary_id(domain.has_lattice() ?
                                              box_side(domain, cut, center) :
                                            found != ids.end() ? found->second :
                                                                 crack_boundary_id);

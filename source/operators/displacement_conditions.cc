@@ -24,7 +24,7 @@ namespace PeriDeal
                                   const Scene<dim>                   &scene,
                                   const MPI_Comm                      communicator)
     {
-      const bool box = scene.domain.shape != Shape::mesh_file;
+      const bool box = scene.domain.has_lattice();
       if (box)
         return side / 2;
       // Lowest coordinates and lowest negative ones.

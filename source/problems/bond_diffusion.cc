@@ -63,7 +63,7 @@ namespace PeriDeal
             handler.distribute_dofs(FE_Q<dim>(1));
           else
             handler.distribute_dofs(FE_DGQ<dim>(0));
-          if (scene.domain.shape != Shape::mesh_file)
+          if (scene.domain.has_lattice())
             number_along_lattice(handler, scene.domain);
           node_set = std::make_unique<Nodes<dim>>(handler,
                                                   scene.domain,

@@ -70,7 +70,7 @@ namespace PeriDeal
     check_overlaps(scene, mesh);
     if (scene.domain.shape == Shape::box)
       return;
-    const bool               from_file = scene.domain.shape == Shape::mesh_file;
+    const bool               from_file = !scene.domain.has_lattice();
     std::vector<std::string> known;
     for (const auto id : present)
       known.push_back(scene.boundary_conditions.name_of(id));

@@ -20,7 +20,7 @@ namespace PeriDeal
     {
       const auto &conditions = scene.boundary_conditions;
       json        sides      = json::object();
-      if (scene.domain.shape != Shape::mesh_file)
+      if (scene.domain.has_lattice())
         for (unsigned int k = 0; k < 2 * dim; ++k)
           sides[box_side_names()[k]] = "insulated";
       const auto add = [&](const std::string &name, const std::string &text) {

@@ -277,7 +277,7 @@ namespace PeriDeal
       {
         Timings::Scope scope(this->timings, "unknowns");
         handler.distribute_dofs(element);
-        if (scene.domain.shape != Shape::mesh_file && element.degree == 1)
+        if (scene.domain.has_lattice() && element.degree == 1)
           number_along_lattice(handler, scene.domain);
       }
 
@@ -366,7 +366,7 @@ namespace PeriDeal
             Zone<dim> zone;
             if (model == ModelKind::coupled)
               zone = Zone<dim>(scene.coupling, scene.horizon());
-            if (scene.domain.shape != Shape::mesh_file)
+            if (scene.domain.has_lattice())
               zone.stay_in({{scene.domain.lower, scene.domain.upper}});
             coupling = make_coupling(*node_set, scene, zone, scheme());
           }

@@ -39,7 +39,7 @@ namespace PeriDeal
     {
       const auto                               &conditions = scene.boundary_conditions;
       std::map<types::boundary_id, std::string> names;
-      const bool                                box = scene.domain.shape != Shape::mesh_file;
+      const bool                                box = scene.domain.has_lattice();
       const auto add = [&](const types::boundary_id id, const std::string &name) {
         if (!box || id >= 2 * dim)
           names.emplace(id, name);

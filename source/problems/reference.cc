@@ -29,7 +29,7 @@ namespace PeriDeal
       context.storage      = scene.material.storage(middle);
       context.kernel       = scene.peridynamics.kernel;
       context.exponent     = scene.peridynamics.kernel_exponent;
-      if (scene.domain.shape != Shape::mesh_file)
+      if (scene.domain.has_lattice())
         {
           context.horizon = scene.horizon();
           context.family  = lattice_terms(lattice_family<dim>(scene.domain.spacing(),
@@ -76,13 +76,13 @@ namespace PeriDeal
         context.density = scene.material.density.value(middle);
       if constexpr (dim == 2)
         {
-          if (domain.shape == Shape::plate_with_hole && domain.has_one_hole &&
-              domain.holes.empty() && domain.hole_shape == HoleShape::circle)
-            context.hole = {domain.hole_center[0], domain.hole_center[1], domain.hole_radius};
-          else if (domain.holes.size() == 1 && !domain.has_one_hole && domain.holes[0].radius > 0.)
-            context.hole = {domain.holes[0].center[0],
-                            domain.holes[0].center[1],
-                            domain.holes[0].radius};
+          if (domain.shape == Shape::plate_with_hole && domain.holes.has_one &&
+              domain.holes.listed.empty() && domain.holes.shape == HoleShape::circle)
+            context.hole = {domain.holes.center[0], domain.holes.center[1], domain.holes.radius};
+          else if (domain.holes.listed.size() == 1 && !domain.holes.has_one && domain.holes.listed[0].radius > 0.)
+            context.hole = {domain.holes.listed[0].center[0],
+                            domain.holes.listed[0].center[1],
+                            domain.holes.listed[0].radius};
           const auto is_inside = [&](const Point<dim> &p) {
             return (p - lower)[0] > 0. && (p - lower)[1] > 0. && (upper - p)[0] > 0. &&
                    (upper - p)[1] > 0.;
@@ -96,7 +96,7 @@ namespace PeriDeal
               context.ends_inside   = is_inside(b);
             }
         }
-      if (domain.shape == Shape::mesh_file || domain.shape == Shape::image)
+      if (!domain.has_lattice() || domain.shape == Shape::image)
         context.no_named = "is the solution in a box, but 'Shape' in section 'Domain' is another.";
       else if (!scene.material.uniform_moduli() || !scene.material.density.is_constant())
         context.no_named = "holds for a uniform material only (section 'Material').";

@@ -45,7 +45,7 @@ namespace PeriDeal
       context.record.extremes[run.name()]["broken beside loads"] = torn;
       const std::string layer    = "'Traction layer' in section 'Boundary conditions'",
                         tear_off = "They act on the outermost nodes, and tear them off: ";
-      const bool  of_file        = run.scene.domain.shape == Shape::mesh_file;
+      const bool  of_file        = !run.scene.domain.has_lattice();
       const auto &parts          = run.scene.boundary_conditions.parts;
       const bool  on_spot        = std::any_of(parts.begin(), parts.end(), [&](const Part &part) {
         return part.kind != Part::of_side && torn.count(part.name) > 0;

@@ -79,7 +79,7 @@ namespace PeriDeal
     json describe_solid_sides(const Scene<dim> &scene)
     {
       const auto &conditions = scene.boundary_conditions;
-      const bool  box_sides  = scene.domain.shape != Shape::mesh_file;
+      const bool  box_sides  = scene.domain.has_lattice();
       json        sides      = json::object();
       if (box_sides)
         for (unsigned int k = 0; k < 2 * dim; ++k)
@@ -119,7 +119,7 @@ namespace PeriDeal
                          const json       &places)
     {
       json       sides = json::object();
-      const bool box   = scene.domain.shape != Shape::mesh_file;
+      const bool box   = scene.domain.has_lattice();
       const auto add   = [&](const std::vector<VectorCondition> &list, const std::string &kind) {
         for (const VectorCondition &condition : list)
           {

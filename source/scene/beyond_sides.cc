@@ -46,7 +46,7 @@ namespace PeriDeal
     template <int dim>
     Hindrance find_hindrance(const Scene<dim> &scene)
     {
-      if (scene.domain.shape == Shape::mesh_file)
+      if (!scene.domain.has_lattice())
         if (const std::string obstacle = obstacle_on_mesh(scene); !obstacle.empty())
           return {"on a mesh from a file families do not go on " + obstacle,
                   "They do with 'Nodes = vertices' (section 'Domain')."};
@@ -81,7 +81,7 @@ namespace PeriDeal
           if (layer > 0. || side == numbers::invalid_boundary_id || completes_mesh(scene) ||
               (side < 2 * dim && beyond[side] != BeyondSide::nothing))
             continue;
-          flat = flat && side < 2 * dim && scene.domain.shape != Shape::mesh_file;
+          flat = flat && side < 2 * dim && scene.domain.has_lattice();
           names.push_back("'" + scene.boundary_conditions.name_of(condition.id) + "'");
         }
       return names;
@@ -152,7 +152,7 @@ namespace PeriDeal
     if (!automatic && !scene.peridynamics.completes_families())
       return beyond;
     if (automatic &&
-        (scene.domain.shape == Shape::mesh_file || !hindrance_of_fictitious_nodes(scene).empty()))
+        (!scene.domain.has_lattice() || !hindrance_of_fictitious_nodes(scene).empty()))
       return beyond;
     const auto &conditions = scene.boundary_conditions;
     if (!automatic || !ends_at_free_sides(scene))
@@ -176,7 +176,7 @@ namespace PeriDeal
   template <int dim>
   bool completes_mesh(const Scene<dim> &scene)
   {
-    return scene.domain.shape == Shape::mesh_file && scene.general.physics == Physics::elasticity &&
+    return !scene.domain.has_lattice() && scene.general.physics == Physics::elasticity &&
            scene.peridynamics.surface_correction == SurfaceCorrection::automatic &&
            hindrance_of_fictitious_nodes(scene).empty();
   }

@@ -4,9 +4,10 @@
 // What exchange and the other couplings need of the rest of a scene.
 
 #include <perideal/scene/lists.h>
-#include <perideal/scene/scene.h>
 
 #include <algorithm>
+
+#include "scene_checks.h"
 
 namespace PeriDeal
 {
@@ -53,106 +54,108 @@ namespace PeriDeal
 
     const char *const own_treatments =
       " Use 'Boundary treatment = none' (section 'Peridynamics') for bonds alone.";
+
+
+    template <int dim>
+    void check_adaptive_zone(const Scene<dim> &scene)
+    {
+      const std::string entry = scene.coupling.where("Zone");
+      if (scene.coupling.zone != ZoneKind::adaptive)
+        return;
+      if (!runs(scene, ModelKind::coupled))
+        entry_error(entry,
+                    "is 'adaptive', but 'Models' has no 'coupled', which the mesh would follow.");
+      if (scene.domain.coarsening == 0)
+        entry_error(
+          entry,
+          "'adaptive' changes the mesh, but 'Coarsening' in section 'Domain' is 0: no cell may be "
+          "larger than those of 'Cells'. Give it at least 1.");
+      if (scene.cracks.mesh == CrackMesh::faces)
+        entry_error(
+          entry,
+          "'adaptive' is for cracks that lie across cells; 'Mesh' in section 'Cracks' is 'faces'.");
+      if (scene.time.time_step > 0. &&
+          (scene.time.stepper == "euler" || scene.time.stepper == "rk4"))
+        entry_error(
+          entry,
+          "'adaptive' changes the mesh and with it the stability bound of '" + scene.time.stepper +
+            "', for which 'Time step' in section 'Time' is given. Use 'Time step = auto' or 'Stepper = auto'.");
+    }
   } // namespace
 
 
   template <int dim>
-  void Scene<dim>::resolve_boundary_treatment()
+  void resolve_boundary_treatment(Scene<dim> &scene)
   {
-    const auto list = obstacles_to_bonds_on_elements(*this);
-    if (peridynamics.treatment == BoundaryTreatment::automatic)
-      peridynamics.treatment = list.empty() && general.physics != Physics::elasticity ?
-                                 BoundaryTreatment::exchange :
-                                 BoundaryTreatment::none;
-    else if (peridynamics.treatment == BoundaryTreatment::exchange && !list.empty() &&
-             runs(*this, ModelKind::peridynamics))
+    const auto list = obstacles_to_bonds_on_elements(scene);
+    if (scene.peridynamics.treatment == BoundaryTreatment::automatic)
+      scene.peridynamics.treatment = list.empty() && scene.general.physics != Physics::elasticity ?
+                                       BoundaryTreatment::exchange :
+                                       BoundaryTreatment::none;
+    else if (scene.peridynamics.treatment == BoundaryTreatment::exchange && !list.empty() &&
+             runs(scene, ModelKind::peridynamics))
       entry_error(list.front().where,
                   list.front().reason + ", for 'Boundary treatment = exchange'." + own_treatments);
   }
 
 
   template <int dim>
-  void Scene<dim>::check_adaptive_zone() const
+  void check_coupling(const Scene<dim> &scene)
   {
-    const std::string entry = coupling.where("Zone");
-    if (coupling.zone != ZoneKind::adaptive)
+    check_adaptive_zone(scene);
+    if (!runs(scene, ModelKind::coupled))
       return;
-    if (!runs(*this, ModelKind::coupled))
-      entry_error(entry,
-                  "is 'adaptive', but 'Models' has no 'coupled', which the mesh would follow.");
-    if (domain.coarsening == 0)
-      entry_error(
-        entry,
-        "'adaptive' changes the mesh, but 'Coarsening' in section 'Domain' is 0: no cell may be "
-        "larger than those of 'Cells'. Give it at least 1.");
-    if (cracks.mesh == CrackMesh::faces)
-      entry_error(
-        entry,
-        "'adaptive' is for cracks that lie across cells; 'Mesh' in section 'Cracks' is 'faces'.");
-    if (time.time_step > 0. && (time.stepper == "euler" || time.stepper == "rk4"))
-      entry_error(
-        entry,
-        "'adaptive' changes the mesh and with it the stability bound of '" + time.stepper +
-          "', for which 'Time step' in section 'Time' is given. Use 'Time step = auto' or 'Stepper = auto'.");
-  }
-
-
-  template <int dim>
-  void Scene<dim>::check_coupling() const
-  {
-    check_adaptive_zone();
-    if (!runs(*this, ModelKind::coupled))
-      return;
-    const auto list = obstacles_to_bonds_on_elements(*this);
+    const auto list = obstacles_to_bonds_on_elements(scene);
     if (!list.empty())
       entry_error(list.front().where, list.front().reason + ", for 'Models = coupled'.");
-    if (dim == 1 && coupling.zone == ZoneKind::near_cracks)
+    if (dim == 1 && scene.coupling.zone == ZoneKind::near_cracks)
       entry_error(
-        coupling.where("Zone"),
-        "'" + coupling.zone_text() +
+        scene.coupling.where("Zone"),
+        "'" + scene.coupling.zone_text() +
           "' needs a crack, and bodies of 'Dimension' 1 have none. Give a formula of x, or 'everywhere'.");
-    if ((coupling.zone == ZoneKind::near_cracks || coupling.zone == ZoneKind::adaptive) &&
-        cracks.cracks.empty())
+    if ((scene.coupling.zone == ZoneKind::near_cracks ||
+         scene.coupling.zone == ZoneKind::adaptive) &&
+        scene.cracks.cracks.empty())
       entry_error(
-        coupling.where("Zone"),
-        "'" + coupling.zone_text() +
+        scene.coupling.where("Zone"),
+        "'" + scene.coupling.zone_text() +
           "' lies around cracks, but section 'Cracks' has none: the zone is empty. Give a formula, or 'everywhere'.");
     double widest = 0.;
     for (unsigned int d = 0; d < dim; ++d)
-      widest = std::max(widest, domain.upper[d] - domain.lower[d]);
-    if (domain.shape != Shape::mesh_file && coupling.overlap * horizon() > widest)
-      entry_error(coupling.where("Overlap"),
-                  "is " + number_text(coupling.overlap) + " horizons, " +
-                    number_text(coupling.overlap * horizon()) + ", wider than the body, " +
-                    number_text(widest) + ".");
-    if (finite_elements.degree > 1)
+      widest = std::max(widest, scene.domain.upper[d] - scene.domain.lower[d]);
+    if (scene.domain.has_lattice() && scene.coupling.overlap * scene.horizon() > widest)
+      entry_error(scene.coupling.where("Overlap"),
+                  "is " + number_text(scene.coupling.overlap) + " horizons, " +
+                    number_text(scene.coupling.overlap * scene.horizon()) +
+                    ", wider than the body, " + number_text(widest) + ".");
+    if (scene.finite_elements.degree > 1)
       entry_error(
-        finite_elements.where("Degree"),
-        "found " + std::to_string(finite_elements.degree) +
+        scene.finite_elements.where("Degree"),
+        "found " + std::to_string(scene.finite_elements.degree) +
           "; bonds and elements share the nodes of elements of degree 1 ('Models = coupled').");
   }
 
 
   template <int dim>
-  void Scene<dim>::check_coarsening() const
+  void check_coarsening(const Scene<dim> &scene)
   {
-    if (domain.coarsening == 0)
+    if (scene.domain.coarsening == 0)
       return;
-    const std::string entry = domain.where("Coarsening"),
-                      found = "found " + std::to_string(domain.coarsening) + ", but ";
-    if (runs(*this, ModelKind::peridynamics))
+    const std::string entry = scene.domain.where("Coarsening"),
+                      found = "found " + std::to_string(scene.domain.coarsening) + ", but ";
+    if (runs(scene, ModelKind::peridynamics))
       entry_error(
         entry,
         found +
           "'Models' has peridynamics, whose bonds need fine cells everywhere. Use 'coupled', or 0 here.");
-    if (runs(*this, ModelKind::coupled) && coupling.scheme != CouplingScheme::exchange)
+    if (runs(scene, ModelKind::coupled) && scene.coupling.scheme != CouplingScheme::exchange)
       entry_error(
         entry,
         found +
           "'Scheme' in section 'Coupling' is not 'exchange', the only one for graded meshes.");
-    const bool near_cracks = coupling.zone == ZoneKind::near_cracks ||
-                             coupling.zone == ZoneKind::adaptive;
-    if (!domain.fine_by_formula && near_cracks && cracks.cracks.empty())
+    const bool near_cracks = scene.coupling.zone == ZoneKind::near_cracks ||
+                             scene.coupling.zone == ZoneKind::adaptive;
+    if (!scene.domain.fine_by_formula && near_cracks && scene.cracks.cracks.empty())
       entry_error(
         entry,
         found +
@@ -160,16 +163,13 @@ namespace PeriDeal
   }
 
 
-  template void Scene<1>::check_coarsening() const;
-  template void Scene<2>::check_coarsening() const;
-  template void Scene<3>::check_coarsening() const;
-  template void Scene<1>::resolve_boundary_treatment();
-  template void Scene<2>::resolve_boundary_treatment();
-  template void Scene<3>::resolve_boundary_treatment();
-  template void Scene<1>::check_adaptive_zone() const;
-  template void Scene<2>::check_adaptive_zone() const;
-  template void Scene<3>::check_adaptive_zone() const;
-  template void Scene<1>::check_coupling() const;
-  template void Scene<2>::check_coupling() const;
-  template void Scene<3>::check_coupling() const;
+  template void check_coarsening(const Scene<1> &);
+  template void check_coarsening(const Scene<2> &);
+  template void check_coarsening(const Scene<3> &);
+  template void resolve_boundary_treatment(Scene<1> &);
+  template void resolve_boundary_treatment(Scene<2> &);
+  template void resolve_boundary_treatment(Scene<3> &);
+  template void check_coupling(const Scene<1> &);
+  template void check_coupling(const Scene<2> &);
+  template void check_coupling(const Scene<3> &);
 } // namespace PeriDeal

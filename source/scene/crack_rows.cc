@@ -5,12 +5,13 @@
 
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/scene.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <type_traits>
+
+#include "scene_checks.h"
 
 namespace PeriDeal
 {
@@ -158,7 +159,8 @@ namespace PeriDeal
               if (static_cast<int>(cells[axis]) + change < 2 || found)
                 continue;
               other[axis] += change;
-              found = first_along_row(pieces, domain, other, at_centers, off_row, axis) == nullptr;
+              found = first_along_row(pieces, scene.domain, other, at_centers, off_row, axis) ==
+                      nullptr;
               if (found)
                 cells = other;
             }
@@ -183,44 +185,46 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Scene<dim>::keep_cracks_off_nodes()
+  void keep_cracks_off_nodes(Scene<dim> &scene)
   {
-    if (dim == 1 || cracks.cracks.empty() || domain.shape == Shape::mesh_file ||
-        cracks.mesh == CrackMesh::faces || cracks.nodes_on_cracks == NodesOnCracks::left)
+    if (dim == 1 || scene.cracks.cracks.empty() || !scene.domain.has_lattice() ||
+        scene.cracks.mesh == CrackMesh::faces ||
+        scene.cracks.nodes_on_cracks == NodesOnCracks::left)
       return;
-    const auto pieces =
-      make_crack_geometries(cracks.pieces(cracks.tips.empty() ? 0. : time.end_time));
+    const auto pieces = make_crack_geometries(
+      scene.cracks.pieces(scene.cracks.tips.empty() ? 0. : scene.time.end_time));
     // In the middle of a body a crack lies on a row of vertices or of centres, for any cells.
     const bool at_centers =
-      domain.nodes == NodePlacement::cell_centers &&
-      (runs(*this, ModelKind::peridynamics) || runs(*this, ModelKind::coupled));
+      scene.domain.nodes == NodePlacement::cell_centers &&
+      (runs(scene, ModelKind::peridynamics) || runs(scene, ModelKind::coupled));
     const CrackGeometry<dim> *const piece =
-      first_along_row(pieces, domain, domain.cells, at_centers, on_row);
+      first_along_row(pieces, scene.domain, scene.domain.cells, at_centers, on_row);
     if (piece == nullptr)
       return;
-    const std::string name =
-      "Crack " + std::to_string(piece->crack + 1) + " (section 'Cracks') runs along a row of " +
-      (at_centers ? "cell centres" : "nodes") + " of " + text_of<dim>(domain.cells) + " cells";
-    const bool fixed = domain.shape == Shape::image || domain.coarsening > 0 ||
-                       domain.has_extra_layers();
+    const std::string name = "Crack " + std::to_string(piece->crack + 1) +
+                             " (section 'Cracks') runs along a row of " +
+                             (at_centers ? "cell centres" : "nodes") + " of " +
+                             text_of<dim>(scene.domain.cells) + " cells";
+    const bool fixed = scene.domain.shape == Shape::image || scene.domain.coarsening > 0 ||
+                       scene.domain.has_extra_layers();
     const auto cells = fixed ? std::optional<Cells<dim>>() :
-                               cells_off_cracks(pieces, domain, at_centers);
+                               cells_off_cracks(pieces, scene.domain, at_centers);
     if (cells)
       {
-        domain.notes.push_back(
+        scene.domain.notes.push_back(
           name + ": 'Cells' in section 'Domain' are taken as " + text_of<dim>(*cells) +
           ", with which it lies between rows. 'Nodes on cracks = left' keeps them as given.");
-        domain.cells = *cells;
+        scene.domain.cells = *cells;
       }
     else
-      domain.notes.push_back(
+      scene.domain.notes.push_back(
         name +
         ". These nodes belong to its left side, and it acts like a crack half a cell farther to the right. "
         "Other 'Cells' (section 'Domain'), or 'Mesh = faces' for a crack on cell faces, make that more accurate.");
   }
 
 
-  template void Scene<1>::keep_cracks_off_nodes();
-  template void Scene<2>::keep_cracks_off_nodes();
-  template void Scene<3>::keep_cracks_off_nodes();
+  template void keep_cracks_off_nodes(Scene<1> &);
+  template void keep_cracks_off_nodes(Scene<2> &);
+  template void keep_cracks_off_nodes(Scene<3> &);
 } // namespace PeriDeal

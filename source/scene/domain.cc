@@ -275,17 +275,58 @@ namespace PeriDeal
         "Hole center",
         "found '" + text("Hole center") + "', the centres of " + std::to_string(n_holes) +
           " holes: it is that of one. Several go into 'Holes', 'circle: x, y, radius ; circle: ...'.");
-    hole_center = parse_point<dim>(text("Hole center"), where("Hole center"));
-    hole_radius = number("Hole radius");
-    hole_shape  = choice<HoleShape>("Hole shape");
-    hole_angle  = number("Hole angle");
+    holes.center = parse_point<dim>(text("Hole center"), where("Hole center"));
+    holes.radius = number("Hole radius");
+    holes.shape  = choice<HoleShape>("Hole shape");
+    holes.angle  = number("Hole angle");
     if (shape != Shape::plate_with_hole)
       return;
     if (dim == 1)
       error("Shape", "a plate with a hole needs 'Dimension' 2 or 3.");
     positive_number("Hole radius");
-    if (!contains(hole_center))
+    if (!contains(holes.center))
       error("Hole center", "(" + text("Hole center") + ") lies outside the body.");
+  }
+
+
+  template <int dim>
+  void Domain<dim>::parse_listed_holes()
+  {
+    holes.listed = parse_holes(text("Holes"), where("Holes"));
+    if (holes.listed.empty())
+      return;
+    if (shape == Shape::mesh_file || shape == Shape::image)
+      error("Holes",
+            "is for 'Shape = box' and 'plate with hole'; this body has its holes in the " +
+              std::string(shape == Shape::image ? "image." : "mesh file."));
+    if (dim == 1)
+      error("Holes", "needs 'Dimension' 2 or 3.");
+    holes.has_one = shape == Shape::plate_with_hole &&
+                    (is_given("Hole center") || is_given("Hole radius"));
+    shape                  = Shape::plate_with_hole;
+    const Tensor<1, dim> h = spacing();
+    for (const Hole &hole : holes.listed)
+      {
+        // Some cell has to have its centre in the hole.
+        const auto          box = hole.box();
+        std::array<long, 2> from{}, to{};
+        for (int d = 0; d < std::min(dim, 2); ++d)
+          {
+            from[d] = std::max(0L, static_cast<long>((box.first[d] - lower[d]) / h[d] - 1.));
+            to[d]   = std::min(static_cast<long>(cells[d]) - 1,
+                             static_cast<long>((box.second[d] - lower[d]) / h[d] + 1.));
+          }
+        bool found = false;
+        for (long j = from[1]; j <= to[1] && !found; ++j)
+          for (long i = from[0]; i <= to[0] && !found; ++i)
+            found = hole.contains(Point<2>(lower[0] + (i + 0.5) * h[0],
+                                           dim > 1 ? lower[dim > 1] + (j + 0.5) * h[dim > 1] : 0.));
+        if (!found)
+          error(
+            "Holes",
+            "'" + hole.text +
+              "' holds no centre of a cell: it lies outside the body, or is smaller than a cell. Move it, or take more 'Cells'.");
+      }
   }
 
 
@@ -323,8 +364,8 @@ namespace PeriDeal
       }
     parse_extra_layers();
     parse_hole();
-    has_one_hole = shape == Shape::plate_with_hole;
-    parse_holes_of_list();
+    holes.has_one = shape == Shape::plate_with_hole;
+    parse_listed_holes();
     coarsening = whole_number("Coarsening");
     parse_fine_part();
     mesh_file = text("Mesh file");
@@ -332,29 +373,6 @@ namespace PeriDeal
       error("Mesh file", "is empty, but 'Shape' is 'mesh file'.");
     if (shape != Shape::mesh_file && !mesh_file.empty())
       error("Mesh file", "is given, but 'Shape' is '" + text("Shape") + "', not 'mesh file'.");
-  }
-
-
-  template <int dim>
-  bool Domain<dim>::in_hole(const Point<dim> &p) const
-  {
-    if (shape != Shape::plate_with_hole)
-      return false;
-    if (dim > 1 && std::any_of(holes.begin(), holes.end(), [&](const Hole &hole) {
-          return hole.contains(Point<2>(p[0], p[dim > 1]));
-        }))
-      return true;
-    if (!has_one_hole)
-      return false;
-    Tensor<1, dim> r = p - hole_center;
-    if (dim == 3) // the hole of a thick plate is a bore along z
-      r[dim - 1] = 0.;
-    if (hole_shape == HoleShape::circle)
-      return r.norm() < hole_radius;
-    const double angle = hole_angle * std::acos(-1.) / 180., y = dim > 1 ? r[dim > 1] : 0.;
-    const double along  = std::cos(angle) * r[0] + std::sin(angle) * y,
-                 across = -std::sin(angle) * r[0] + std::cos(angle) * y;
-    return std::max(std::abs(along), std::abs(across)) < hole_radius;
   }
 
 

@@ -5,10 +5,11 @@
 
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rigid_motions.h>
-#include <perideal/scene/scene.h>
 
 #include <algorithm>
 #include <limits>
+
+#include "scene_checks.h"
 
 namespace PeriDeal
 {
@@ -56,7 +57,7 @@ namespace PeriDeal
         scene.domain.nodes != NodePlacement::vertices,
         "continues the displacement from nodes on the sides, and 'Nodes' in section 'Domain' is 'cell centers'.",
         other + "'vertices'.");
-      refuse(scene.domain.shape == Shape::mesh_file || scene.domain.shape == Shape::image,
+      refuse(!scene.domain.has_lattice() || scene.domain.shape == Shape::image,
              "needs flat sides of a lattice, which this 'Shape' in section 'Domain' has not.",
              other + "'box' or 'plate with hole'.");
       refuse(pd.nodal_volume != NodalVolume::partial,
@@ -203,7 +204,7 @@ namespace PeriDeal
         entry_error(
           scene.coupling.where("Zone"),
           "'adaptive' is for what diffuses; with 'Physics = elasticity' use 'cracks: 1' or a formula.");
-      if (scene.domain.shape == Shape::mesh_file)
+      if (!scene.domain.has_lattice())
         entry_error(
           scene.domain.where("Shape"),
           "'mesh file' is not for 'Models = coupled' with 'Physics = elasticity', whose bonds lie on a lattice. Use 'box' or 'plate with hole'.");
@@ -288,7 +289,7 @@ namespace PeriDeal
       if (conditions.displacement_layer <= 0.)
         return;
       const std::string where = conditions.where("Displacement layer");
-      if (scene.domain.shape == Shape::mesh_file)
+      if (!scene.domain.has_lattice())
         entry_error(
           where,
           "is for the sides of a box, and 'Shape' in section 'Domain' is 'mesh file'. Leave it empty.");
@@ -309,7 +310,7 @@ namespace PeriDeal
         entry_error(where,
                     "has no effect without 'Models = peridynamics': finite elements have "
                     "tractions on their faces. Leave it empty.");
-      if (scene.domain.shape == Shape::mesh_file)
+      if (!scene.domain.has_lattice())
         entry_error(
           where,
           "needs nodes in rows along the side, which 'Shape = mesh file' in section 'Domain' does not have. Leave it empty.");
@@ -414,7 +415,7 @@ namespace PeriDeal
         !runs(scene, ModelKind::peridynamics),
         "is for peridynamics in the whole body: add 'peridynamics' to 'Models', or leave the entry out.");
       refuse(
-        scene.domain.shape == Shape::mesh_file,
+        !scene.domain.has_lattice(),
         "is that of the complete family of a lattice, which 'Shape = mesh file' has not. Leave the entry out.");
       refuse(
         scene.peridynamics.corrects_elastic_bonds() || scene.peridynamics.completes_families(),
@@ -438,62 +439,47 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Scene<dim>::check_elasticity() const
+  void check_elasticity(const Scene<dim> &scene)
   {
-    if (general.physics != Physics::elasticity)
+    if (scene.general.physics != Physics::elasticity)
       {
-        if (is_for_motion(time.stepper))
-          entry_error(time.where("Stepper"),
-                      "'" + time.stepper +
+        if (is_for_motion(scene.time.stepper))
+          entry_error(scene.time.where("Stepper"),
+                      "'" + scene.time.stepper +
                         "' is for motion ('Physics = elasticity'); 'Physics' is '" +
-                        names_of(general.physics).physics + "'. Use 'auto'.");
-        if (domain.has_extra_layers())
-          entry_error(domain.where("Extra layers"), "is for 'Physics = elasticity'.");
+                        names_of(scene.general.physics).physics + "'. Use 'auto'.");
+        if (scene.domain.has_extra_layers())
+          entry_error(scene.domain.where("Extra layers"), "is for 'Physics = elasticity'.");
         return;
       }
-    const bool changes_temperature = elasticity.computes_temperature ||
-                                     !is_zero(elasticity.temperature_change);
-    if (changes_temperature && material.thermal_expansion.is_constant() &&
-        material.thermal_expansion.value(Point<dim>()) == 0.)
-      entry_error(elasticity.where("Temperature change"),
+    const bool changes_temperature = scene.elasticity.computes_temperature ||
+                                     !is_zero(scene.elasticity.temperature_change);
+    if (changes_temperature && scene.material.thermal_expansion.is_constant() &&
+        scene.material.thermal_expansion.value(Point<dim>()) == 0.)
+      entry_error(scene.elasticity.where("Temperature change"),
                   "has no effect: 'Thermal expansion' in section 'Material' is 0.");
-    if (cracks.mesh == CrackMesh::pairs && !cracks.cracks.empty())
+    if (scene.cracks.mesh == CrackMesh::pairs && !scene.cracks.cracks.empty())
       entry_error(
-        cracks.where("Mesh"),
+        scene.cracks.where("Mesh"),
         "'pairs' conduct what diffuses; with 'Physics = elasticity' use 'removed' or 'faces'.");
-    if (cracks.conduct())
-      entry_error(
-        cracks.where(cracks.contact_conductance < 0. ? "Transmission" : "Contact conductance"),
-        "is for what diffuses; cracks transmit no force with 'Physics = elasticity'.");
-    check_displacement_layer(*this);
-    check_traction_layer(*this);
-    check_extra_layers(*this);
-    check_time(*this);
-    check_fracture(*this);
-    check_micromodulus(*this);
-    check_peridynamics(*this);
-    check_other_sections(*this);
-    check_coupling_of_elasticity(*this);
-    check_rigid_motions(*this);
+    if (scene.cracks.conduct())
+      entry_error(scene.cracks.where(scene.cracks.contact_conductance < 0. ? "Transmission" :
+                                                                             "Contact conductance"),
+                  "is for what diffuses; cracks transmit no force with 'Physics = elasticity'.");
+    check_displacement_layer(scene);
+    check_traction_layer(scene);
+    check_extra_layers(scene);
+    check_time(scene);
+    check_fracture(scene);
+    check_micromodulus(scene);
+    check_peridynamics(scene);
+    check_other_sections(scene);
+    check_coupling_of_elasticity(scene);
+    check_rigid_motions(scene);
   }
 
 
-  template <int dim>
-  bool Scene<dim>::is_loaded_slowly() const
-  {
-    const auto &forces = initial_and_source.body_force;
-    return general.physics == Physics::elasticity && elasticity.is_static() &&
-           (warms_slowly() || boundary_conditions.depends_on_time() ||
-            std::any_of(forces.begin(), forces.end(), [](const auto &force) {
-              return force.depends_on_time();
-            }));
-  }
-
-
-  template bool Scene<1>::is_loaded_slowly() const;
-  template bool Scene<2>::is_loaded_slowly() const;
-  template bool Scene<3>::is_loaded_slowly() const;
-  template void Scene<1>::check_elasticity() const;
-  template void Scene<2>::check_elasticity() const;
-  template void Scene<3>::check_elasticity() const;
+  template void check_elasticity(const Scene<1> &);
+  template void check_elasticity(const Scene<2> &);
+  template void check_elasticity(const Scene<3> &);
 } // namespace PeriDeal

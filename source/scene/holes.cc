@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/scene/domain.h>
 #include <perideal/scene/holes.h>
 #include <perideal/scene/lists.h>
 
@@ -60,11 +59,6 @@ namespace PeriDeal
       return hole;
     }
 
-
-    Point<2> in_plane(const double x, const double y)
-    {
-      return Point<2>(x, y);
-    }
   } // namespace
 
 
@@ -137,70 +131,45 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Domain<dim>::parse_holes_of_list()
+  bool Holes<dim>::contains(const Point<dim> &p) const
   {
-    holes = parse_holes(text("Holes"), where("Holes"));
-    if (holes.empty())
-      return;
-    if (shape == Shape::mesh_file || shape == Shape::image)
-      error("Holes",
-            "is for 'Shape = box' and 'plate with hole'; this body has its holes in the " +
-              std::string(shape == Shape::image ? "image." : "mesh file."));
-    if (dim == 1)
-      error("Holes", "needs 'Dimension' 2 or 3.");
-    has_one_hole = shape == Shape::plate_with_hole &&
-                   (is_given("Hole center") || is_given("Hole radius"));
-    shape                  = Shape::plate_with_hole;
-    const Tensor<1, dim> h = spacing();
-    for (const Hole &hole : holes)
-      {
-        // Some cell has to have its centre in the hole.
-        const auto          box = hole.box();
-        std::array<long, 2> from{}, to{};
-        for (int d = 0; d < std::min(dim, 2); ++d)
-          {
-            from[d] = std::max(0L, static_cast<long>((box.first[d] - lower[d]) / h[d] - 1.));
-            to[d]   = std::min(static_cast<long>(cells[d]) - 1,
-                             static_cast<long>((box.second[d] - lower[d]) / h[d] + 1.));
-          }
-        bool found = false;
-        for (long j = from[1]; j <= to[1] && !found; ++j)
-          for (long i = from[0]; i <= to[0] && !found; ++i)
-            found = hole.contains(in_plane(lower[0] + (i + 0.5) * h[0],
-                                           dim > 1 ? lower[dim > 1] + (j + 0.5) * h[dim > 1] : 0.));
-        if (!found)
-          error(
-            "Holes",
-            "'" + hole.text +
-              "' holds no centre of a cell: it lies outside the body, or is smaller than a cell. Move it, or take more 'Cells'.");
-      }
+    if (dim > 1 && std::any_of(listed.begin(), listed.end(), [&](const Hole &hole) {
+          return hole.contains(Point<2>(p[0], p[dim > 1]));
+        }))
+      return true;
+    if (!has_one)
+      return false;
+    Tensor<1, dim> r = p - center;
+    if (dim == 3) // the hole of a thick plate is a bore along z
+      r[dim - 1] = 0.;
+    if (shape == HoleShape::circle)
+      return r.norm() < radius;
+    const double turn = angle * std::acos(-1.) / 180., y = dim > 1 ? r[dim > 1] : 0.;
+    const double along  = std::cos(turn) * r[0] + std::sin(turn) * y,
+                 across = -std::sin(turn) * r[0] + std::cos(turn) * y;
+    return std::max(std::abs(along), std::abs(across)) < radius;
   }
 
 
   template <int dim>
-  double Domain<dim>::distance_to_holes(const Point<dim> &p) const
+  double Holes<dim>::distance(const Point<dim> &p) const
   {
     double shortest = std::numeric_limits<double>::max();
-    for (const Hole &hole : holes)
-      shortest = std::min(shortest, hole.distance(in_plane(p[0], dim > 1 ? p[dim > 1] : 0.)));
-    if (shape == Shape::plate_with_hole && has_one_hole)
+    for (const Hole &hole : listed)
+      shortest = std::min(shortest, hole.distance(Point<2>(p[0], dim > 1 ? p[dim > 1] : 0.)));
+    if (has_one)
       {
-        Tensor<1, dim> r = p - hole_center;
+        Tensor<1, dim> r = p - center;
         if (dim == 3)
           r[dim - 1] = 0.;
-        const double reach = hole_shape == HoleShape::circle ? hole_radius :
-                                                               std::sqrt(2.) * hole_radius;
+        const double reach = shape == HoleShape::circle ? radius : std::sqrt(2.) * radius;
         shortest           = std::min(shortest, r.norm() - reach);
       }
     return shortest;
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                     \
-  template void   Domain<dim>::parse_holes_of_list(); \
-  template double Domain<dim>::distance_to_holes(const Point<dim> &) const;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  template struct Holes<1>;
+  template struct Holes<2>;
+  template struct Holes<3>;
 } // namespace PeriDeal

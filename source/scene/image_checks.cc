@@ -4,12 +4,13 @@
 // The parts of an image that no side holds, and what the user should know of the image.
 
 #include <perideal/scene/lists.h>
-#include <perideal/scene/scene.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include "scene_checks.h"
 
 namespace PeriDeal
 {
@@ -398,19 +399,19 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Scene<dim>::check_image()
+  void check_image(Scene<dim> &scene)
   {
     if constexpr (dim == 2)
-      if (domain.image)
+      if (scene.domain.image)
         {
-          treat_islands(*this);
-          note_areas(domain);
-          note_thin_voids(*this);
+          treat_islands(scene);
+          note_areas(scene.domain);
+          note_thin_voids(scene);
         }
   }
 
 
-  template void Scene<1>::check_image();
-  template void Scene<2>::check_image();
-  template void Scene<3>::check_image();
+  template void check_image(Scene<1> &);
+  template void check_image(Scene<2> &);
+  template void check_image(Scene<3> &);
 } // namespace PeriDeal

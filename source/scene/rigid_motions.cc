@@ -32,7 +32,7 @@ namespace PeriDeal
         for (unsigned int c = 0; c < dim; ++c)
           if (condition.values[c])
             list.push_back({condition.id, c, &condition});
-      if (scene.domain.shape != Shape::mesh_file)
+      if (scene.domain.has_lattice())
         for (const types::boundary_id side : scene.boundary_conditions.symmetry)
           list.push_back({side, side / 2, nullptr});
       return list;
@@ -51,11 +51,11 @@ namespace PeriDeal
             {
               const bool up = (k >> d) % 2 == 1;
               p[d]          = up ? domain.upper[d] : domain.lower[d];
-              if (side == hole_boundary_id && d < 2 && domain.has_one_hole)
-                p[d] = domain.hole_center[d] + (up ? 1. : -1.) * domain.hole_radius;
-              else if (side == hole_boundary_id && d < 2 && !domain.holes.empty())
+              if (side == hole_boundary_id && d < 2 && domain.holes.has_one)
+                p[d] = domain.holes.center[d] + (up ? 1. : -1.) * domain.holes.radius;
+              else if (side == hole_boundary_id && d < 2 && !domain.holes.listed.empty())
                 {
-                  const auto box = domain.holes.front().box();
+                  const auto box = domain.holes.listed.front().box();
                   p[d]           = up ? box.second[d] : box.first[d];
                 }
             }
@@ -168,7 +168,7 @@ namespace PeriDeal
   {
     const std::vector<Held>  held = held_components(scene);
     std::vector<std::string> motions;
-    if (scene.domain.shape == Shape::mesh_file)
+    if (!scene.domain.has_lattice())
       {
         std::array<bool, dim> holds{};
         for (const Held &entry : held)

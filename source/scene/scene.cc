@@ -3,11 +3,12 @@
 
 #include <perideal/scene/lists.h>
 #include <perideal/scene/physical_names.h>
-#include <perideal/scene/scene.h>
 #include <perideal/scene/scene_notes.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "scene_checks.h"
 
 namespace PeriDeal
 {
@@ -124,7 +125,7 @@ namespace PeriDeal
     template <int dim>
     void check_horizon(const Scene<dim> &scene)
     {
-      if (scene.domain.shape == Shape::mesh_file)
+      if (!scene.domain.has_lattice())
         return;
       const Tensor<1, dim> h       = scene.domain.spacing();
       const double         horizon = scene.horizon();
@@ -184,7 +185,7 @@ namespace PeriDeal
           bc.where("Symmetry"),
           "is not for cracks with 'Mesh = faces' in section 'Cracks', where two nodes are at one place. Use 'Mesh = pairs', or leave the entry out: a side that is named nowhere "
           "is insulated.");
-      if (scene.domain.shape == Shape::mesh_file && !(scene.peridynamics.horizon > 0.) &&
+      if (!scene.domain.has_lattice() && !(scene.peridynamics.horizon > 0.) &&
           scene.cracks.conduct() && scene.cracks.contact_conductance < 0.)
         entry_error(
           scene.peridynamics.where("Horizon"),
@@ -252,7 +253,7 @@ namespace PeriDeal
               middle[d]      = domain.lower[d] +
                           h[d] * (0.5 + std::clamp(std::floor(s), 0., domain.cells[d] - 1.));
             }
-          if (!domain.in_hole(middle))
+          if (!domain.holes.contains(middle))
             return true;
         }
       return false;
@@ -263,7 +264,7 @@ namespace PeriDeal
     template <int dim>
     void check_points_of_output(const Scene<dim> &scene)
     {
-      if (scene.domain.shape == Shape::mesh_file)
+      if (!scene.domain.has_lattice())
         return;
       const auto check = [&](const std::vector<double> &x, const std::string &entry) {
         Point<dim>  p;
@@ -297,7 +298,7 @@ namespace PeriDeal
   {
     if (peridynamics.horizon > 0.)
       return peridynamics.horizon;
-    if (domain.shape == Shape::mesh_file)
+    if (!domain.has_lattice())
       entry_error(peridynamics.where("Horizon"), "is empty, but a mesh file needs it.");
     const Tensor<1, dim> h        = domain.spacing();
     double               smallest = h[0];
@@ -313,7 +314,7 @@ namespace PeriDeal
     double step = cracks.growth_step;
     if (step < 0. && !cracks.tips.empty())
       {
-        if (domain.shape == Shape::mesh_file)
+        if (!domain.has_lattice())
           entry_error(cracks.where("Growth step"),
                       "is empty, but a mesh file has no node spacing: give a length.");
         const Tensor<1, dim> h = domain.spacing();
@@ -322,6 +323,25 @@ namespace PeriDeal
           step = std::min(step, 0.25 * h[d]);
       }
     return CrackHistory<dim>(cracks, step, time.steady ? 1. : time.end_time, time.time_step);
+  }
+
+
+  template <int dim>
+  bool Scene<dim>::is_loaded_slowly() const
+  {
+    const auto &forces = initial_and_source.body_force;
+    return general.physics == Physics::elasticity && elasticity.is_static() &&
+           (warms_slowly() || boundary_conditions.depends_on_time() ||
+            std::any_of(forces.begin(), forces.end(), [](const auto &force) {
+              return force.depends_on_time();
+            }));
+  }
+
+
+  template <int dim>
+  bool Scene<dim>::warms_slowly() const
+  {
+    return heat && !heat->time.steady;
   }
 
 
@@ -366,18 +386,18 @@ namespace PeriDeal
     if (!domain.mesh_file.empty())
       boundary_conditions.physical_names =
         read_physical_names(domain.mesh_file, domain.scene_folder, dim, domain.communicator);
-    boundary_conditions.parse(domain.shape != Shape::mesh_file,
+    boundary_conditions.parse(domain.has_lattice(),
                               domain.shape == Shape::plate_with_hole ||
                                 (domain.image && domain.image->has_voids()),
                               general.physics,
                               elasticity.computes_temperature);
     cracks.parse(general.physics);
-    keep_cracks_off_nodes();
+    keep_cracks_off_nodes(*this);
     peridynamics.parse(general.physics);
     coupling.parse();
     finite_elements.parse();
-    check_elasticity();
-    make_heat_problem();
+    check_elasticity(*this);
+    make_heat_problem(*this);
     // a conductor without capacitance is always in its steady state, and an equilibrium has a time
     // only where its loads have
     time.steady =
@@ -394,7 +414,7 @@ namespace PeriDeal
     units.parse();
 
     cracks.end_time = time.steady ? 0. : time.end_time;
-    if (domain.shape != Shape::mesh_file)
+    if (domain.has_lattice())
       {
         cracks.set_box(domain.lower, domain.upper);
         cracks.check_inside(domain.lower, domain.upper);
@@ -407,22 +427,22 @@ namespace PeriDeal
       entry_error(finite_elements.where("Degree"),
                   "found " + std::to_string(finite_elements.degree) +
                     "; cracks with 'Mesh' in section 'Cracks' = pairs need degree 1.");
-    resolve_boundary_treatment();
-    check_coupling();
-    check_coarsening();
+    resolve_boundary_treatment(*this);
+    check_coupling(*this);
+    check_coarsening(*this);
     if (runs(*this, ModelKind::peridynamics) || runs(*this, ModelKind::coupled))
       {
         check_shape_for_peridynamics(*this);
         check_horizon(*this);
       }
-    if (domain.shape != Shape::mesh_file && material.phases.all().need_mesh())
+    if (domain.has_lattice() && material.phases.all().need_mesh())
       entry_error(
         material.phases.where("Regions"),
         "mesh(id) refers to the material ids of a mesh file, but 'Shape' in section 'Domain' is another.");
     check_combinations(*this);
     check_steady(*this);
     crack_history(); // for its errors
-    check_image();
+    check_image(*this);
     check_points_of_output(*this);
     note_doubtful_entries(*this);
   }

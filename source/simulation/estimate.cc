@@ -59,8 +59,8 @@ namespace PeriDeal
       double whole = 1.;
       for (int d = 0; d < std::min(dim, 2); ++d)
         whole *= domain.upper[d] - domain.lower[d];
-      double holes = domain.has_one_hole ? 4. * domain.hole_radius * domain.hole_radius : 0.;
-      for (const Hole &hole : domain.holes)
+      double holes = domain.holes.has_one ? 4. * domain.holes.radius * domain.holes.radius : 0.;
+      for (const Hole &hole : domain.holes.listed)
         holes += hole.area();
       return std::max(0., 1. - holes / whole);
     }
@@ -382,7 +382,7 @@ namespace PeriDeal
   template <int dim>
   bool is_large(const Scene<dim> &scene, const MPI_Comm communicator)
   {
-    if (scene.domain.shape == Shape::mesh_file)
+    if (!scene.domain.has_lattice())
       return false; // no larger than its file
     const double nodes = number_of_cells(scene), n_bonds = bonds_of_full_families(scene);
     const double factor = n_components_of(scene);
@@ -394,7 +394,7 @@ namespace PeriDeal
   template <int dim>
   void require_memory(const Scene<dim> &scene, const MPI_Comm communicator)
   {
-    if (scene.domain.shape == Shape::mesh_file)
+    if (!scene.domain.has_lattice())
       return;
     const double available = available_memory(communicator);
     if (most(scene, number_of_cells(scene), bonds_of_full_families(scene)) < available)

@@ -88,7 +88,7 @@ namespace PeriDeal
         checked.text = read_scene(row.scene, overrides, communicator);
         std::string mesh_file;
         with_scene(checked.text, [&](const auto &scene) {
-          if (scene.domain.shape == Shape::mesh_file)
+          if (!scene.domain.has_lattice())
             mesh_file = scene.domain.mesh_file;
           else if (scene.domain.shape == Shape::image)
             mesh_file = scene.domain.image_file;

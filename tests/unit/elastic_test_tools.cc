@@ -37,7 +37,7 @@ namespace PeriDeal
             handler.distribute_dofs(dealii::FE_DGQ<dim>(0));
           else
             handler.distribute_dofs(dealii::FE_Q<dim>(1));
-          if (scene.domain.shape != Shape::mesh_file)
+          if (scene.domain.has_lattice())
             number_along_lattice(handler, scene.domain);
           nodes  = std::make_unique<Nodes<dim>>(handler,
                                                scene.domain,

@@ -46,7 +46,7 @@ namespace PeriDeal
       else
         handler.distribute_dofs(dealii::FE_Q<dim>(
           model == ModelKind::finite_elements ? scene.finite_elements.degree : 1));
-      if (scene.domain.shape != Shape::mesh_file && handler.get_fe().degree <= 1)
+      if (scene.domain.has_lattice() && handler.get_fe().degree <= 1)
         number_along_lattice(handler, scene.domain);
       if (model == ModelKind::peridynamics)
         {

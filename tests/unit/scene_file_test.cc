@@ -117,7 +117,7 @@ namespace PeriDeal
     Scene<1> scene;
     parse_scene<1>(text, scene);
     EXPECT_EQ(scene.domain.cells[0], 5u);
-    EXPECT_EQ(scene.domain.hole_radius, 0.1);
+    EXPECT_EQ(scene.domain.holes.radius, 0.1);
     EXPECT_EQ(scene.time.end_time, 2.);
     EXPECT_EQ(scene.general.title, "d");
     EXPECT_EQ(scene.boundary_conditions.dirichlet[0].value.value(Point<1>(1.)), 1.);

@@ -29,13 +29,6 @@ namespace PeriDeal
     image
   };
 
-  /** A square hole has the radius as half its edge and is turned by the hole angle. */
-  enum class HoleShape
-  {
-    circle,
-    square
-  };
-
   /** What happens to parts of an image that no side holds. */
   enum class IslandRule
   {
@@ -77,16 +70,11 @@ namespace PeriDeal
     dealii::Point<dim>            lower, upper; // with the extra layers, as cells
     std::array<unsigned int, dim> cells;
     NodePlacement                 nodes = NodePlacement::vertices;
-    dealii::Point<dim>            hole_center;
-    double                        hole_radius = 0.25;
-    HoleShape                     hole_shape  = HoleShape::circle;
-    double                        hole_angle  = 0.; // degrees
-    bool has_one_hole = true; // plate with a hole: that of the four entries above counts
-    std::vector<Hole> holes;  // more of them
-    std::string       mesh_file;
-    unsigned int      coarsening = 0; // times that cells are merged away from where they stay fine
-    Expression        fine;           // they stay fine where greater than 0
-    bool              fine_by_formula = false; // else in the zone of section `Coupling`
+    Holes<dim>                    holes; // of a plate with holes
+    std::string                   mesh_file;
+    unsigned int coarsening = 0; // times that cells are merged away from where they stay fine
+    Expression   fine;           // they stay fine where greater than 0
+    bool         fine_by_formula = false; // else in the zone of section `Coupling`
 
     /**
      * Rows of cells beyond each side (left, right, bottom, ...), which are in no result, and the
@@ -104,6 +92,12 @@ namespace PeriDeal
     /** Images are looked for here, too, and read by the processes of this communicator together. */
     std::string scene_folder;
     MPI_Comm    communicator = MPI_COMM_SELF;
+
+    /** Nodes and cells lie on a lattice: any body but one from a mesh file. */
+    bool has_lattice() const
+    {
+      return shape != Shape::mesh_file;
+    }
 
     /** Box and plate with a hole: edge length of a lattice cell in each direction. */
     dealii::Tensor<1, dim> spacing() const;
@@ -127,17 +121,6 @@ namespace PeriDeal
      * (relative slack 1e-9).
      */
     bool contains(const dealii::Point<dim> &p) const;
-
-    /**
-     * From a point to the nearest hole, or less (of a square one the distance to the circle around
-     * it); the largest number without holes.
-     */
-    double distance_to_holes(const dealii::Point<dim> &p) const;
-
-    /**
-     * Plate with holes: whether the point lies in one. A cell whose centre does so does not exist.
-     */
-    bool in_hole(const dealii::Point<dim> &p) const;
 
     /**
      * Whether a cell of the lattice with this centre exists: not in a hole, nor an empty one of an
@@ -172,7 +155,7 @@ namespace PeriDeal
     void parse_fine_part();
 
     void parse_hole();
-    void parse_holes_of_list();
+    void parse_listed_holes();
 
     void declare_extra_layers();
     void parse_extra_layers();

@@ -30,6 +30,34 @@ namespace PeriDeal
     double area() const;
   };
 
+  /** A square hole has the radius as half its edge and is turned by the hole angle. */
+  enum class HoleShape
+  {
+    circle,
+    square
+  };
+
+  /** Of a plate: those of the list `Holes`, and the one that has entries of its own. */
+  template <int dim>
+  struct Holes
+  {
+    bool               has_one = false; // that of the four below
+    dealii::Point<dim> center;
+    double             radius = 0.25;
+    HoleShape          shape  = HoleShape::circle;
+    double             angle  = 0.; // degrees
+    std::vector<Hole>  listed;
+
+    /** In three dimensions they are bores along z. */
+    bool contains(const dealii::Point<dim> &p) const;
+
+    /**
+     * From a point to the nearest one, or less (of a square one the distance to the circle around
+     * it); the largest number without holes.
+     */
+    double distance(const dealii::Point<dim> &p) const;
+  };
+
   /**
    * `circle: x, y, radius`, `rectangle: x, y of the lower left corner, x, y of the upper right one`
    * and `polygon: x, y of its corners`, separated by `;`.

@@ -114,29 +114,6 @@ namespace PeriDeal
 
     /** Parse all sections and check them one by one and against each other. Throws UserError. */
     void parse_and_validate();
-
-  private:
-    /**
-     * Changes `Cells` where a crack runs along a row of nodes, or says in a note what that means.
-     */
-    void keep_cracks_off_nodes();
-
-    /**
-     * What `Boundary treatment = auto` means here. Throws UserError where `exchange` is asked for
-     * and not possible.
-     */
-    void resolve_boundary_treatment();
-
-    void check_adaptive_zone() const;
-    void check_coupling() const;
-    void check_coarsening() const;
-    void check_image();
-
-    /** What elasticity needs of the other sections. */
-    void check_elasticity() const;
-
-    /** Finds `heat`. Throws UserError as a scene of heat does. */
-    void make_heat_problem();
   };
 
 

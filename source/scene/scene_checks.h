@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/scene.h>
+
+/*
+ * What Scene::parse_and_validate() asks of the sections together, each in a source of its own. All
+ * throw UserError.
+ */
+
+namespace PeriDeal
+{
+  /** Changes `Cells` where a crack runs along a row of nodes, or says in a note what that means. */
+  template <int dim>
+  void keep_cracks_off_nodes(Scene<dim> &scene);
+
+  /** What elasticity needs of the other sections. */
+  template <int dim>
+  void check_elasticity(const Scene<dim> &scene);
+
+  /** Finds Scene::heat. */
+  template <int dim>
+  void make_heat_problem(Scene<dim> &scene);
+
+  /** What `Boundary treatment = auto` means here, and whether `exchange` is possible. */
+  template <int dim>
+  void resolve_boundary_treatment(Scene<dim> &scene);
+
+  /** `Models = coupled` and its zone. */
+  template <int dim>
+  void check_coupling(const Scene<dim> &scene);
+
+  /** `Coarsening`. */
+  template <int dim>
+  void check_coarsening(const Scene<dim> &scene);
+
+  /** Islands and thin voids of an image: takes them out, holds them, or notes them. */
+  template <int dim>
+  void check_image(Scene<dim> &scene);
+} // namespace PeriDeal
