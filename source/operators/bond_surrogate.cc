@@ -57,14 +57,14 @@ namespace PeriDeal
 
     // Which columns are free has to be known of ghosts too.
     Vector free_nodes;
-    initialize_vector(free_nodes);
+    this->initialize_vector(free_nodes);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      free_nodes.local_element(i) = constraints->kind(i) == NodeConstraints<dim>::free ? 1. : 0.;
+      free_nodes.local_element(i) = constraints.kind(i) == NodeConstraints<dim>::free ? 1. : 0.;
     free_nodes.update_ghost_values();
 
     std::vector<typename DiffusionBonds<dim>::Bond> family;
     std::vector<unsigned int>                       starts{0};
-    std::vector<double>                             outside(nodes.n_owned(), 0.);
+    std::vector<double>                             of_outside(nodes.n_owned(), 0.);
     std::vector<std::pair<unsigned int, double>>    entries;
     std::vector<types::global_dof_index>            columns;
     std::vector<double>                             values;
@@ -86,7 +86,7 @@ namespace PeriDeal
                     {
                       // A fictitious node holds its neighbours as far as it does not follow its
                       // mirror.
-                      outside[i] +=
+                      of_outside[i] +=
                         (1. - bonds.neighbors().outside()[bond.neighbor - nodes.n_local()].sign) *
                         c;
                       continue;
@@ -101,12 +101,12 @@ namespace PeriDeal
     pattern.compress();
     matrix.reinit(pattern);
     std::vector<double> convection(nodes.n_owned(), 0.);
-    for (const auto &[node, h] : convection_diagonal)
-      if (free_nodes.local_element(node) > 0.)
-        convection[node] += h;
+    for (const auto &load : loads.convections())
+      if (free_nodes.local_element(load.node) > 0.)
+        convection[load.node] += load.factor;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        double diag = convection[i] + outside[i];
+        double diag = convection[i] + of_outside[i];
         columns.assign(1, nodes.partitioner()->local_to_global(i));
         values.assign(1, 0.);
         for (unsigned int k = starts[i]; k < starts[i + 1]; ++k)
@@ -117,7 +117,7 @@ namespace PeriDeal
             values.push_back(free_nodes.local_element(j) > 0. ? -c : 0.);
           }
         // A node without near neighbours keeps its own diagonal, so that the matrix stays regular.
-        values[0] = diag > 0. ? diag : bond_diagonal.local_element(i);
+        values[0] = diag > 0. ? diag : stiffness_diagonal.local_element(i);
         matrix.set(columns[0], columns.size(), columns.data(), values.data());
       }
     matrix.compress(VectorOperation::insert);

@@ -1,121 +1,40 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+// The matrix, and how it changes with cracks and temperatures.
+
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
-#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/fem_operator.h>
-#include <perideal/operators/spectrum.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
-
-#include "fem_cell_data.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
 
-  template <int dim>
-  bool FEMOperator<dim>::assemble_whole_cell(const Cell &cell,
-                                             CellData   &data,
-                                             const bool  with_bonds) const
+  namespace
   {
-    cell_material.assemble(cell, data.stiffness, data.mass);
-    return zone_bonds && with_bonds && zone_bonds->coupling().change_cell(cell, data.stiffness);
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::assemble_cell(const Cell &cell,
-                                       CellData   &data,
-                                       const bool  with_bonds) const
-  {
-    assemble_whole_cell(cell, data, with_bonds);
-    if (cut_by_cracks.is_cut(cell))
-      cut_by_cracks.cut_matrix(
-        cell,
-        [&] { return cell_material.center_conductivity(cell); },
-        data.stiffness);
-    if (zone_bonds && with_bonds)
-      zone_bonds->coupling().finish_cell(cell, data.stiffness);
-    loads.find_convection(cell, data.convection);
-    cell->get_dof_indices(data.indices);
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::find_crack_factors()
-  {
-    std::vector<Cell> cells;
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (!cell->is_artificial())
-        cells.push_back(cell);
-    const Vector zero(layout);
-    crack_factors.start(zero);
-    std::vector<unsigned int> nodes(zero.locally_owned_size());
-    std::iota(nodes.begin(), nodes.end(), 0);
-    CrackSideFactors::Sums sums(zero);
-    find_crack_factors(cells, nodes, sums);
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::find_crack_factors(const std::vector<Cell>         &cells,
-                                            const std::vector<unsigned int> &nodes,
-                                            CrackSideFactors::Sums          &sums)
-  {
-    CellData &data = *cell_data;
-    for (const Cell &cell : cells)
-      if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
-        {
-          cell->get_dof_indices(data.indices);
-          sums.mark(data.indices);
-        }
-    sums.marked.compress(VectorOperation::max);
-    if (zone_bonds)
-      zone_bonds->mark_broken(nodes, sums);
-    sums.marked.update_ghost_values();
-    for (const Cell &cell : cells)
-      if (cell->is_locally_owned())
-        {
-          cell->get_dof_indices(data.indices);
-          if (!sums.any_marked(data.indices))
-            continue;
-          assemble_cell(cell, data);
-          sums.add(cell,
-                   data.indices,
-                   data.stiffness,
-                   dim * cell_material.center_conductivity(cell));
-        }
-    sums.compress();
-    if (zone_bonds)
-      zone_bonds->add_traces(nodes, sums);
-    crack_factors.find(nodes, sums);
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::scale_beside_cracks(CellData &data) const
-  {
-    if (!crack_factors.empty())
-      data.stiffness *= crack_factors.of_cell(data.indices);
-  }
+    template <int dim>
+    TrilinosWrappers::SparsityPattern empty_pattern(const DoFHandler<dim> &dofs)
+    {
+      const IndexSet &owned = dofs.locally_owned_dofs();
+      IndexSet        relevant;
+      DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+      return TrilinosWrappers::SparsityPattern(owned, owned, relevant, dofs.get_communicator());
+    }
+  } // namespace
 
 
   template <int dim>
   void FEMOperator<dim>::assemble()
   {
-    const IndexSet &owned = dofs.locally_owned_dofs();
-    IndexSet        relevant;
-    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
-    TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
+    TrilinosWrappers::SparsityPattern pattern = empty_pattern(dofs);
     if (!apart())
       DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
     if (zone_bonds)
@@ -124,8 +43,6 @@ namespace PeriDeal
     stiffness.reinit(pattern);
     if (!capacity_is_diagonal())
       mass.reinit(pattern);
-    capacity.reinit(layout);
-    cell_data = std::make_shared<CellData>(dofs.get_fe());
     fill();
   }
 
@@ -133,16 +50,15 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::fill()
   {
-    CellData &data = *cell_data;
     if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling &&
         scene.cracks.mesh == CrackMesh::pairs && !scene.cracks.cracks.empty())
-      find_crack_factors();
+      cells.find_factors(Vector(layout));
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
           const bool empty = zone_bonds && zone_bonds->leaves_nothing(cell);
-          assemble_cell(cell, data);
-          scale_beside_cracks(data);
+          auto      &data  = cells.assemble(cell);
+          loads.find_convection(cell, data.convection);
           data.stiffness.add(1., data.convection);
           if (!empty)
             hanging.add_to(stiffness, data.stiffness, data.indices);
@@ -169,7 +85,7 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::take_material_at(const Vector &u)
   {
-    if (!depends_on_solution())
+    if (!this->depends_on_solution())
       return;
     cell_material.take(u);
     stiffness = 0.;
@@ -184,10 +100,138 @@ namespace PeriDeal
         if (!(stiffness_diagonal.local_element(i) > 0.) || !(capacity.local_element(i) > 0.))
           message =
             "'Conductivity', 'Density' or 'Heat capacity' in section 'Material' is not positive at the temperatures near " +
-            place_of(i) + "; they must be positive at every temperature that the run reaches.";
+            this->place_of(i) +
+            "; they must be positive at every temperature that the run reaches.";
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
     find_gershgorin();
+  }
+
+
+  template <int dim>
+  bool FEMOperator<dim>::move_cracks(const double from, const double to)
+  {
+    const auto cuts = history.changes(from, to);
+    if (cuts.empty())
+      return false;
+    if (!event)
+      event = std::make_unique<EventWork<dim>>(dofs, capacity, prescribed.held());
+    const auto   joins  = boxes_beside(cuts,
+                                    zone_bonds ? zone_bonds->coupling().joining_by(to) :
+                                                    std::vector<BoundingBox<dim>>(),
+                                    dofs.get_communicator());
+    const bool   scaled = !crack_factors.empty();
+    const double reach  = zone_bonds ? zone_bonds->coupling().families().weights().reach() : 0.;
+    // The factors of crack-side scaling change at the vertices of the cells whose own matrix does,
+    // and of all cells around these.
+    const double wide       = scaled ? event->search.largest_diameter() : 0.;
+    const auto   cells_near = [&](const double beyond) { // bonds change the cells that they pass
+      return event->cells_near(cuts, beyond + (scaled ? reach : 0.), joins, beyond + reach);
+    };
+    const std::vector<Cell>         near = cells_near(wide);
+    std::vector<FullMatrix<double>> old(near.size());
+    for (std::size_t k = 0; k < near.size(); ++k)
+      if (near[k]->is_locally_owned())
+        old[k] = cells.assemble(near[k]).stiffness;
+    std::vector<unsigned int>               nodes;
+    typename BondsBesideElements<dim>::Rows old_rows;
+    if (zone_bonds)
+      {
+        const double beyond = scaled ? reach + wide : 0.; // bonds have the factors of both ends
+        auto         boxes  = cuts;
+        boxes.insert(boxes.end(), joins.begin(), joins.end());
+        nodes    = zone_bonds->coupling().families().neighbors().nodes_near(boxes, reach + beyond);
+        old_rows = zone_bonds->set_cracks_of(to, nodes);
+      }
+    cells.cut().set(near, history.pieces(to), history.transmission(to));
+    if (scaled)
+      {
+        const auto beside = owned_unknowns<dim>(cells_near(0.), *layout);
+        cells.find_factors(near, beside, event->factors);
+        event->factors.clear(owned_unknowns<dim>(near, *layout));
+        event->factors.clear(beside);
+      }
+    add_changes(near, old);
+    if (zone_bonds)
+      zone_bonds->add_changes(nodes, old_rows, stiffness, event->touched);
+    stiffness.compress(VectorOperation::add);
+    if (apart())
+      {
+        zone_bonds->change_form(nodes, event->touched);
+        zone_bonds->take_remainder(stiffness);
+      }
+    event->touched.compress();
+    event->touched.sort();
+    update_rows(!joins.empty());
+    event->touched.clear();
+    return true;
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::add_changes(const std::vector<Cell>               &changed,
+                                     const std::vector<FullMatrix<double>> &old)
+  {
+    for (std::size_t k = 0; k < changed.size(); ++k)
+      if (changed[k]->is_locally_owned())
+        {
+          auto &data = cells.assemble(changed[k]);
+          data.stiffness.add(-1., old[k]);
+          if (data.stiffness.linfty_norm() == 0.)
+            continue;
+          if (!(zone_bonds && zone_bonds->leaves_nothing(changed[k])))
+            hanging.add_to(stiffness, data.stiffness, data.indices);
+          event->touch(data.indices, hanging);
+        }
+  }
+
+
+  template <int dim>
+  void FEMOperator<dim>::update_rows(const bool zone_moves)
+  {
+    const auto &partitioner = *stiffness_diagonal.get_partitioner();
+    std::string message;
+    double      bound = 0.;
+    for (const unsigned int i : event->touched.rows())
+      {
+        const double from_form              = zone_bonds ? zone_bonds->sum_of(i) : 0.;
+        double       sum                    = 2. * from_form;
+        stiffness_diagonal.local_element(i) = from_form;
+        for_each_entry_of_row(stiffness, i, [&](const auto column, const double value) {
+          sum += std::abs(value);
+          if (column == partitioner.local_to_global(i))
+            stiffness_diagonal.local_element(i) = from_form + value;
+        });
+        bound = std::max(bound, sum / capacity.local_element(i));
+        // Cells are taken away by subtraction, which leaves round-off behind.
+        if (!(sum > 1e-13 * bounds.safe() * capacity.local_element(i)) && message.empty())
+          message =
+            zone_bonds ?
+              "The node at " + this->place_of(i) +
+                " becomes isolated: the growing cracks cut all of its bonds and pairs." :
+              "'Mesh' in section 'Cracks': the growing cracks leave the finite element node at " +
+                this->place_of(i) + " without any conducting cell. Use 'pairs' or a finer mesh.";
+        if (event->held.contains(i))
+          stiffness_diagonal.local_element(i) = 1.;
+      }
+    throw_on_all_if_any(dofs.get_communicator(), message);
+    const bool stiffer =
+      Utilities::MPI::max(cells.cut().pairs_are_stiffer() ? 1 : 0, dofs.get_communicator()) > 0;
+    if (stiffer || zone_moves || !crack_factors.empty() || history.may_close())
+      {
+        // Rates can have grown. Where cells are only cut, the old bounds still hold.
+        bounds.raise(Utilities::MPI::max(bound, dofs.get_communicator()),
+                     event->touched.rows(),
+                     [&](const double enough) {
+                       return apart() || !symmetric() ? -1. :
+                                                        event->bound(stiffness,
+                                                                     capacity,
+                                                                     event->held,
+                                                                     event->touched.rows(),
+                                                                     this->noise(),
+                                                                     enough);
+                     });
+      }
   }
 
 
@@ -216,28 +260,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  double FEMOperator<dim>::lowest_remainder() const
-  {
-    CellData &data   = *cell_data;
-    double    lowest = std::numeric_limits<double>::infinity();
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && assemble_whole_cell(cell, data))
-        lowest =
-          std::min(lowest,
-                   lowest_eigenvalue(data.stiffness) / (cell_material.center_conductivity(cell) *
-                                                        std::pow(cell->measure(), 1. - 2. / dim)));
-    return Utilities::MPI::min(lowest, dofs.get_communicator());
-  }
-
-
-  template <int dim>
   void FEMOperator<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &matrix,
                                          const bool                      with_bonds) const
   {
-    const IndexSet &owned = dofs.locally_owned_dofs();
-    IndexSet        relevant;
-    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
-    TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
+    TrilinosWrappers::SparsityPattern pattern = empty_pattern(dofs);
     DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
     std::vector<typename Coupling<dim>::Bond> bonds;
     std::vector<types::global_dof_index>      columns;
@@ -263,14 +289,10 @@ namespace PeriDeal
     matrix.reinit(pattern);
     for_each_row(
       [&](const auto row) { matrix.add(row, columns.size(), columns.data(), values.data()); });
-    CellData &data = *cell_data;
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          assemble_whole_cell(cell, data, with_bonds);
-          if (with_bonds)
-            zone_bonds->coupling().finish_cell(cell, data.stiffness);
-          cell->get_dof_indices(data.indices);
+          const auto &data = cells.assemble_intact(cell, with_bonds);
           hanging.add_to(matrix, data.stiffness, data.indices);
         }
     matrix.compress(VectorOperation::add);
@@ -281,49 +303,31 @@ namespace PeriDeal
   void FEMOperator<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
     // Finite elements with the same cracks conduct nearly like the bonds.
-    const IndexSet &owned = dofs.locally_owned_dofs();
-    IndexSet        relevant;
-    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
-    TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
+    TrilinosWrappers::SparsityPattern pattern = empty_pattern(dofs);
     DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
     pattern.compress();
     matrix.reinit(pattern);
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          assemble_cell(cell, *cell_data, false);
-          scale_beside_cracks(*cell_data);
-          cell_data->stiffness.add(1., cell_data->convection);
-          hanging.add_to(matrix, cell_data->stiffness, cell_data->indices);
+          auto &data = cells.assemble(cell, false);
+          loads.find_convection(cell, data.convection);
+          data.stiffness.add(1., data.convection);
+          hanging.add_to(matrix, data.stiffness, data.indices);
         }
     matrix.compress(VectorOperation::add);
   }
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template struct FEMOperator<dim>::CellData;                                                      \
-  template void FEMOperator<dim>::fill();                                                          \
-  template bool FEMOperator<dim>::assemble_whole_cell(                                             \
-    const typename DoFHandler<dim>::active_cell_iterator &,                                        \
-    CellData &,                                                                                    \
-    const bool) const;                                                                             \
-  template void FEMOperator<dim>::assemble_cell(                                                   \
-    const typename DoFHandler<dim>::active_cell_iterator &,                                        \
-    CellData &,                                                                                    \
-    const bool) const;                                                                             \
-  template void FEMOperator<dim>::find_crack_factors();                                            \
-  template void FEMOperator<dim>::find_crack_factors(const std::vector<Cell> &,                    \
-                                                     const std::vector<unsigned int> &,            \
-                                                     CrackSideFactors::Sums &);                    \
-  template void FEMOperator<dim>::scale_beside_cracks(CellData &) const;                           \
+  template void FEMOperator<dim>::assemble();                                                      \
   template void FEMOperator<dim>::take_material_at(const Vector &);                                \
+  template bool FEMOperator<dim>::move_cracks(const double, const double);                         \
   template void FEMOperator<dim>::visit_conductances(                                              \
     const std::function<void(const unsigned int, const unsigned int, const double)> &visit) const; \
-  template double FEMOperator<dim>::lowest_remainder() const;                                      \
-  template void   FEMOperator<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &, const bool)  \
+  template void FEMOperator<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &, const bool)    \
     const;                                                                                         \
-  template void FEMOperator<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &) const;      \
-  template void FEMOperator<dim>::assemble();
+  template void FEMOperator<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -8,10 +8,8 @@
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/fem_operator.h>
-#include <perideal/operators/spectrum.h>
 
 #include <algorithm>
-#include <sstream>
 
 namespace PeriDeal
 {
@@ -21,12 +19,11 @@ namespace PeriDeal
   {
     /** With the halo of the nodes, or of finite elements alone with the locally relevant dofs. */
     template <int dim>
-    std::shared_ptr<const Utilities::MPI::Partitioner> layout_of(
-      const DoFHandler<dim>          &dofs,
-      const BondsBesideElements<dim> *bonds)
+    std::shared_ptr<const Utilities::MPI::Partitioner> layout_of(const DoFHandler<dim> &dofs,
+                                                                 const Coupling<dim>   *coupling)
     {
-      if (bonds != nullptr)
-        return bonds->coupling().families().nodes().partitioner();
+      if (coupling != nullptr)
+        return coupling->families().nodes().partitioner();
       IndexSet relevant;
       DoFTools::extract_locally_relevant_dofs(dofs, relevant);
       return std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
@@ -41,28 +38,30 @@ namespace PeriDeal
                                 const Scene<dim>              &scene,
                                 std::unique_ptr<Coupling<dim>> coupling,
                                 const double                   start)
-    : dofs(dof_handler)
-    , scene(scene)
+    : DiffusionOperatorBase<dim>(scene,
+                                 start,
+                                 layout_of(dof_handler, coupling.get()),
+                                 [this](Vector &vector) { fill_noise(vector); })
+    , dofs(dof_handler)
     , zone_bonds(coupling ?
                    std::make_unique<BondsBesideElements<dim>>(std::move(coupling), crack_factors) :
                    nullptr)
-    , layout(layout_of(dofs, zone_bonds.get()))
     , hanging(dofs, *layout)
     , loads(dofs, layout, scene.boundary_conditions, scene.initial_and_source.source, hanging)
     , cell_material(dofs, scene.material, scene.initial_and_source.initial_value, scene.time.steady)
     , prescribed(dofs, *layout, scene.boundary_conditions, hanging, loads.part_unknowns())
-    , history(scene.crack_history())
-    , cracks_of(history.representative(start))
-    , cut_by_cracks(dofs,
-                    {scene.cracks.mesh == CrackMesh::faces,
-                     scene.cracks.mesh == CrackMesh::removed,
-                     scene.cracks.contact_conductance,
-                     [&scene] { return scene.horizon(); }})
-    , bounds(*this, [this](Vector &vector) { fill_noise(vector); })
+    , cells(dofs,
+            cell_material,
+            zone_bonds.get(),
+            crack_factors,
+            {scene.cracks.mesh == CrackMesh::faces,
+             scene.cracks.mesh == CrackMesh::removed,
+             scene.cracks.contact_conductance,
+             [&scene] { return scene.horizon(); }})
   {
     if (zone_bonds && start > 0.)
-      zone_bonds->set_cracks_of(cracks_of, {});
-    cut_by_cracks.set(history.pieces(cracks_of), history.transmission(cracks_of));
+      zone_bonds->set_cracks_of(this->cracks_of, {});
+    cells.cut().set(history.pieces(this->cracks_of), history.transmission(this->cracks_of));
     assemble();
     find_diagonal();
     find_gershgorin();
@@ -72,7 +71,6 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::find_diagonal()
   {
-    stiffness_diagonal.reinit(layout);
     if (apart())
       {
         zone_bonds->make_form();
@@ -104,7 +102,7 @@ namespace PeriDeal
         if (!(stiffness_diagonal.local_element(i) > 0.))
           message =
             zone_bonds ?
-              "The node at " + place_of(i) +
+              "The node at " + this->place_of(i) +
                 " is isolated: the cracks of section 'Cracks' cut all of its bonds and pairs." :
               "'Mesh' in section 'Cracks': the cracks leave a finite element node without any "
               "conducting cell. Use 'pairs' or a finer mesh.";
@@ -113,27 +111,6 @@ namespace PeriDeal
     throw_on_all_if_any(dofs.get_communicator(), message);
     bounds.set(Utilities::MPI::max(bound, dofs.get_communicator()));
     prescribed.mask(stiffness_diagonal, 1.);
-  }
-
-
-  template <int dim>
-  void FEMOperator<dim>::initialize_vector(Vector &vector) const
-  {
-    vector.reinit(layout);
-  }
-
-
-  template <int dim>
-  const HangingNodes<dim> &FEMOperator<dim>::hanging_nodes() const
-  {
-    return hanging;
-  }
-
-
-  template <int dim>
-  bool FEMOperator<dim>::apart() const
-  {
-    return zone_bonds && zone_bonds->apart();
   }
 
 
@@ -158,19 +135,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::apply(Vector &y, const Vector &x) const
-  {
-    apply_then(y, x, [](const unsigned int, const unsigned int) {});
-  }
-
-
-  template <int dim>
   void FEMOperator<dim>::apply_then(Vector &y, const Vector &x, const RowsAction &finish) const
   {
-    ++applications;
-    entering_now = loads.through_convection(x);
+    ++this->applications;
+    double &entered = this->entering_now;
+    entered         = loads.through_convection(x);
     multiply_then(y, x, [&](const unsigned int begin, const unsigned int end) {
-      entering_now += prescribed.sum(y, begin, end);
+      entered += prescribed.sum(y, begin, end);
       prescribed.mask(y, 0., begin, end);
       finish(begin, end);
     });
@@ -178,43 +149,22 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
+  void FEMOperator<dim>::residual_then(Vector           &r,
+                                       const Vector     &u,
+                                       const double      t,
+                                       const RowsAction &finish) const
   {
-    ++applications;
+    ++this->applications;
     multiply(r, u);
     const Vector      &now = loads.at(t);
     const unsigned int n   = r.locally_owned_size();
-    entering_now           = loads.through_convection(u) + prescribed.sum(r, 0, n) +
-                   (loads.sum() - prescribed.sum(now, 0, n));
+    this->entering_now     = loads.through_convection(u) + prescribed.sum(r, 0, n) +
+                         (loads.sum() - prescribed.sum(now, 0, n));
     r.sadd(-1., 1., now);
     prescribed.mask(r);
+    finish(0, n);
   }
 
-
-  template <int dim>
-  void FEMOperator<dim>::distribute(Vector &u, const double t) const
-  {
-    prescribed.distribute(u, t);
-    hanging.interpolate(u);
-  }
-
-  template <int dim>
-  void FEMOperator<dim>::distribute_homogeneous(Vector &x) const
-  {
-    prescribed.mask(x);
-  }
-
-  template <int dim>
-  void FEMOperator<dim>::clear_constrained(Vector &y) const
-  {
-    prescribed.mask(y);
-  }
-
-  template <int dim>
-  const Vector &FEMOperator<dim>::lumped_capacity() const
-  {
-    return capacity;
-  }
 
   template <int dim>
   bool FEMOperator<dim>::capacity_is_diagonal() const
@@ -226,26 +176,10 @@ namespace PeriDeal
   void FEMOperator<dim>::apply_capacity(Vector &y, const Vector &x) const
   {
     if (capacity_is_diagonal())
-      {
-        y = x;
-        y.scale(capacity);
-      }
+      DiffusionOperatorBase<dim>::apply_capacity(y, x);
     else
       mass.vmult(y, x);
   }
-
-  template <int dim>
-  const Vector &FEMOperator<dim>::diagonal() const
-  {
-    return stiffness_diagonal;
-  }
-
-  template <int dim>
-  const Vector &FEMOperator<dim>::noise() const
-  {
-    return bounds.noise();
-  }
-
 
   template <int dim>
   void FEMOperator<dim>::fill_noise(Vector &vector) const
@@ -261,31 +195,6 @@ namespace PeriDeal
               vector(indices[i]) = position_noise(
                 mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i)));
         }
-  }
-
-
-  template <int dim>
-  Spectrum FEMOperator<dim>::spectrum() const
-  {
-    return bounds.get();
-  }
-
-  template <int dim>
-  bool FEMOperator<dim>::symmetric() const
-  {
-    return !zone_bonds || zone_bonds->coupling().symmetric();
-  }
-
-  template <int dim>
-  bool FEMOperator<dim>::depends_on_time() const
-  {
-    return loads.depends_on_time();
-  }
-
-  template <int dim>
-  bool FEMOperator<dim>::has_steady_state() const
-  {
-    return prescribed.any() || !scene.boundary_conditions.convection.empty();
   }
 
 
@@ -308,73 +217,55 @@ namespace PeriDeal
     });
   }
 
-  template <int dim>
-  bool FEMOperator<dim>::surrogate_is_exact() const
-  {
-    return !apart();
-  }
-
 
   template <int dim>
-  Balance FEMOperator<dim>::balance(const Vector &u, const double t, const bool steady) const
+  void FEMOperator<dim>::find_flows(Balance      &balance,
+                                    Vector       &heat,
+                                    const Vector &u,
+                                    const double  t) const
   {
-    Vector heat(layout);
     multiply(heat, u);
-    // What leaves each unknown through the body; in a prescribed one it must come from outside.
     heat -= loads.at(t);
-    Balance     balance;
-    const auto &conditions = scene.boundary_conditions;
-    for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})
-      for (const SideCondition &condition : *list)
-        balance.sides[condition.name];
     prescribed.add_to(balance.sides, heat);
     loads.add_to(balance, u, t);
-    add_crack_heat(u, balance);
+    if (scene.cracks.conduct())
+      {
+        if (zone_bonds)
+          zone_bonds->add_heat(u, balance);
+        cells.add_heat(u, balance);
+      }
     balance.content = heat_of(u);
-    prescribed.mask(heat);
-    if (!steady)
-      for (unsigned int i = 0; i < heat.locally_owned_size(); ++i)
-        balance.stored -= heat.local_element(i);
-    for (auto &[name, value] : balance.sides)
-      value = Utilities::MPI::sum(value, dofs.get_communicator());
-    for (double *value : {&balance.sources, &balance.stored, &balance.content})
-      *value = Utilities::MPI::sum(*value, dofs.get_communicator());
-    return balance;
   }
 
 
   template <int dim>
-  std::string FEMOperator<dim>::place_of(const unsigned int local_index) const
+  Point<dim> FEMOperator<dim>::position(const unsigned int local_index) const
   {
     const auto                           dof = layout->local_to_global(local_index);
     std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
-    std::ostringstream                   out;
     for (const auto &cell : dofs.active_cell_iterators())
-      if (!cell->is_artificial() && out.str().empty())
+      if (!cell->is_artificial())
         {
           cell->get_dof_indices(indices);
           const auto found = std::find(indices.begin(), indices.end(), dof);
           if (found != indices.end())
-            out << "("
-                << MappingQ1<dim>().transform_unit_to_real_cell(
-                     cell,
-                     dofs.get_fe().unit_support_point(found - indices.begin()))
-                << ")";
+            return MappingQ1<dim>().transform_unit_to_real_cell(
+              cell,
+              dofs.get_fe().unit_support_point(found - indices.begin()));
         }
-    return out.str();
+    Assert(false, ExcInternalError());
+    return Point<dim>();
   }
 
 
   template <int dim>
   OperatorSize FEMOperator<dim>::size() const
   {
-    OperatorSize size;
-    size.unknowns = dofs.n_dofs();
-    size.form     = "matrix";
-    size.nonzeros = stiffness.n_nonzero_elements();
-    size.memory   = stiffness.memory_consumption() + mass.memory_consumption() +
-                  capacity.memory_consumption() + stiffness_diagonal.memory_consumption() +
-                  loads.memory_consumption();
+    OperatorSize size = DiffusionOperatorBase<dim>::size();
+    size.form         = "matrix";
+    size.nonzeros     = stiffness.n_nonzero_elements();
+    size.memory +=
+      stiffness.memory_consumption() + mass.memory_consumption() + loads.memory_consumption();
     if (!apart())
       {
         const Utilities::MPI::MinMaxAvg work =
@@ -387,24 +278,11 @@ namespace PeriDeal
     return size;
   }
 
-  template <int dim>
-  bool FEMOperator<dim>::depends_on_solution() const
-  {
-    return scene.material.depends_on_temperature();
-  }
-
-
-  template <int dim>
-  bool FEMOperator<dim>::capacity_depends_on_solution() const
-  {
-    return scene.material.storage_depends_on_temperature();
-  }
-
 
   template <int dim>
   void FEMOperator<dim>::heat_between(Vector &y, const Vector &u, const Vector &v) const
   {
-    if (capacity_depends_on_solution())
+    if (this->capacity_depends_on_solution())
       {
         cell_material.heat_between(y, u, v, capacity_is_diagonal());
         hanging.condense(y);
@@ -425,7 +303,7 @@ namespace PeriDeal
   template <int dim>
   double FEMOperator<dim>::heat_of(const Vector &u) const
   {
-    if (capacity_depends_on_solution() || scene.time.steady)
+    if (this->capacity_depends_on_solution() || scene.time.steady)
       return cell_material.content(u);
     double heat = 0.;
     for (unsigned int i = 0; i < capacity.locally_owned_size(); ++i)
@@ -433,32 +311,6 @@ namespace PeriDeal
     for (const unsigned int node : hanging.owned())
       heat -= capacity.local_element(node) * u.local_element(node);
     return heat;
-  }
-
-
-  template <int dim>
-  const DoFHandler<dim> &FEMOperator<dim>::dof_handler() const
-  {
-    return dofs;
-  }
-
-  template <int dim>
-  const Material &FEMOperator<dim>::material() const
-  {
-    return scene.material;
-  }
-
-  template <int dim>
-  const std::vector<bool> &FEMOperator<dim>::cut_cells() const
-  {
-    return cut_by_cracks.flags();
-  }
-
-  template <int dim>
-  const Coupling<dim> &FEMOperator<dim>::bonds() const
-  {
-    Assert(zone_bonds, ExcMessage("Finite elements alone have no bonds."));
-    return zone_bonds->coupling();
   }
 
 

@@ -31,6 +31,22 @@ namespace PeriDeal
     slaves_exist = Utilities::MPI::max(slaves.empty() ? 0 : 1, nodes.communicator()) > 0;
     if (slaves_exist)
       couple_slaves(nodes);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      if (kinds[i] != free)
+        held.push_back(i);
+  }
+
+
+  template <int dim>
+  void NodeConstraints<dim>::update(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene)
+  {
+    if (!slaves_exist)
+      return;
+    std::replace(kinds.begin(), kinds.end(), slave, free);
+    slaves.clear();
+    find_slaves(bonds, scene);
+    n_coupled = 0;
+    couple_slaves(nodes);
   }
 
 
@@ -398,10 +414,35 @@ namespace PeriDeal
   template <int dim>
   void NodeConstraints<dim>::mask(Vector &y, const double value) const
   {
-    for (const Prescribed &entry : prescribed_list)
-      y.local_element(entry.node) = value;
-    for (const Slave &entry : slaves)
-      y.local_element(entry.node) = value;
+    mask(y, value, 0, nodes.n_owned());
+  }
+
+
+  template <int dim>
+  void NodeConstraints<dim>::mask(Vector            &y,
+                                  const double       value,
+                                  const unsigned int begin,
+                                  const unsigned int end) const
+  {
+    for (auto node = std::lower_bound(held.begin(), held.end(), begin);
+         node != held.end() && *node < end;
+         ++node)
+      y.local_element(*node) = value;
+  }
+
+
+  template <int dim>
+  double NodeConstraints<dim>::sum(const Vector      &y,
+                                   const unsigned int begin,
+                                   const unsigned int end) const
+  {
+    double sum = 0.;
+    for (auto node = std::lower_bound(held.begin(), held.end(), begin);
+         node != held.end() && *node < end;
+         ++node)
+      if (kinds[*node] == prescribed)
+        sum += y.local_element(*node);
+    return sum;
   }
 
 

@@ -3,20 +3,13 @@
 
 #pragma once
 
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
-#include <perideal/operators/bonds_beside_elements.h>
-#include <perideal/operators/cell_material.h>
-#include <perideal/operators/cut_cells.h>
+#include <perideal/operators/cell_matrices.h>
+#include <perideal/operators/diffusion_operator_base.h>
 #include <perideal/operators/event_work.h>
-#include <perideal/operators/hanging_nodes.h>
 #include <perideal/operators/heat_loads.h>
-#include <perideal/operators/operator.h>
 #include <perideal/operators/prescribed_values.h>
-#include <perideal/operators/spectrum.h>
-#include <perideal/scene/scene.h>
 
 #include <functional>
 #include <memory>
@@ -42,9 +35,11 @@ namespace PeriDeal
    * those of unknowns that are not free.
    */
   template <int dim>
-  class FEMOperator : public DiffusionOperator
+  class FEMOperator : public DiffusionOperatorBase<dim>
   {
   public:
+    using RowsAction = Operator::RowsAction;
+
     /**
      * With the cracks of time @p start, whatever the coupling has had before. Collective. Throws
      * UserError for material values that are not positive and for nodes that `removed` isolates.
@@ -54,41 +49,81 @@ namespace PeriDeal
                 std::unique_ptr<Coupling<dim>> coupling = nullptr,
                 const double                   start    = 0.);
 
-    void          initialize_vector(Vector &vector) const override;
-    void          apply(Vector &y, const Vector &x) const override;
-    void          residual(Vector &r, const Vector &u, const double t) const override;
-    void          apply_then(Vector &y, const Vector &x, const RowsAction &finish) const override;
-    void          distribute(Vector &u, const double t) const override;
-    void          distribute_homogeneous(Vector &x) const override;
-    void          clear_constrained(Vector &y) const override;
-    const Vector &lumped_capacity() const override;
-    bool          capacity_is_diagonal() const override;
-    void          apply_capacity(Vector &y, const Vector &x) const override;
-    const Vector &diagonal() const override;
-    Spectrum      spectrum() const override;
-    bool          symmetric() const override;
-    bool          depends_on_time() const override;
-    bool          has_steady_state() const override;
-    void          surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
-    bool          surrogate_is_exact() const override;
-    double        next_event(const double t) const override;
-    bool          update(const double t) override;
-    bool          depends_on_solution() const override;
-    bool          capacity_depends_on_solution() const override;
-    void          heat_between(Vector &y, const Vector &u, const Vector &v) const override;
-    void          take_material_at(const Vector &u) override;
-    Balance       balance(const Vector &u, const double t, const bool steady) const override;
-    std::string   place_of(const unsigned int local_index) const override;
-    OperatorSize  size() const override;
+    void apply_then(Vector &y, const Vector &x, const RowsAction &finish) const override;
+    void residual_then(Vector           &r,
+                       const Vector     &u,
+                       const double      t,
+                       const RowsAction &finish) const override;
+    void distribute(Vector &u, const double t) const override
+    {
+      prescribed.distribute(u, t);
+      hanging.interpolate(u);
+    }
 
-    const dealii::DoFHandler<dim> &dof_handler() const;
-    const Material                &material() const;
+    void distribute_homogeneous(Vector &x) const override
+    {
+      prescribed.mask(x);
+    }
+
+    void clear_constrained(Vector &y) const override
+    {
+      prescribed.mask(y);
+    }
+
+    bool capacity_is_diagonal() const override;
+    void apply_capacity(Vector &y, const Vector &x) const override;
+    bool symmetric() const override
+    {
+      return !zone_bonds || zone_bonds->coupling().symmetric();
+    }
+
+    bool depends_on_time() const override
+    {
+      return loads.depends_on_time();
+    }
+
+    bool has_steady_state() const override
+    {
+      return prescribed.any() || !scene.boundary_conditions.convection.empty();
+    }
+
+    void surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    bool surrogate_is_exact() const override
+    {
+      return !apart();
+    }
+
+    void         heat_between(Vector &y, const Vector &u, const Vector &v) const override;
+    void         take_material_at(const Vector &u) override;
+    OperatorSize size() const override;
+
+    const dealii::DoFHandler<dim> &dof_handler() const
+    {
+      return dofs;
+    }
+
+    const Material &material() const
+    {
+      return scene.material;
+    }
 
     /** Cells of this process that a crack cuts, by active cell index. */
-    const std::vector<bool> &cut_cells() const;
+    const std::vector<bool> &cut_cells() const
+    {
+      return cells.cut().flags();
+    }
+
+    const HangingNodes<dim> &hanging_nodes() const
+    {
+      return hanging;
+    }
 
     /** Only in the model `coupled`. */
-    const Coupling<dim> &bonds() const;
+    const Coupling<dim> &bonds() const
+    {
+      Assert(zone_bonds, dealii::ExcMessage("Finite elements alone have no bonds."));
+      return zone_bonds->coupling();
+    }
 
     /**
      * K of the body without its cracks, with the bonds of the zone as it is now (or without any),
@@ -96,6 +131,12 @@ namespace PeriDeal
      */
     void assemble_intact(dealii::TrilinosWrappers::SparseMatrix &matrix,
                          const bool                              with_bonds) const;
+
+    /** See CellMatrices. Collective. */
+    double lowest_remainder() const
+    {
+      return cells.lowest_remainder();
+    }
 
     /**
      * Call visit(owned unknown, other unknown, conductance) for all pairs between which bonds or
@@ -109,70 +150,52 @@ namespace PeriDeal
     void multiply(Vector &y, const Vector &x) const;
 
     /**
-     * Numbers in [-1, 1] that look random but depend on the unknowns' positions alone. Collective.
-     */
-    const Vector &noise() const;
-
-    /**
      * Heat in the body, which must have constant capacities; u has been through distribute().
      * Collective.
      */
     double heat(const Vector &u) const;
 
-    const HangingNodes<dim> &hanging_nodes() const;
-
-    /**
-     * Lowest eigenvalue of what the coupling leaves of any cell before cracks cut it, in units of
-     * the conductivity times h^(dim-2); infinite if it leaves all cells as they are. Collective.
-     */
-    double lowest_remainder() const;
+  protected:
+    bool move_cracks(const double from, const double to) override;
+    void find_flows(Balance &balance, Vector &heat, const Vector &u, const double t) const override;
+    dealii::Point<dim> position(const unsigned int local_index) const override;
 
   private:
-    struct CellData;
-    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+    using Cell = typename CellMatrices<dim>::Cell;
+    using DiffusionOperatorBase<dim>::scene;
+    using DiffusionOperatorBase<dim>::layout;
+    using DiffusionOperatorBase<dim>::history;
+    using DiffusionOperatorBase<dim>::capacity;
+    using DiffusionOperatorBase<dim>::stiffness_diagonal;
+    using DiffusionOperatorBase<dim>::bounds;
 
     /** The bonds are a form of their own. */
-    bool apart() const;
+    bool apart() const
+    {
+      return zone_bonds && zone_bonds->apart();
+    }
 
     void   find_diagonal();
+    void   find_gershgorin();
     void   multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const;
-    void   assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
-    void   scale_beside_cracks(CellData &data) const;
-    void   update_rows(const bool zone_moves);
-    void   add_crack_heat(const Vector &u, Balance &balance) const;
     void   assemble();
     void   fill();
+    void   assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
+    void   update_rows(const bool zone_moves);
     double heat_of(const Vector &u) const;
-    bool assemble_whole_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
-    void assemble_cell(const Cell &cell, CellData &data, const bool with_bonds = true) const;
-    std::vector<Cell> cells_near(const std::vector<dealii::BoundingBox<dim>> &cuts,
-                                 const std::vector<dealii::BoundingBox<dim>> &joins,
-                                 const double                                 wide) const;
-    void              add_changes(const std::vector<Cell>                       &cells,
-                                  const std::vector<dealii::FullMatrix<double>> &old);
-    void              fill_noise(Vector &vector) const;
-    void              find_crack_factors();
-    void              find_crack_factors(const std::vector<Cell>         &cells,
-                                         const std::vector<unsigned int> &nodes,
-                                         CrackSideFactors::Sums          &sums);
-    void              find_gershgorin();
+    void   add_changes(const std::vector<Cell>                       &changed,
+                       const std::vector<dealii::FullMatrix<double>> &old);
+    void   fill_noise(Vector &vector) const;
 
     const dealii::DoFHandler<dim>                  &dofs;
-    const Scene<dim>                               &scene;
     CrackSideFactors                                crack_factors;
     const std::unique_ptr<BondsBesideElements<dim>> zone_bonds; // null: finite elements alone
-    const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout; // of vectors
-    const HangingNodes<dim>                                          hanging;
-    const HeatLoads<dim>                                             loads;
-    CellMaterial<dim>                                                cell_material;
-    const PrescribedValues<dim>                                      prescribed;
-    const CrackHistory<dim>                                          history;
-    double                                 cracks_of; // representative time of the cracks in K
-    CutCells<dim>                          cut_by_cracks;
-    dealii::TrilinosWrappers::SparseMatrix stiffness, mass;
-    Vector                                 capacity, stiffness_diagonal;
-    std::shared_ptr<CellData>              cell_data; // memory of the cell loops
-    std::unique_ptr<EventWork<dim>>        event;     // made for the first event
-    SpectralBounds                         bounds;
+    const HangingNodes<dim>                         hanging;
+    const HeatLoads<dim>                            loads;
+    CellMaterial<dim>                               cell_material;
+    const PrescribedValues<dim>                     prescribed;
+    CellMatrices<dim>                               cells;
+    dealii::TrilinosWrappers::SparseMatrix          stiffness, mass;
+    std::unique_ptr<EventWork<dim>>                 event; // made for the first event
   };
 } // namespace PeriDeal

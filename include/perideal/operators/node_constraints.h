@@ -63,6 +63,21 @@ namespace PeriDeal
     /** Set entries that are not free to the given value. */
     void mask(Vector &y, const double value = 0.) const;
 
+    /** The same in the rows [begin, end). */
+    void mask(Vector            &y,
+              const double       value,
+              const unsigned int begin,
+              const unsigned int end) const;
+
+    /** Sum of y over this process's prescribed nodes among the rows [begin, end). */
+    double sum(const Vector &y, const unsigned int begin, const unsigned int end) const;
+
+    /**
+     * Bonds have changed: slaves follow from them anew, but are the same nodes. Throws UserError
+     * where nothing is left of which they follow. Collective if there are slaves.
+     */
+    void update(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene);
+
   private:
     struct SlaveFlux
     {
@@ -106,6 +121,7 @@ namespace PeriDeal
     std::vector<Kind>                            kinds; // owned and ghosts
     std::vector<Prescribed>                      prescribed_list;
     std::vector<Slave>                           slaves;
+    std::vector<unsigned int>                    held; // owned nodes that are not free, ascending
     bool                                         slaves_exist = false, prescribed_exist = false;
     unsigned int                                 n_coupled = 0;
     Eigen::SparseLU<Eigen::SparseMatrix<double>> coupling;
