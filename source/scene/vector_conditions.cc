@@ -238,113 +238,12 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  std::vector<VectorCondition> BoundaryConditions<dim>::parse_vectors(const std::string &entry)
-  {
-    std::vector<VectorCondition> list;
-    for (const std::string &piece : split_list(text(entry), ';'))
-      {
-        const auto      name_value = name_and_value(piece, where(entry));
-        VectorCondition condition;
-        condition.id   = side_id(name_value.first, entry);
-        condition.name = name_of(condition.id);
-        condition.rate = entry == "Velocity";
-        if (find_condition(list, condition.id) != nullptr)
-          error(entry, "the side '" + condition.name + "' is named twice.");
-        parse_components(name_value.second,
-                         dim,
-                         entry != "Traction",
-                         where(entry) + ", side '" + condition.name + "'",
-                         condition);
-        list.push_back(condition);
-      }
-    return list;
-  }
-
-
-  template <int dim>
-  void BoundaryConditions<dim>::refuse_other_physics(const Physics physics,
-                                                     const bool    with_heat) const
-  {
-    const bool elastic = physics == Physics::elasticity;
-    const auto refuse  = [&](const std::string &entry, const std::string &remedy) {
-      if (is_given(entry))
-        error(entry,
-              elastic ? "is for what diffuses; 'Physics' is 'elasticity'. Use " + remedy +
-                          ", or 'Temperature change = computed' in section 'Elasticity'." :
-                         "is for 'Physics = elasticity'; 'Physics' is '" +
-                          names_of(physics).physics + "'. Use " + remedy + ".");
-    };
-    if (elastic && with_heat)
-      return;
-    if (elastic)
-      {
-        refuse("Dirichlet", "'Displacement'");
-        refuse("Flux", "'Traction'");
-        refuse("Convection", "'Displacement' or 'Traction'");
-        return;
-      }
-    refuse("Displacement", "'Dirichlet'");
-    refuse("Velocity", "'Dirichlet'");
-    refuse("Traction", "'Flux'");
-    refuse("Displacement layer", "'Boundary treatment' in section 'Peridynamics'");
-    refuse("Traction layer", "'Flux treatment' in section 'Peridynamics'");
-  }
-
-
-  template <int dim>
-  void BoundaryConditions<dim>::check_vector_conditions() const
-  {
-    if (displacement_layer > 0. && displacement.empty())
-      error("Displacement layer", "has no effect: no side is named in 'Displacement'.");
-    if (traction_layer > 0. && traction.empty())
-      error("Traction layer", "has no effect: no side is named in 'Traction'.");
-    for (const VectorCondition &load : traction)
-      {
-        for (const VectorCondition &grip : displacement)
-          for (unsigned int c = 0; grip.id == load.id && c < dim; ++c)
-            if (grip.values[c] && !grip.held[c] && !is_zero(*load.values[c]))
-              error(
-                "Traction",
-                "the side '" + load.name + "' has a displacement in " + component_name(c) +
-                  " by '" + (grip.rate ? "Velocity" : "Displacement") +
-                  "'; a traction in the same direction contradicts it. Give 0 for that component, or make the "
-                  "displacement 'free' there.");
-        if (std::find(symmetry.begin(), symmetry.end(), side_of(load.id)) != symmetry.end() &&
-            !std::all_of(load.values.begin(), load.values.end(), [](const auto &value) {
-              return is_zero(*value);
-            }))
-          error(
-            "Traction",
-            "the side '" + name_of(side_of(load.id)) +
-              "' is also named in 'Symmetry', which contradicts it: a symmetry plane carries no load of its own.");
-      }
-    for (const VectorCondition &rate : displacement)
-      for (const VectorCondition &grip : displacement)
-        for (unsigned int c = 0; rate.rate && !grip.rate && grip.id == rate.id && c < dim; ++c)
-          if (rate.values[c] && grip.values[c] && !rate.held[c] && !grip.held[c])
-            error("Velocity",
-                  "the side '" + rate.name + "' has a displacement in " + component_name(c) +
-                    " by 'Displacement', which contradicts it. Make one of the two 'free' there.");
-    for (const VectorCondition &grip : displacement)
-      if (std::find(symmetry.begin(), symmetry.end(), side_of(grip.id)) != symmetry.end())
-        error(
-          "Displacement",
-          "the side '" + name_of(side_of(grip.id)) +
-            "' is also named in 'Symmetry', which holds its normal displacement and leaves the others free. Name it in one of the two.");
-  }
-
-
 #define PERIDEAL_INSTANTIATE(dim)                                                               \
   template bool   VectorCondition::holds(const unsigned int, const dealii::Point<dim> &) const; \
   template double integral_over_time(const Expression &,                                        \
                                      const dealii::Point<dim> &,                                \
                                      const double,                                              \
-                                     const double);                                             \
-  template std::vector<VectorCondition> BoundaryConditions<dim>::parse_vectors(                 \
-    const std::string &);                                                                       \
-  template void BoundaryConditions<dim>::refuse_other_physics(const Physics, const bool) const; \
-  template void BoundaryConditions<dim>::check_vector_conditions() const;
+                                     const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)
