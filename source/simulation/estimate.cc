@@ -87,7 +87,7 @@ namespace PeriDeal
     {
       RunEstimate result;
       result.cells          = number_of_cells(scene);
-      const double per_node = n_components_of(scene);
+      const double per_node = problem_factory(scene).n_components();
       const double family   = has_bonds(scene) ? family_size(scene) : 0.;
       result.memory         = 32. * family;
       for (const ModelKind model : scene.general.models)
@@ -209,7 +209,7 @@ namespace PeriDeal
     const OutputEstimate output =
       estimate_output(scene, cells, components, Utilities::MPI::n_mpi_processes(communicator));
     std::vector<std::string> lines;
-    const bool               more = may_solve_again(scene);
+    const bool               more = problem_factory(scene).may_solve_again(scene);
     lines.push_back(
       "time: " +
       (computing >= 0. ?
@@ -365,7 +365,7 @@ namespace PeriDeal
     double most(const Scene<dim> &scene, const double nodes, const double n_bonds)
     {
       constexpr double most_of_node = 20000., most_of_bond = 100.;
-      const double     factor = n_components_of(scene);
+      const double     factor = problem_factory(scene).n_components();
       return factor * (most_of_node * nodes + most_of_bond * factor * n_bonds);
     }
 
@@ -385,7 +385,7 @@ namespace PeriDeal
     if (!scene.domain.has_lattice())
       return false; // no larger than its file
     const double nodes = number_of_cells(scene), n_bonds = bonds_of_full_families(scene);
-    const double factor = n_components_of(scene);
+    const double factor = problem_factory(scene).n_components();
     return nodes * factor > many_nodes || n_bonds * factor > 100. * many_nodes ||
            most(scene, nodes, n_bonds) > 0.5 * available_memory(communicator);
   }

@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model_comparison.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -101,7 +103,8 @@ namespace PeriDeal
       for (unsigned int k = 0; k < sample.models.size(); ++k)
         {
           const double start = processor_seconds();
-          problems.push_back(make_problem(scene.general.models[k], *mesh, scene));
+          problems.push_back(
+            problem_factory(scene).make_problem(scene.general.models[k], *mesh, scene));
           const Problem<dim> &problem = *problems.back();
           ModelEstimate      &model   = sample.models[k];
           const OperatorSize  size    = problem.op().size();

@@ -27,6 +27,7 @@
 #include "checkpoint_clock.h"
 #include "closing.h"
 #include "model_comparison.h"
+#include "run_output.h"
 #include "summary_parts.h"
 
 namespace PeriDeal
@@ -92,12 +93,12 @@ namespace PeriDeal
     for (const ModelKind model : scene.general.models)
       {
         progress.doing("building " + to_string(model));
-        problems.push_back(make_problem(model, *mesh, scene));
+        problems.push_back(problem_factory(scene).make_problem(model, *mesh, scene));
         say_size(*problems.back(), progress);
         for (const std::string &note : problems.back()->notes())
           record->notes.push_back(note);
       }
-    companions = make_companions(problems, *mesh, scene, record->notes);
+    companions = problem_factory(scene).make_companions(problems, *mesh, scene, record->notes);
     for (const auto &companion : companions)
       {
         progress.line("to find the " + companion->field_name() + " in it:");
@@ -118,7 +119,7 @@ namespace PeriDeal
     require_cells_everywhere(*mesh);
     with_formulas(communicator, [&] { check_sides(scene, *mesh); });
     check_points_of_parts(scene, *mesh, record->notes);
-    note_scene(scene, *mesh, record->notes);
+    problem_factory(scene).note_scene(scene, *mesh, record->notes);
   }
 
 
@@ -135,7 +136,7 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::run(const RunMode mode)
   {
-    require_computable(scene);
+    problem_factory(scene).require_computable(scene);
     require_memory(scene, communicator);
     output->open(text, communicator, mode);
     nlohmann::ordered_json summary;
@@ -340,7 +341,7 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::dry_run()
   {
-    require_computable(scene);
+    problem_factory(scene).require_computable(scene);
     const double before = Utilities::MPI::sum(resident_memory(), communicator);
     build();
     begin();

@@ -58,7 +58,7 @@ namespace PeriDeal
           "'Solution' in section 'Reference'."));
       SceneFacts facts;
       facts.title         = scene.general.title;
-      facts.deforms       = n_components_of(scene) > 1;
+      facts.deforms       = problem_factory(scene).n_components() > 1;
       facts.exact         = !scene.reference.solution.empty();
       facts.moving_cracks = scene.cracks.change();
       for (unsigned int d = 0; d < dim; ++d)
@@ -156,8 +156,9 @@ namespace PeriDeal
           std::string &fault = faults[row.family];
           try
             {
-              with_scene(read_scene(scene, all, communicator),
-                         [](const auto &parsed) { require_computable(parsed); });
+              with_scene(read_scene(scene, all, communicator), [](const auto &parsed) {
+                problem_factory(parsed).require_computable(parsed);
+              });
             }
           catch (const UserError &error)
             {

@@ -17,41 +17,71 @@ namespace PeriDeal
   template <int dim>
   using Problems = std::vector<std::unique_ptr<Problem<dim>>>;
 
-  /** Throws UserError for what the physics of a scene cannot do yet. Not collective. */
+  /** How the problems of one physics are made, and what is to be known of them before. */
   template <int dim>
-  void require_computable(const Scene<dim> &scene);
+  class ProblemFactory
+  {
+  public:
+    virtual ~ProblemFactory() = default;
 
-  /** Components of the unknown at each node. Not collective. */
-  template <int dim>
-  unsigned int n_components_of(const Scene<dim> &scene);
+    /** Throws UserError for what cannot be computed. Not collective. */
+    virtual void require_computable(const Scene<dim> & /*scene*/) const {}
 
-  /** Each step may take more than one solution, as many as bonds go on breaking. */
+    /** Components of the unknown at each node. Not collective. */
+    virtual unsigned int n_components() const
+    {
+      return 1;
+    }
+
+    /** Each step may take more than one solution, as many as bonds go on breaking. */
+    virtual bool may_solve_again(const Scene<dim> & /*scene*/) const
+    {
+      return false;
+    }
+
+    /** What the user should know of a scene before anything is built. Collective. */
+    virtual void note_scene(const Scene<dim> & /*scene*/,
+                            const dealii::Triangulation<dim> & /*mesh*/,
+                            std::vector<std::string> & /*notes*/) const
+    {}
+
+    /** The problem of a model, and the time that this takes in its timings. Collective. */
+    virtual std::unique_ptr<Problem<dim>> make_problem(const ModelKind                   model,
+                                                       const dealii::Triangulation<dim> &mesh,
+                                                       const Scene<dim> &scene) const = 0;
+
+    /**
+     * What the problems of a scene need from others on their own nodes before they advance: none,
+     * or one for each. They are not reported. Collective.
+     */
+    virtual Problems<dim> make_companions(const Problems<dim> & /*problems*/,
+                                          const dealii::Triangulation<dim> & /*mesh*/,
+                                          const Scene<dim> & /*scene*/,
+                                          std::vector<std::string> & /*notes*/) const
+    {
+      return {};
+    }
+  };
+
+
+  /** That of a physics. Throws UserError if it has none. Not collective. */
   template <int dim>
-  bool may_solve_again(const Scene<dim> &scene);
+  const ProblemFactory<dim> &problem_factory(const Physics physics);
+
+  template <int dim>
+  const ProblemFactory<dim> &problem_factory(const Scene<dim> &scene)
+  {
+    return problem_factory<dim>(scene.general.physics);
+  }
+
+  /**
+   * For a physics that a program brings (add_physics()): how its problems are made. To be called
+   * once, before a scene of it is read. Not collective.
+   */
+  template <int dim>
+  void set_problem_factory(const Physics physics, std::unique_ptr<ProblemFactory<dim>> factory);
 
   /** Units and names for the summary. Not collective. */
   template <int dim>
   void describe_physics(const Scene<dim> &scene, nlohmann::ordered_json &summary);
-
-  /** What the user should know of a scene before anything is built. Collective. */
-  template <int dim>
-  void note_scene(const Scene<dim>                 &scene,
-                  const dealii::Triangulation<dim> &mesh,
-                  std::vector<std::string>         &notes);
-
-  /** The problem of a model, and the time that this takes in its timings. Collective. */
-  template <int dim>
-  std::unique_ptr<Problem<dim>> make_problem(const ModelKind                   model,
-                                             const dealii::Triangulation<dim> &mesh,
-                                             const Scene<dim>                 &scene);
-
-  /**
-   * What the problems of a scene need from others on their own nodes before they advance: none, or
-   * one for each. They are not reported. Collective.
-   */
-  template <int dim>
-  Problems<dim> make_companions(const Problems<dim>              &problems,
-                                const dealii::Triangulation<dim> &mesh,
-                                const Scene<dim>                 &scene,
-                                std::vector<std::string>         &notes);
 } // namespace PeriDeal

@@ -44,6 +44,13 @@ namespace PeriDeal
 
   const PhysicsNames &names_of(const Physics physics);
 
+  /**
+   * One more physics, for a program that brings its own; scenes may name it from then on. Its
+   * sections are those of what diffuses. How it is computed: set_problem_factory(). To be called
+   * once for each name, before there is a scene. Not collective.
+   */
+  Physics add_physics(const PhysicsNames &names);
+
   /** As in scenes, in the order of the enumeration. */
   std::vector<std::string> physics_choices();
 } // namespace PeriDeal

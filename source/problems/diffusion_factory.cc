@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/problems/diffusion_problem.h>
+#include <perideal/scene/lists.h>
+#include <perideal/scene/with_formulas.h>
+
+#include "crack_note.h"
+#include "physics_factories.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  /** Of cracks that grow, and entries that have no effect. */
+  template <int dim>
+  void note_diffusion(const Scene<dim> &scene, std::vector<std::string> &notes)
+  {
+    if (!scene.cracks.tips.empty())
+      {
+        const CrackHistory<dim> history = scene.crack_history();
+        notes.push_back(
+          "the cracks grow in " + std::to_string(history.events().size()) +
+          " events, between which no tip advances more than " +
+          number_text(history.longest_advance()) +
+          "; bonds are cut too early or too late by at most the time that it needs for half of that ('Growth step' in section "
+          "'Cracks').");
+      }
+    if (!scene.peridynamics.natural_fluxes() && scene.boundary_conditions.flux.empty())
+      notes.push_back(
+        "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' (an insulated side "
+        "needs 'side: 0' there).");
+  }
+
+
+  namespace
+  {
+    template <int dim>
+    class DiffusionFactory : public ProblemFactory<dim>
+    {
+    public:
+      void note_scene(const Scene<dim> &scene,
+                      const Triangulation<dim> &,
+                      std::vector<std::string> &notes) const override
+      {
+        note_missing_crack_scaling(scene, notes);
+        note_diffusion(scene, notes);
+      }
+
+      std::unique_ptr<Problem<dim>> make_problem(const ModelKind           model,
+                                                 const Triangulation<dim> &mesh,
+                                                 const Scene<dim>         &scene) const override
+      {
+        std::unique_ptr<Problem<dim>> problem;
+        with_formulas(mesh.get_communicator(),
+                      [&] { problem = make_diffusion_problem(model, mesh, scene); });
+        return problem;
+      }
+    };
+  } // namespace
+
+
+  template <int dim>
+  std::unique_ptr<ProblemFactory<dim>> make_diffusion_factory()
+  {
+    return std::make_unique<DiffusionFactory<dim>>();
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                               \
+  template void note_diffusion(const Scene<dim> &, std::vector<std::string> &); \
+  template std::unique_ptr<ProblemFactory<dim>> make_diffusion_factory();
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
