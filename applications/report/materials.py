@@ -78,7 +78,7 @@ def entries_of(run):
     """The entries of the section Material that this run uses."""
     if run.words.elastic:
         return ELASTIC
-    found = DIFFUSING[run.get("physics", default="heat")]
+    found = DIFFUSING.get(run.get("physics", default="heat"), DIFFUSING["heat"])
     return tuple(e for e in found if e not in ("Density", "Heat capacity")) if run.get("steady", default=False) else found
 
 

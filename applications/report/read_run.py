@@ -185,7 +185,7 @@ class Run:
 
     def _words(self):
         physics = self.summary.get("physics") or "heat"
-        if physics not in PHYSICS:
+        if physics not in PHYSICS and not self.get("names", "field"):
             raise ReportError(f"'{self.directory / 'summary.json'}': physics must be one of "
                               f"{', '.join(PHYSICS)}, found {json.dumps(physics)}")
         return Words(self.summary)

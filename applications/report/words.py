@@ -79,6 +79,14 @@ PHYSICS = {
 DEGREES = {"C": "°C", "F": "°F", "degC": "°C"}
 
 
+def words_of(physics, names):
+    """Those of a physics; of one that a program has brought those that the run gives."""
+    if physics not in PHYSICS:
+        field = str(names["field"])
+        return Physics(*(str(names.get(key, key)) for key in NAMES), f"values of the {field}", f"contours of equal {field}")
+    return replace(PHYSICS[physics], **{key: str(names[key]) for key in NAMES if names.get(key)})
+
+
 def with_unit(name, unit):
     """'name (unit)', or the name alone without a unit."""
     return f"{name} ({unit})" if unit else name
@@ -91,8 +99,7 @@ class Words:
         summary = summary or {}
         units, names = (part if isinstance(part, dict) else {}
                         for part in (summary.get("units"), summary.get("names")))
-        physics = replace(PHYSICS[summary.get("physics") or "heat"],
-                          **{key: str(names[key]) for key in NAMES if names.get(key)})
+        physics = words_of(summary.get("physics") or "heat", names)
         self.length = units.get("length") or ""
         self.time = units.get("time") or ""
         unit = units.get("field", units.get(physics.field)) or ""

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "wave_problem.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/mesh/node_keys.h>
+#include <perideal/problems/result_record.h>
+#include <perideal/problems/run_context.h>
+#include <perideal/scene/lists.h>
+#include <perideal/scene/with_formulas.h>
+
+#include <cmath>
+
+namespace ScalarWave
+{
+  using namespace dealii;
+  using namespace PeriDeal;
+
+  template <int dim>
+  WaveProblem<dim>::WaveProblem(const ModelKind           model,
+                                const Triangulation<dim> &mesh,
+                                const Scene<dim>         &scene)
+    : scene(scene)
+  {
+    with_formulas(mesh.get_communicator(),
+                  [&] { field = make_diffusion_problem(model, mesh, scene); });
+    this->timings = field->timings;
+  }
+
+
+  template <int dim>
+  void WaveProblem<dim>::begin(const RunContext &)
+  {
+    AssertThrow(op().capacity_is_diagonal(),
+                UserError("Waves need 'Capacity = lumped' in section 'Finite elements'."));
+    op().initialize_vector(velocity);
+    op().initialize_vector(acceleration);
+    const double stable = 2. / std::sqrt(op().spectrum().sharp), given = scene.time.time_step;
+    AssertThrow(given <= stable,
+                UserError("'Time step' in section 'Time' is " + number_text(given) +
+                          ", but waves of this mesh need at most " + number_text(stable) +
+                          " (2/w of the fastest one). Choose a smaller one, or 'auto'."));
+    constexpr double share = 0.5;
+    longest_step           = given > 0. ? given : share * stable;
+    accelerate(0.);
+  }
+
+
+  template <int dim>
+  void WaveProblem<dim>::accelerate(const double t)
+  {
+    op().residual(acceleration, field->solution, t);
+    for (unsigned int i = 0; i < acceleration.locally_owned_size(); ++i)
+      acceleration.local_element(i) /= op().lumped_capacity().local_element(i);
+  }
+
+
+  template <int dim>
+  void WaveProblem<dim>::advance(const double                             from,
+                                 const double                             to,
+                                 const std::function<void(const double)> &report,
+                                 const RunContext &)
+  {
+    Timings::Scope   scope(this->timings, "time stepping");
+    constexpr double round_off = 1e-12;
+    const auto       n         = static_cast<unsigned int>(
+      std::max(1., std::ceil((to - from) / longest_step * (1. - round_off))));
+    const double dt = (to - from) / n;
+    for (unsigned int k = 0; k < n; ++k)
+      {
+        const double next = k + 1 == n ? to : from + (k + 1) * dt;
+        velocity.add(0.5 * dt, acceleration);
+        field->solution.add(dt, velocity);
+        op().distribute(field->solution, next);
+        accelerate(next);
+        velocity.add(0.5 * dt, acceleration);
+        ++n_steps;
+        report((k + 1.) / n);
+      }
+    AssertThrow(std::isfinite(velocity.linfty_norm()),
+                UserError("The wave became unstable before t = " + number_text(to) +
+                          ": choose a smaller 'Time step' in section 'Time'."));
+  }
+
+
+  template <int dim>
+  void WaveProblem<dim>::exchange(Archive &archive)
+  {
+    const NodeKeys keys = node_keys(dofs());
+    archive.exchange("displacement", field->solution, keys);
+    archive.exchange("velocity", velocity, keys);
+    archive.exchange("acceleration", acceleration, keys);
+    archive.exchange("steps", n_steps);
+    op().exchange(archive, keys);
+    this->timings.exchange(archive);
+  }
+
+
+  template <int dim>
+  double WaveProblem<dim>::work_of(const double span) const
+  {
+    return span / longest_step * dofs().n_dofs();
+  }
+
+
+  template <int dim>
+  void WaveProblem<dim>::add_totals(const double t, const RunContext &context)
+  {
+    double energies[2] = {0., 0.}; // u.(C a) = -u.(K u) where nothing acts from outside
+    for (unsigned int i = 0; i < velocity.locally_owned_size(); ++i)
+      {
+        const double c = op().lumped_capacity().local_element(i), v = velocity.local_element(i);
+        energies[0] += 0.5 * c * v * v;
+        energies[1] -= 0.5 * c * field->solution.local_element(i) * acceleration.local_element(i);
+      }
+    for (double &energy : energies)
+      energy = Utilities::MPI::sum(energy, dofs().get_communicator());
+    context.record.add_row(name(), "kinetic energy", energies[0], t);
+    context.record.add_row(name(), "potential energy", energies[1], t);
+    context.record.add_row(name(), "energy", energies[0] + energies[1], t);
+  }
+
+
+  template <int dim>
+  nlohmann::ordered_json WaveProblem<dim>::describe_solving() const
+  {
+    return {{"stepper", "central differences"}, {"steps", n_steps}, {"time step", longest_step}};
+  }
+
+
+  template <int dim>
+  void WaveProblem<dim>::settle(const RunContext &)
+  {
+    Assert(false, ExcInternalError());
+  }
+
+
+  template <int dim>
+  double WaveProblem<dim>::time_of_run(const std::vector<double> &,
+                                       const bool,
+                                       const RunContext &,
+                                       double &)
+  {
+    return -1.;
+  }
+
+
+  template <int dim>
+  void WaveProblem<dim>::take_sample(const RunContext &, ModelEstimate &)
+  {}
+
+
+  template <int dim>
+  std::string WaveProblem<dim>::name() const
+  {
+    return field->name();
+  }
+
+
+  template <int dim>
+  std::string WaveProblem<dim>::field_name() const
+  {
+    return field->field_name();
+  }
+
+
+  template <int dim>
+  const DoFHandler<dim> &WaveProblem<dim>::dofs() const
+  {
+    return field->dofs();
+  }
+
+
+  template <int dim>
+  const Nodes<dim> *WaveProblem<dim>::nodes() const
+  {
+    return field->nodes();
+  }
+
+
+  template <int dim>
+  Operator &WaveProblem<dim>::op() const
+  {
+    return field->op();
+  }
+
+
+  template <int dim>
+  const Vector &WaveProblem<dim>::state() const
+  {
+    return field->solution;
+  }
+
+
+  template <int dim>
+  unsigned int WaveProblem<dim>::n_components() const
+  {
+    return 1;
+  }
+
+
+  template <int dim>
+  Point<dim> WaveProblem<dim>::position(const unsigned int node) const
+  {
+    return field->position(node);
+  }
+
+
+  template <int dim>
+  double WaveProblem<dim>::volume(const unsigned int node) const
+  {
+    return field->volume(node);
+  }
+
+
+  template <int dim>
+  Difference WaveProblem<dim>::error(const ExactSolution &exact, const double t) const
+  {
+    return field->error(exact, t);
+  }
+
+
+  template <int dim>
+  void WaveProblem<dim>::describe_scene(nlohmann::ordered_json &summary,
+                                        const bool              at_the_end) const
+  {
+    field->describe_scene(summary, at_the_end);
+  }
+
+
+  template <int dim>
+  std::vector<std::string> WaveProblem<dim>::columns() const
+  {
+    return field->columns();
+  }
+
+
+  template <int dim>
+  std::vector<double> WaveProblem<dim>::at_points(
+    const PointEvaluator<dim>              &reader,
+    const std::vector<std::vector<double>> &points) const
+  {
+    return field->at_points(reader, points);
+  }
+
+
+  template <int dim>
+  std::vector<double> WaveProblem<dim>::exact_row(const ExactSolution &exact,
+                                                  const Point<dim>    &point,
+                                                  const double         t) const
+  {
+    return field->exact_row(exact, point, t);
+  }
+
+
+  template <int dim>
+  std::vector<OutputField> WaveProblem<dim>::fields(const double t) const
+  {
+    std::vector<OutputField> list = field->fields(t);
+    list.push_back({"velocity", {velocity}});
+    list.back().components[0].update_ghost_values();
+    return list;
+  }
+
+
+  template <int dim>
+  std::vector<std::pair<std::string, std::string>> WaveProblem<dim>::settings() const
+  {
+    return field->settings();
+  }
+
+
+  template <int dim>
+  void WaveFactory<dim>::require_computable(const Scene<dim> &scene) const
+  {
+    const auto require = [](const bool holds, const std::string &what) {
+      AssertThrow(holds, UserError(what));
+    };
+    const auto is_zero = [](const Expression &formula) {
+      return formula.is_constant() && formula.value(Point<dim>()) == 0.;
+    };
+    const auto &sides = scene.boundary_conditions;
+    require(!scene.time.steady, "'Steady' in section 'Time': waves have no steady state.");
+    require(scene.time.stepper == "auto",
+            "'Stepper' in section 'Time' is '" + scene.time.stepper +
+              "'; waves have their own, use 'auto'.");
+    require(
+      sides.flux.empty() && sides.convection.empty(),
+      "Sides of waves are at rest ('Dirichlet', 0) or free: leave out 'Flux' and 'Convection'.");
+    for (const SideCondition &side : sides.dirichlet)
+      require(is_zero(side.value),
+              "'Dirichlet' in section 'Boundary conditions': the side '" + side.name +
+                "' of a wave is at rest, with 0, not '" + side.value.text() + "'.");
+    require(is_zero(scene.initial_and_source.source),
+            "'Source' in section 'Initial and source': nothing acts on these waves, use 0.");
+    require(!scene.material.depends_on_temperature(),
+            "Section 'Material': waves need properties that do not depend on T.");
+    require(!scene.cracks.change(), "Section 'Cracks': waves need cracks that stay as they are.");
+  }
+
+
+  template <int dim>
+  std::unique_ptr<Problem<dim>> WaveFactory<dim>::make_problem(const ModelKind           model,
+                                                               const Triangulation<dim> &mesh,
+                                                               const Scene<dim> &scene) const
+  {
+    return std::make_unique<WaveProblem<dim>>(model, mesh, scene);
+  }
+
+
+  template class WaveProblem<1>;
+  template class WaveProblem<2>;
+  template class WaveProblem<3>;
+  template class WaveFactory<1>;
+  template class WaveFactory<2>;
+  template class WaveFactory<3>;
+} // namespace ScalarWave
