@@ -159,7 +159,7 @@ namespace PeriDeal
               if (static_cast<int>(cells[axis]) + change < 2 || found)
                 continue;
               other[axis] += change;
-              found = first_along_row(pieces, scene.domain, other, at_centers, off_row, axis) ==
+              found = first_along_row(pieces, domain, other, at_centers, off_row, axis) ==
                       nullptr;
               if (found)
                 cells = other;
