@@ -62,24 +62,32 @@ namespace ScalarWave
   void WaveProblem<dim>::advance(const double                             from,
                                  const double                             to,
                                  const std::function<void(const double)> &report,
-                                 const RunContext &)
+                                 const RunContext                        &context)
   {
     Timings::Scope   scope(this->timings, "time stepping");
     constexpr double round_off = 1e-12;
-    const auto       n         = static_cast<unsigned int>(
-      std::max(1., std::ceil((to - from) / longest_step * (1. - round_off))));
-    const double dt = (to - from) / n;
-    for (unsigned int k = 0; k < n; ++k)
+    if (!span.is_open) // else the run has been stopped within it
       {
-        const double next = k + 1 == n ? to : from + (k + 1) * dt;
+        span         = StepSpan::between(from, to);
+        span.n_steps = static_cast<unsigned int>(
+          std::max(1., std::ceil((to - from) / longest_step * (1. - round_off))));
+      }
+    const double dt = (span.end - span.start) / span.n_steps;
+    while (span.n_done < span.n_steps)
+      {
+        ++span.n_done;
+        ++n_steps;
+        span.now = span.n_done == span.n_steps ? span.end : span.start + span.n_done * dt;
         velocity.add(0.5 * dt, acceleration);
         field->solution.add(dt, velocity);
-        op().distribute(field->solution, next);
-        accelerate(next);
+        op().distribute(field->solution, span.now);
+        accelerate(span.now);
         velocity.add(0.5 * dt, acceleration);
-        ++n_steps;
-        report((k + 1.) / n);
+        report(static_cast<double>(span.n_done) / span.n_steps);
+        if (context.after_step && span.n_done < span.n_steps)
+          context.after_step(span.now);
       }
+    span.is_open = false;
     AssertThrow(std::isfinite(velocity.linfty_norm()),
                 UserError("The wave became unstable before t = " + number_text(to) +
                           ": choose a smaller 'Time step' in section 'Time'."));
@@ -94,6 +102,7 @@ namespace ScalarWave
     archive.exchange("velocity", velocity, keys);
     archive.exchange("acceleration", acceleration, keys);
     archive.exchange("steps", n_steps);
+    span.exchange(archive);
     op().exchange(archive, keys);
     this->timings.exchange(archive);
   }

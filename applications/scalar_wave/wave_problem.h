@@ -5,6 +5,7 @@
 
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/problem_factory.h>
+#include <perideal/solvers/step_span.h>
 
 #include <memory>
 #include <string>
@@ -84,6 +85,7 @@ namespace ScalarWave
     const PeriDeal::Scene<dim>                      &scene;
     std::unique_ptr<PeriDeal::DiffusionProblem<dim>> field; // has u
     Vector                                           velocity, acceleration;
+    PeriDeal::StepSpan                               span;
     double                                           longest_step = 0.;
     unsigned long long                               n_steps      = 0;
   };

@@ -201,11 +201,11 @@ def check_mistakes():
     # An image that has changed since.
     image = os.path.join(new_folder() + ".png")
     shutil.copy(os.path.join(SOURCE_DIR, "prm/papers/le_2014/images/cross_section.png"), image)
-    of_image, folder = {**IMAGE, "Domain/Image": image}, new_folder()
-    check_stopped(run("papers/le_2014/cooling.prm", folder, {**of_image, **stop}), folder, "image")
+    of_image, other = {**IMAGE, "Domain/Image": image}, new_folder()
+    check_stopped(run("papers/le_2014/cooling.prm", other, {**of_image, **stop}), other, "image")
     with open(image, "ab") as file:
         file.write(b"\n")
-    refused(run("papers/le_2014/cooling.prm", folder, of_image, ["--resume"]), "'Image' in section 'Domain'", "changed")
+    refused(run("papers/le_2014/cooling.prm", other, of_image, ["--resume"]), "'Image' in section 'Domain'", "changed")
 
     # A torn file is named, the one before is taken.
     check(run(scene, folder, {**overrides, **stop}, ["--resume"]).returncode == 3, "a second stop")

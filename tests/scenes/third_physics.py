@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""A physics that a program brings (applications/scalar_wave): its scene, its mistakes, on 1 and 2 processes, stopped and resumed.
+"""A physics that a program brings (applications/scalar_wave): its scene, report and mistakes, on 1 and 2 processes, stopped and resumed.
 
 A product of sines is a wave of one frequency w in both models: in peridynamics by one sum over the family (tests/reference/harmonics.py), in finite
 elements with lumped masses by the symbol of their stencil. Its amplitude at first is 1, and that of the lumped projection of the initial value in finite
@@ -71,8 +71,11 @@ def main():
     check_waves(whole, "1 process")
     check(whole.summary["physics"] == "wave" and whole.summary["names"]["field"] == "displacement", "names in the summary")
     check_waves(run(ranks=2), "2 processes")
+    drawn = subprocess.run([sys.executable, os.path.join(SOURCE_DIR, "applications", "report", "report.py"), whole.folder], capture_output=True, text=True,
+                           timeout=300, check=False)
+    check(drawn.returncode == 0 and os.path.exists(os.path.join(whole.folder, "report.html")), f"its report: {drawn.stderr[-500:]}")
 
-    stopped = run("Checkpoint/Wall time limit=0.001 s")
+    stopped = run("Checkpoint/Wall time limit=0.001 s")  # after its first step
     check(stopped.returncode == 3, f"stopped: exit status {stopped.returncode}\n{stopped.stderr[-500:]}")
     resumed = run("--resume", folder=stopped.folder)
     check(resumed.returncode == 0, f"resumed: {resumed.stderr[-500:]}")
