@@ -7,6 +7,11 @@
 
 #include <perideal/base/interleaved.h>
 #include <perideal/base/matrix_rows.h>
+#include <perideal/operators/spectrum.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "elastic_cell_data.h"
 
@@ -67,6 +72,36 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ElasticElements<dim>::change_cell(const Cell &cell, CellData &data) const
+  {
+    if (zone_bonds && zone_bonds->coupling().change_cell(cell, data.stiffness))
+      {
+        // The remainder carries a uniform thermal strain like the whole cell less its bonds.
+        double change = 0.;
+        if (this->temperature_change().size() == 0)
+          change = scene.elasticity.temperature_change.value(cell->center());
+        else
+          for (const auto i : data.indices)
+            change += this->temperature_change()(i) / data.indices.size();
+        const double           strain = this->thermal_strain(cell->center(), change);
+        dealii::Vector<double> free(data.thermal.size());
+        for (unsigned int a = 0; a < data.indices.size(); ++a)
+          for (unsigned int d = 0; d < dim; ++d)
+            free(dim * a + d) = strain * (cell->vertex(a)[d] - cell->center()[d]);
+        data.stiffness.vmult(data.thermal, free);
+        data.thermal_energy = 0.5 * (free * data.thermal);
+      }
+    double factor = cut_by_cracks.is_cut(cell) ? 0. : 1.;
+    factor *= crack_factors.of_cell(data.indices);
+    if (factor == 1.)
+      return;
+    data.stiffness *= factor;
+    data.thermal *= factor;
+    data.thermal_energy *= factor;
+  }
+
+
+  template <int dim>
   TrilinosWrappers::SparsityPattern ElasticElements<dim>::element_pattern() const
   {
     const IndexSet owned    = unknowns->locally_owned_range();
@@ -86,18 +121,43 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ElasticElements<dim>::find_crack_factors()
+  {
+    const Vector           layout(nodes);
+    CrackSideFactors::Sums sums(layout);
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
+        {
+          cell->get_dof_indices(cell_data->indices);
+          sums.mark(cell_data->indices);
+        }
+    sums.marked.compress(VectorOperation::max);
+    zone_bonds->add_to(sums);
+    for_each_own_cell([&](const Cell &cell, CellData &data) {
+      change_cell(cell, data);
+      const Moduli moduli = scene.material.moduli(cell->center());
+      const double mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear,
+                   lambda = dim == 1 ? 0. : lambda_of(moduli, dim, scene.elasticity.plane);
+      sums.add(cell, data.indices, data.stiffness, dim * lambda + dim * (dim + 1) * mu);
+    });
+    sums.compress();
+    std::vector<unsigned int> owned(nodes->locally_owned_size());
+    std::iota(owned.begin(), owned.end(), 0);
+    crack_factors.start(layout);
+    crack_factors.find(owned, sums);
+  }
+
+
+  template <int dim>
   void ElasticElements<dim>::assemble()
   {
     cell_data                                 = std::make_unique<CellData>(dofs.get_fe());
     TrilinosWrappers::SparsityPattern pattern = element_pattern();
-    if (coupling)
-      {
-        add_bond_pattern(pattern);
-        add_family_pattern(pattern);
-      }
+    if (zone_bonds)
+      zone_bonds->add_pattern(pattern);
     pattern.compress();
     stiffness.reinit(pattern);
-    if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling && coupling &&
+    if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling && zone_bonds &&
         !scene.cracks.cracks.empty())
       find_crack_factors();
     volumes.reinit(nodes);
@@ -111,11 +171,9 @@ namespace PeriDeal
       for (unsigned int i = 0; i < of_cell.indices.size(); ++i)
         volumes(of_cell.indices[i]) += of_cell.volume(i);
     });
-    if (coupling)
-      {
-        add_bonds(stiffness, false);
-        count_bonds(add_families(stiffness, false));
-      }
+    if (zone_bonds)
+      n_bonds = std::llround(
+        Utilities::MPI::sum(zone_bonds->add_to(stiffness, crack_factors), dofs.get_communicator()));
     finish_thermal(energy);
     stiffness.compress(VectorOperation::add);
     mass.compress(VectorOperation::add);
@@ -126,6 +184,15 @@ namespace PeriDeal
     });
     conditions->mask(stiffness_diagonal, 1.);
     throw_if_isolated();
+  }
+
+
+  template <int dim>
+  bool ElasticElements<dim>::any_thermal() const
+  {
+    const Expression &change = scene.elasticity.temperature_change;
+    return this->temperature_change().size() > 0 || !change.is_constant() ||
+           change.value(Point<dim>()) != 0.;
   }
 
 
@@ -142,11 +209,14 @@ namespace PeriDeal
   void ElasticElements<dim>::finish_thermal(const double energy)
   {
     thermal_energy = Utilities::MPI::sum(energy, dofs.get_communicator());
-    if (coupling)
-      {
-        add_thermal_bonds();
-        add_thermal_families();
-      }
+    if (zone_bonds && any_thermal())
+      thermal_energy +=
+        Utilities::MPI::sum(zone_bonds->add_thermal(thermal_loads,
+                                                    crack_factors,
+                                                    [this](const unsigned int node) {
+                                                      return this->thermal_strain_at(node);
+                                                    }),
+                            dofs.get_communicator());
     thermal_loads.compress(VectorOperation::add);
   }
 
@@ -240,8 +310,8 @@ namespace PeriDeal
     find_loads(loads, t);
     stiffness.vmult(reactions, u);
     std::map<types::boundary_id, Tensor<1, dim>> sums;
-    if (coupling)
-      for (const types::boundary_id side : coupling->mirrors())
+    if (zone_bonds)
+      for (const types::boundary_id side : zone_bonds->coupling().mirrors())
         for (unsigned int i = side / 2; i < reactions.locally_owned_size(); i += dim)
           sums[side][side / 2] -= reactions.local_element(i) - thermal_loads.local_element(i);
     reactions -= loads;
@@ -253,13 +323,53 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                   \
-  template void                              ElasticElements<dim>::assemble_cell(CellData &) const; \
-  template TrilinosWrappers::SparsityPattern ElasticElements<dim>::element_pattern() const;         \
-  template void                              ElasticElements<dim>::assemble();                      \
-  template void         ElasticElements<dim>::set_temperature_change(const Vector &);               \
-  template void         ElasticElements<dim>::find_loads(Vector &, const double) const;             \
-  template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;
+  template <int dim>
+  void ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &matrix,
+                                             const bool                      with_bonds) const
+  {
+    if (with_bonds)
+      matrix.reinit(stiffness);
+    else
+      {
+        TrilinosWrappers::SparsityPattern pattern = element_pattern();
+        pattern.compress();
+        matrix.reinit(pattern);
+      }
+    for_each_own_cell([&](const Cell &cell, CellData &data) {
+      if (with_bonds && zone_bonds)
+        zone_bonds->coupling().change_cell(cell, data.stiffness);
+      data.add_stiffness_to(matrix);
+    });
+    if (with_bonds && zone_bonds)
+      zone_bonds->add_intact(matrix);
+    matrix.compress(VectorOperation::add);
+  }
+
+
+  template <int dim>
+  double ElasticElements<dim>::lowest_remainder() const
+  {
+    double lowest = std::numeric_limits<double>::infinity();
+    if (zone_bonds)
+      for_each_own_cell([&](const Cell &cell, CellData &data) {
+        if (zone_bonds->coupling().change_cell(cell, data.stiffness))
+          lowest = std::min(lowest,
+                            lowest_eigenvalue(data.stiffness) /
+                              (scene.material.moduli(cell->center()).shear *
+                               std::pow(cell->measure(), 1. - 2. / dim)));
+      });
+    return Utilities::MPI::min(lowest, dofs.get_communicator());
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                               \
+  template void         ElasticElements<dim>::assemble();                                       \
+  template void         ElasticElements<dim>::set_temperature_change(const Vector &);           \
+  template void         ElasticElements<dim>::find_loads(Vector &, const double) const;         \
+  template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;       \
+  template void         ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &, \
+                                                      const bool) const;                \
+  template double       ElasticElements<dim>::lowest_remainder() const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

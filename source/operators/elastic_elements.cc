@@ -23,10 +23,11 @@ namespace PeriDeal
   template <int dim>
   ElasticElements<dim>::ElasticElements(const DoFHandler<dim>                &dof_handler,
                                         const Scene<dim>                     &scene,
-                                        std::unique_ptr<ElasticCoupling<dim>> given_coupling)
+                                        std::unique_ptr<ElasticCoupling<dim>> coupling)
     : SolidOperator<dim>(scene)
     , dofs(dof_handler)
-    , coupling(std::move(given_coupling))
+    , zone_bonds(coupling ? std::make_unique<SolidBondsBesideElements<dim>>(std::move(coupling)) :
+                            nullptr)
     , cut_by_cracks(dofs,
                     {scene.cracks.mesh == CrackMesh::faces,
                      true,
@@ -37,10 +38,10 @@ namespace PeriDeal
     IndexSet relevant;
     DoFTools::extract_locally_relevant_dofs(dofs, relevant);
     this->set_layout(
-      coupling ? coupling->families().nodes().partitioner() :
-                 std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
-                                                                     relevant,
-                                                                     dofs.get_communicator()));
+      zone_bonds ? zone_bonds->nodes().partitioner() :
+                   std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
+                                                                       relevant,
+                                                                       dofs.get_communicator()));
     find_positions();
     find_conditions();
     cut_by_cracks.set(scene.cracks.pieces(0.), 0.);
@@ -57,10 +58,10 @@ namespace PeriDeal
   void ElasticElements<dim>::find_positions()
   {
     positions.resize(nodes->locally_owned_size() + nodes->n_ghost_indices());
-    if (coupling)
+    if (zone_bonds)
       {
         for (unsigned int i = 0; i < positions.size(); ++i)
-          positions[i] = coupling->families().nodes().position(i);
+          positions[i] = zone_bonds->nodes().position(i);
         return;
       }
     const MappingQ1<dim>                 mapping;
@@ -138,6 +139,32 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ElasticElements<dim>::throw_if_isolated() const
+  {
+    const double largest = stiffness_diagonal.linfty_norm();
+    std::string  message;
+    for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size() && message.empty(); ++i)
+      {
+        const std::string fault =
+          zone_bonds && i % dim == 0 ? zone_bonds->coupling().fault_of(i / dim) : "";
+        if (!fault.empty())
+          message =
+            "The node at " + this->place_of(i) + fault +
+            " Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
+        else if (!(stiffness_diagonal.local_element(i) > 1e-13 * largest))
+          message =
+            "The node at " + this->place_of(i) +
+            " is isolated: cracks cut all cells around it, and no bond holds it. Use " +
+            (zone_bonds ?
+               "fewer cracks, or a wider 'Zone' in section 'Coupling' where only a part of the body has bonds." :
+               "'Models = coupled' with a zone around the cracks, or 'Mesh = "
+               "faces' in section 'Cracks'.");
+      }
+    throw_on_all_if_any(dofs.get_communicator(), message);
+  }
+
+
+  template <int dim>
   Spectrum ElasticElements<dim>::spectrum() const
   {
     std::vector<double> row_sums(mass.locally_owned_size(), 0.);
@@ -166,8 +193,8 @@ namespace PeriDeal
     size.nonzeros = stiffness.n_nonzero_elements();
     size.bonds    = n_bonds;
     size.memory   = stiffness.memory_consumption() + positions.capacity() * sizeof(Point<dim>);
-    if (coupling)
-      size.memory += coupling->memory_consumption();
+    if (zone_bonds)
+      size.memory += zone_bonds->coupling().memory_consumption();
     size.form = "matrix";
     return size;
   }

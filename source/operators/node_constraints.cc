@@ -31,9 +31,15 @@ namespace PeriDeal
     slaves_exist = Utilities::MPI::max(slaves.empty() ? 0 : 1, nodes.communicator()) > 0;
     if (slaves_exist)
       couple_slaves(nodes);
+    std::vector<unsigned int> not_free, with_value;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       if (kinds[i] != free)
-        held.push_back(i);
+        {
+          not_free.push_back(i);
+          if (kinds[i] == prescribed)
+            with_value.push_back(i);
+        }
+    this->set_held(std::move(not_free), std::move(with_value));
   }
 
 
@@ -408,41 +414,6 @@ namespace PeriDeal
     for (const Prescribed &entry : prescribed_list)
       x.local_element(entry.node) = 0.;
     set_slaves(x, 0., true);
-  }
-
-
-  template <int dim>
-  void NodeConstraints<dim>::mask(Vector &y, const double value) const
-  {
-    mask(y, value, 0, nodes.n_owned());
-  }
-
-
-  template <int dim>
-  void NodeConstraints<dim>::mask(Vector            &y,
-                                  const double       value,
-                                  const unsigned int begin,
-                                  const unsigned int end) const
-  {
-    for (auto node = std::lower_bound(held.begin(), held.end(), begin);
-         node != held.end() && *node < end;
-         ++node)
-      y.local_element(*node) = value;
-  }
-
-
-  template <int dim>
-  double NodeConstraints<dim>::sum(const Vector      &y,
-                                   const unsigned int begin,
-                                   const unsigned int end) const
-  {
-    double sum = 0.;
-    for (auto node = std::lower_bound(held.begin(), held.end(), begin);
-         node != held.end() && *node < end;
-         ++node)
-      if (kinds[*node] == prescribed)
-        sum += y.local_element(*node);
-    return sum;
   }
 
 

@@ -73,16 +73,19 @@ namespace PeriDeal
       for (unsigned int k = 0; k < dirichlet.size(); ++k)
         if (dirichlet[k].id == unknown.id)
           hold(k, layout.local_to_global(unknown.node), unknown.position);
+    std::vector<unsigned int> prescribed;
     for (const auto &[unknown, entry] : found)
       {
         entries.push_back({unknown, entry.second, &dirichlet[entry.first]});
-        not_free.push_back(unknown);
+        prescribed.push_back(unknown);
         ++n_held[entry.first];
       }
     const MPI_Comm communicator = dofs.get_communicator();
     require_held_parts(conditions, dirichlet, n_nodes, n_held, "Dirichlet", communicator);
+    std::vector<unsigned int> not_free = prescribed;
     not_free.insert(not_free.end(), hanging.owned().begin(), hanging.owned().end());
     std::sort(not_free.begin(), not_free.end());
+    this->set_held(std::move(not_free), std::move(prescribed));
     on_any_process = Utilities::MPI::max(entries.empty() ? 0 : 1, communicator) > 0;
   }
 
@@ -95,55 +98,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  const std::vector<unsigned int> &PrescribedValues<dim>::held() const
-  {
-    return not_free;
-  }
-
-
-  template <int dim>
   void PrescribedValues<dim>::distribute(Vector &u, const double t) const
   {
     for (const Entry &entry : entries)
       u.local_element(entry.unknown) = entry.condition->value.value(entry.position, t);
-  }
-
-
-  template <int dim>
-  void PrescribedValues<dim>::mask(Vector &y, const double value) const
-  {
-    mask(y, value, 0, y.locally_owned_size());
-  }
-
-
-  template <int dim>
-  void PrescribedValues<dim>::mask(Vector            &y,
-                                   const double       value,
-                                   const unsigned int begin,
-                                   const unsigned int end) const
-  {
-    for (auto i = std::lower_bound(not_free.begin(), not_free.end(), begin);
-         i != not_free.end() && *i < end;
-         ++i)
-      y.local_element(*i) = value;
-  }
-
-
-  template <int dim>
-  double PrescribedValues<dim>::sum(const Vector      &y,
-                                    const unsigned int begin,
-                                    const unsigned int end) const
-  {
-    double sum = 0.;
-    for (auto entry =
-           std::lower_bound(entries.begin(),
-                            entries.end(),
-                            begin,
-                            [](const Entry &a, const unsigned int b) { return a.unknown < b; });
-         entry != entries.end() && entry->unknown < end;
-         ++entry)
-      sum += y.local_element(entry->unknown);
-    return sum;
   }
 
 

@@ -12,12 +12,14 @@
 #include <limits>
 #include <map>
 
-#include "resume_test_tools.h"
+#include "output_test_tools.h"
+#include "scene_test_tools.h"
 
 namespace
 {
   using namespace PeriDeal;
-  using namespace ResumeTests;
+  using namespace OutputTests;
+  using namespace SceneTests;
   using dealii::Utilities::MPI::n_mpi_processes;
   using dealii::Utilities::MPI::this_mpi_process;
 
@@ -219,8 +221,8 @@ namespace
     ASSERT_EQ(writer.finish(), 0);
     CheckpointReader reader(name, MPI_COMM_WORLD);
     State            finer(MPI_COMM_WORLD, 60);
-    expect_in(error_of([&] { finer.exchange(reader); }), {"'peridynamics/u'", "mesh"});
-    expect_in(error_of([&] { reader.exchange("w", finer.number); }), {"'w'", "another scene"});
+    expect_parts(message_of([&] { finer.exchange(reader); }), {"'peridynamics/u'", "mesh"});
+    expect_parts(message_of([&] { reader.exchange("w", finer.number); }), {"'w'", "another scene"});
   }
 
 
@@ -262,7 +264,7 @@ namespace
   TEST_F(CheckpointTest, one_that_is_not_whole_is_named_and_the_one_before_is_taken)
   {
     std::vector<std::string> notes;
-    expect_in(error_of([&] { newest(notes); }), {"nothing to resume", place, "--resume"});
+    expect_parts(message_of([&] { newest(notes); }), {"nothing to resume", place, "--resume"});
     run(2);
     EXPECT_EQ(newest(notes), "checkpoints/2.h5");
     EXPECT_TRUE(notes.empty());
@@ -278,7 +280,7 @@ namespace
       notes.clear();
       EXPECT_EQ(newest(notes), "checkpoints/1.h5");
       ASSERT_EQ(notes.size(), 1u);
-      expect_in(notes[0], {"checkpoints/2.h5", fault, "checkpoints/1.h5"});
+      expect_parts(notes[0], {"checkpoints/2.h5", fault, "checkpoints/1.h5"});
     };
     std::string other_bit = whole;
     if (is_first())
@@ -303,8 +305,8 @@ namespace
     if (is_first())
       replace("checkpoints/1.h5", "");
     MPI_Barrier(MPI_COMM_WORLD);
-    expect_in(error_of([&] { newest(notes); }),
-              {"nothing to resume", "1.h5", "2.h5", "--overwrite"});
+    expect_parts(message_of([&] { newest(notes); }),
+                 {"nothing to resume", "1.h5", "2.h5", "--overwrite"});
   }
 
 
@@ -326,7 +328,7 @@ namespace
       if (is_first()) // the folder goes while it is being written
         fs::rename(place + "/checkpoints", place + "/gone");
     };
-    expect_in(checkpoints.write(header, save), {"checkpoints/4.h5", "could not be written"});
+    expect_parts(checkpoints.write(header, save), {"checkpoints/4.h5", "could not be written"});
     if (is_first())
       fs::rename(place + "/gone", place + "/checkpoints");
     MPI_Barrier(MPI_COMM_WORLD);
@@ -345,9 +347,9 @@ namespace
   {
     run(1);
     const auto begin = [&](const RunMode mode) {
-      return error_of([&] { ResultFolder folder(place, "scene.prm", {}, MPI_COMM_WORLD, mode); });
+      return message_of([&] { ResultFolder folder(place, "scene.prm", {}, MPI_COMM_WORLD, mode); });
     };
-    expect_in(begin(RunMode::begin), {place, "--resume", "--overwrite"});
+    expect_parts(begin(RunMode::begin), {place, "--resume", "--overwrite"});
     EXPECT_EQ(begin(RunMode::overwrite), ""); // and ends without results
     EXPECT_EQ(begin(RunMode::resume), "");
     if (is_first())
@@ -361,7 +363,7 @@ namespace
         replace("b.csv", "half");
       }
     MPI_Barrier(MPI_COMM_WORLD);
-    expect_in(begin(RunMode::begin), {"--resume"});
+    expect_parts(begin(RunMode::begin), {"--resume"});
     EXPECT_EQ(begin(RunMode::resume), "");
     if (is_first())
       {
@@ -378,7 +380,7 @@ namespace
       CheckpointHeader now = header;
       if (!from.empty())
         now.scene.replace(now.scene.find(from), from.size(), to);
-      return error_of([&] { require_same_run(header, now, "out/checkpoints/1.h5"); });
+      return message_of([&] { require_same_run(header, now, "out/checkpoints/1.h5"); });
     };
     EXPECT_EQ(error("", ""), "");
     EXPECT_EQ(error("Title = a", "Title = b"), "");
@@ -388,18 +390,19 @@ namespace
                     "subsection Output\n  set Fields = none\nend\nsubsection Solver\n  set "
                     "Tolerance = 1\nend\nsubsection Time"),
               "");
-    expect_in(error("4, 4", "4, 5"),
-              {"'Cells' in section 'Domain'", "'4, 4'", "'4, 5'", "out/checkpoints/1.h5", "may"});
-    expect_in(error("rk4", "euler"), {"'Stepper'", "'rk4'", "'euler'"});
-    expect_in(error("set Stepper = rk4", ""), {"'Stepper'", "'rk4'", "missing"});
+    expect_parts(
+      error("4, 4", "4, 5"),
+      {"'Cells' in section 'Domain'", "'4, 4'", "'4, 5'", "out/checkpoints/1.h5", "may"});
+    expect_parts(error("rk4", "euler"), {"'Stepper'", "'rk4'", "'euler'"});
+    expect_parts(error("set Stepper = rk4", ""), {"'Stepper'", "'rk4'", "missing"});
     CheckpointHeader other = header;
     other.program          = "0.0.1";
-    expect_in(error_of([&] { require_same_run(other, header, "1.h5"); }),
-              {"PeriDeal 0.0.1", "PeriDeal " PERIDEAL_VERSION});
+    expect_parts(message_of([&] { require_same_run(other, header, "1.h5"); }),
+                 {"PeriDeal 0.0.1", "PeriDeal " PERIDEAL_VERSION});
     other                       = header;
     other.files["Domain/Image"] = "2";
-    expect_in(error_of([&] { require_same_run(header, other, "1.h5"); }),
-              {"'Image' in section 'Domain'", "1.h5", "changed"});
-    EXPECT_EQ(error_of([&] { require_same_run(other, other, "1.h5"); }), "");
+    expect_parts(message_of([&] { require_same_run(header, other, "1.h5"); }),
+                 {"'Image' in section 'Domain'", "1.h5", "changed"});
+    EXPECT_EQ(message_of([&] { require_same_run(other, other, "1.h5"); }), "");
   }
 } // namespace

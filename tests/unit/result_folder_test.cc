@@ -1,72 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/base/mpi.h>
-
-#include <perideal/base/user_error.h>
 #include <perideal/output/tables.h>
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
 #include <fstream>
-#include <iterator>
+
+#include "output_test_tools.h"
+#include "scene_test_tools.h"
 
 namespace
 {
   using namespace PeriDeal;
   namespace fs = std::filesystem;
 
-  /** A folder that all processes use and that goes with the test. */
-  class ResultFolderTest : public ::testing::Test
+  class ResultFolderTest : public OutputTests::OutputDirectory
   {
   protected:
-    void SetUp() override
-    {
-      std::string name;
-      if (is_first())
-        {
-          std::string pattern = (fs::temp_directory_path() / "perideal_XXXXXX").string();
-          name                = mkdtemp(pattern.data());
-        }
-      place = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, name, 0);
-    }
-
-    void TearDown() override
-    {
-      MPI_Barrier(MPI_COMM_WORLD);
-      if (is_first())
-        fs::remove_all(place);
-    }
-
-    static bool is_first()
-    {
-      return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
-    }
-
-    std::string content(const std::string &name) const
-    {
-      std::ifstream in(place + "/" + name);
-      return {std::istreambuf_iterator<char>(in), {}};
-    }
-
-    bool there_is(const std::string &name) const
-    {
-      return fs::exists(place + "/" + name);
-    }
-
     /** The message of a run that is refused, empty if it is not. */
     std::string refusal(const std::vector<std::string> &names) const
     {
-      try
-        {
-          ResultFolder folder(place, "scene.prm", names, MPI_COMM_WORLD);
-        }
-      catch (const UserError &error)
-        {
-          return error.message();
-        }
-      return "";
+      return SceneTests::message_of(
+        [&] { ResultFolder folder(place, "scene.prm", names, MPI_COMM_WORLD); });
     }
 
     /** A run that ends well. */
@@ -78,8 +32,6 @@ namespace
       folder.commit();
       folder.check();
     }
-
-    std::string place;
   };
 
 

@@ -14,12 +14,14 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "resume_test_tools.h"
+#include "output_test_tools.h"
+#include "scene_test_tools.h"
 
 namespace
 {
   using namespace PeriDeal;
-  using namespace ResumeTests;
+  using namespace OutputTests;
+  using namespace SceneTests;
   using ResumedFiles = OutputDirectory;
 
 
@@ -89,16 +91,17 @@ namespace
     const auto error = [](const std::string &entry, const std::string &text, const bool steady) {
       CheckpointControl wrong;
       wrong.set(entry, text);
-      return error_of([&] { wrong.parse(1., steady); });
+      return message_of([&] { wrong.parse(1., steady); });
     };
-    expect_in(error("Every", "10", false), {"'Every' in section 'Checkpoint'", "'10'", "min", "0"});
-    expect_in(error("Every", "", false), {"'Every'", "''"});
-    expect_in(error("Wall time limit", "1 day", false), {"'Wall time limit'", "'1 day'", "h"});
-    expect_in(error("Wall time limit", "0", false), {"'Wall time limit'", "more than 0"});
-    expect_in(error("Keep", "0", false), {"'Keep'", "1 or more"});
-    expect_in(error("Times", "0.5, 2", false), {"'Times'", "2", "'End time'"});
-    expect_in(error("Times", "x", false), {"'Times'", "'x'"});
-    expect_in(error("Times", "0.5", true), {"'Times'", "steady"});
+    expect_parts(error("Every", "10", false),
+                 {"'Every' in section 'Checkpoint'", "'10'", "min", "0"});
+    expect_parts(error("Every", "", false), {"'Every'", "''"});
+    expect_parts(error("Wall time limit", "1 day", false), {"'Wall time limit'", "'1 day'", "h"});
+    expect_parts(error("Wall time limit", "0", false), {"'Wall time limit'", "more than 0"});
+    expect_parts(error("Keep", "0", false), {"'Keep'", "1 or more"});
+    expect_parts(error("Times", "0.5, 2", false), {"'Times'", "2", "'End time'"});
+    expect_parts(error("Times", "x", false), {"'Times'", "'x'"});
+    expect_parts(error("Times", "0.5", true), {"'Times'", "steady"});
   }
 
 
@@ -203,7 +206,7 @@ namespace
 
     // tables that are shorter than they were, or gone
     const auto error = [&] {
-      return error_of([&] {
+      return message_of([&] {
         Files         files(place, RunMode::resume);
         MemoryArchive archive(saved, MPI_COMM_WORLD);
         files.exchange(archive);
@@ -212,11 +215,11 @@ namespace
     if (is_first())
       replace("probes.csv", "time\n");
     MPI_Barrier(MPI_COMM_WORLD);
-    expect_in(error(), {"probes.csv", "5 bytes", "--overwrite"});
+    expect_parts(error(), {"probes.csv", "5 bytes", "--overwrite"});
     if (is_first())
       fs::remove(place + "/totals.csv");
     MPI_Barrier(MPI_COMM_WORLD);
-    expect_in(error(), {"totals.csv", "gone", "--overwrite"});
+    expect_parts(error(), {"totals.csv", "gone", "--overwrite"});
     if (is_first())
       {
         EXPECT_EQ(content("probes.csv"), "time\n");

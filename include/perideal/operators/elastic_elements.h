@@ -10,7 +10,7 @@
 #include <perideal/operators/condition_faces.h>
 #include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/cut_cells.h>
-#include <perideal/operators/elastic_coupling.h>
+#include <perideal/operators/solid_bonds_beside_elements.h>
 #include <perideal/operators/solid_operator.h>
 
 #include <memory>
@@ -31,10 +31,10 @@ namespace PeriDeal
    *
    * One scalar DoFHandler numbers the nodes; each has dim unknowns, interleaved.
    *
-   * With a coupling its bonds and families are added, with their thermal loads, and the cells
-   * changed (ElasticCoupling); K is as symmetric as the coupling. Cells that a crack cuts carry
-   * nothing (`Mesh = removed`), so that in a zone the bonds around the crack alone hold what they
-   * do; unless the crack is cut into the mesh. Thermal strains of bonds are the means of both ends.
+   * With a coupling its bonds and families are added, with their thermal loads
+   * (SolidBondsBesideElements), and the cells changed (ElasticCoupling); K is as symmetric as the
+   * coupling. Cells that a crack cuts carry nothing (`Mesh = removed`), so that in a zone the bonds
+   * around the crack alone hold what they do; unless the crack is cut into the mesh.
    *
    * Crack-side scaling: at nodes with broken bonds and on cut cells g_i = V_i C_abab/(-(1/2) sum_j
    * tr K_ij r_ij^2), C_abab = dim lambda + dim (dim + 1) mu, clipped to [0.5, 4]; elsewhere g = 1.
@@ -60,7 +60,7 @@ namespace PeriDeal
     OperatorSize size() const override;
     bool         symmetric() const override
     {
-      return !coupling || coupling->symmetric();
+      return !zone_bonds || zone_bonds->coupling().symmetric();
     }
 
     ForceBalance forces(const Vector &u, const double t) const override;
@@ -90,7 +90,7 @@ namespace PeriDeal
     /** Only in the model `coupled`. */
     const ElasticCoupling<dim> &bonds() const
     {
-      return *coupling;
+      return zone_bonds->coupling();
     }
 
     /** Cells of this process that a crack cuts, by active cell index. */
@@ -130,42 +130,32 @@ namespace PeriDeal
     /** Of cells alone, with rows of other processes; not compressed. */
     dealii::TrilinosWrappers::SparsityPattern element_pattern() const;
 
-    void   find_positions();
-    void   find_conditions();
-    void   assemble();
-    void   assemble_cell(CellData &data) const;
-    void   change_cell(const Cell &cell, CellData &data) const;
-    void   find_crack_factors();
-    void   add_bond_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
-    void   add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
-    void   add_thermal_bonds();
-    void   add_family_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
-    double add_families(dealii::TrilinosWrappers::SparseMatrix &matrix,
-                        const bool                              intact) const; // their bonds
-    void   unknowns_of(const typename ElasticCoupling<dim>::Family  &family,
-                       std::vector<dealii::types::global_dof_index> &indices) const;
-    void   add_thermal_families();
-    bool   any_thermal() const;
-    void   count_bonds(const double n_in_families);
-    void   add_thermal(const CellData &data, double &energy);
-    void   finish_thermal(const double energy);
-    void   throw_if_isolated() const;
+    void find_positions();
+    void find_conditions();
+    void assemble();
+    void assemble_cell(CellData &data) const;
+    void change_cell(const Cell &cell, CellData &data) const;
+    void find_crack_factors();
+    bool any_thermal() const;
+    void add_thermal(const CellData &data, double &energy);
+    void finish_thermal(const double energy);
+    void throw_if_isolated() const;
     template <typename Visit>
     void for_each_own_cell(const Visit &visit) const;
     template <typename Visit>
     void for_each_load(const double t, const Visit &visit) const;
 
-    const dealii::DoFHandler<dim>         &dofs;
-    std::unique_ptr<ElasticCoupling<dim>>  coupling; // null: finite elements alone
-    CutCells<dim>                          cut_by_cracks;
-    ConditionFaces<dim>                    condition_faces;
-    std::vector<PartUnknown<dim>>          part_unknowns; // of regions and points
-    std::vector<dealii::Point<dim>>        positions;
-    dealii::TrilinosWrappers::SparseMatrix stiffness;
-    std::unique_ptr<CellData>              cell_data;
-    Vector                                 volumes;
-    CrackSideFactors                       crack_factors;
-    unsigned long long                     n_bonds        = 0;
-    double                                 thermal_energy = 0.; // of a body that is held everywhere
+    const dealii::DoFHandler<dim>                 &dofs;
+    std::unique_ptr<SolidBondsBesideElements<dim>> zone_bonds; // null: finite elements alone
+    CutCells<dim>                                  cut_by_cracks;
+    ConditionFaces<dim>                            condition_faces;
+    std::vector<PartUnknown<dim>>                  part_unknowns; // of regions and points
+    std::vector<dealii::Point<dim>>                positions;
+    dealii::TrilinosWrappers::SparseMatrix         stiffness;
+    std::unique_ptr<CellData>                      cell_data;
+    Vector                                         volumes;
+    CrackSideFactors                               crack_factors;
+    unsigned long long                             n_bonds = 0;
+    double thermal_energy = 0.; // of a body that is held everywhere
   };
 } // namespace PeriDeal

@@ -5,6 +5,7 @@
 
 #include <perideal/base/types.h>
 #include <perideal/bonds/diffusion_bonds.h>
+#include <perideal/operators/held_unknowns.h>
 
 #include <Eigen/SparseLU>
 #include <cstdint>
@@ -21,7 +22,7 @@ namespace PeriDeal
    * every process, and solved at each distribution.
    */
   template <int dim>
-  class NodeConstraints
+  class NodeConstraints : public HeldUnknowns
   {
   public:
     enum Kind : std::uint8_t
@@ -59,18 +60,6 @@ namespace PeriDeal
 
     /** The same with zero values and fluxes. Collective. */
     void distribute_homogeneous(Vector &x) const;
-
-    /** Set entries that are not free to the given value. */
-    void mask(Vector &y, const double value = 0.) const;
-
-    /** The same in the rows [begin, end). */
-    void mask(Vector            &y,
-              const double       value,
-              const unsigned int begin,
-              const unsigned int end) const;
-
-    /** Sum of y over this process's prescribed nodes among the rows [begin, end). */
-    double sum(const Vector &y, const unsigned int begin, const unsigned int end) const;
 
     /**
      * Bonds have changed: slaves follow from them anew, but are the same nodes. Throws UserError
@@ -121,7 +110,6 @@ namespace PeriDeal
     std::vector<Kind>                            kinds; // owned and ghosts
     std::vector<Prescribed>                      prescribed_list;
     std::vector<Slave>                           slaves;
-    std::vector<unsigned int>                    held; // owned nodes that are not free, ascending
     bool                                         slaves_exist = false, prescribed_exist = false;
     unsigned int                                 n_coupled = 0;
     Eigen::SparseLU<Eigen::SparseMatrix<double>> coupling;

@@ -5,6 +5,7 @@
 
 #include <perideal/operators/condition_faces.h>
 #include <perideal/operators/hanging_nodes.h>
+#include <perideal/operators/held_unknowns.h>
 
 #include <map>
 #include <string>
@@ -18,7 +19,7 @@ namespace PeriDeal
    * owned unknowns. Conditions must outlive this.
    */
   template <int dim>
-  class PrescribedValues
+  class PrescribedValues : public HeldUnknowns
   {
   public:
     /**
@@ -36,23 +37,8 @@ namespace PeriDeal
     /** Some unknown of any process has a value. Not collective. */
     bool any() const;
 
-    /** Unknowns that are not free, ascending. */
-    const std::vector<unsigned int> &held() const;
-
     /** Set the values of time t; hanging nodes are left as they are. Not collective. */
     void distribute(Vector &u, const double t) const;
-
-    /** Set what is not free to a value. Not collective. */
-    void mask(Vector &y, const double value = 0.) const;
-
-    /** The same in the rows [begin, end). */
-    void mask(Vector            &y,
-              const double       value,
-              const unsigned int begin,
-              const unsigned int end) const;
-
-    /** Sum of y over this process's prescribed unknowns among the rows [begin, end). */
-    double sum(const Vector &y, const unsigned int begin, const unsigned int end) const;
 
     /** Add y of this process's prescribed unknowns to what their conditions have, by name. */
     void add_to(std::map<std::string, double> &sides, const Vector &y) const;
@@ -65,8 +51,7 @@ namespace PeriDeal
       const SideCondition *condition;
     };
 
-    std::vector<Entry>        entries; // in the order of unknowns
-    std::vector<unsigned int> not_free;
-    bool                      on_any_process = false;
+    std::vector<Entry> entries; // in the order of unknowns
+    bool               on_any_process = false;
   };
 } // namespace PeriDeal

@@ -3,11 +3,9 @@
 
 #pragma once
 
-// What the tests of runs that are resumed share.
+// What the tests of output directories share.
 
 #include <deal.II/base/mpi.h>
-
-#include <perideal/base/user_error.h>
 
 #include <gtest/gtest.h>
 
@@ -15,34 +13,10 @@
 #include <fstream>
 #include <iterator>
 #include <string>
-#include <vector>
 
-namespace ResumeTests
+namespace OutputTests
 {
   namespace fs = std::filesystem;
-
-  /** The message of the UserError of an action, empty if there is none. */
-  template <typename Action>
-  std::string error_of(const Action &action)
-  {
-    try
-      {
-        action();
-      }
-    catch (const PeriDeal::UserError &error)
-      {
-        return error.message();
-      }
-    return "";
-  }
-
-
-  inline void expect_in(const std::string &text, const std::vector<std::string> &words)
-  {
-    for (const std::string &word : words)
-      EXPECT_NE(text.find(word), std::string::npos) << word << " in: " << text;
-  }
-
 
   /** An output directory that all processes use and that goes with the test. */
   class OutputDirectory : public ::testing::Test
@@ -53,8 +27,9 @@ namespace ResumeTests
       std::string name;
       if (is_first())
         {
-          std::string pattern = (fs::temp_directory_path() / "perideal_XXXXXX").string();
-          name                = mkdtemp(pattern.data());
+          // mkdtemp() chooses the last six letters.
+          name = (fs::temp_directory_path() / "perideal_").string() + std::string(6, 'X');
+          EXPECT_NE(mkdtemp(name.data()), nullptr) << "no folder " << name;
         }
       place = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, name, 0);
     }
@@ -89,4 +64,4 @@ namespace ResumeTests
 
     std::string place;
   };
-} // namespace ResumeTests
+} // namespace OutputTests

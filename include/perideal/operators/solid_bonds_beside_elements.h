@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/crack_side_factors.h>
+#include <perideal/operators/elastic_coupling.h>
+
+#include <memory>
+#include <vector>
+
+namespace dealii::TrilinosWrappers
+{
+  class SparseMatrix;
+  class SparsityPattern;
+} // namespace dealii::TrilinosWrappers
+
+namespace PeriDeal
+{
+  /**
+   * What the bonds and families of a coupling add to the finite elements of a solid, its unknowns
+   * interleaved. Broken bonds add nothing; others are multiplied by the mean of the crack-side
+   * factors of both ends. Thermal strains of bonds are the means of both ends.
+   *
+   * Matrices and vectors are compressed by the caller. Not collective unless stated.
+   */
+  template <int dim>
+  class SolidBondsBesideElements
+  {
+  public:
+    using ThermalStrain = typename ElasticCoupling<dim>::ThermalStrain;
+
+    explicit SolidBondsBesideElements(std::unique_ptr<ElasticCoupling<dim>> coupling);
+
+    const ElasticCoupling<dim> &coupling() const
+    {
+      return *coupled;
+    }
+
+    const Nodes<dim> &nodes() const
+    {
+      return coupled->families().nodes();
+    }
+
+    void add_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
+
+    /**
+     * Add to K. Returns the number of this process's unbroken bonds, those with other processes
+     * counted half.
+     */
+    double add_to(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                  const CrackSideFactors                 &factors) const;
+
+    /** The same as if no crack were there, without factors. */
+    void add_intact(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
+
+    /**
+     * Add the loads that hold a body with thermal strains at rest. Returns this process's energy
+     * of a body that is held everywhere.
+     */
+    double add_thermal(Vector                 &loads,
+                       const CrackSideFactors &factors,
+                       const ThermalStrain    &strain) const;
+
+    /** Mark owned nodes with broken bonds, and add what the others give to the trace. */
+    void add_to(CrackSideFactors::Sums &sums) const;
+
+  private:
+    using Bond   = typename ElasticCoupling<dim>::Bond;
+    using Family = typename ElasticCoupling<dim>::Family;
+
+    /** @param factors null: as if no crack were there. Returns the number as add_to() does. */
+    double add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                     const CrackSideFactors                 *factors) const;
+    double add_families(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
+    void   unknowns_of(const Family                                 &family,
+                       std::vector<dealii::types::global_dof_index> &indices) const;
+
+    std::unique_ptr<ElasticCoupling<dim>> coupled;
+  };
+} // namespace PeriDeal

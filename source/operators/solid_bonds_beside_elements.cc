@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/partitioner.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <perideal/operators/solid_bonds_beside_elements.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  SolidBondsBesideElements<dim>::SolidBondsBesideElements(
+    std::unique_ptr<ElasticCoupling<dim>> coupling)
+    : coupled(std::move(coupling))
+  {}
+
+
+  template <int dim>
+  void SolidBondsBesideElements<dim>::unknowns_of(
+    const Family                         &family,
+    std::vector<types::global_dof_index> &indices) const
+  {
+    indices.clear();
+    for (const unsigned int j : family.nodes)
+      for (unsigned int d = 0; d < dim; ++d)
+        indices.push_back(dim * nodes().partitioner()->local_to_global(j) + d);
+  }
+
+
+  template <int dim>
+  void SolidBondsBesideElements<dim>::add_pattern(TrilinosWrappers::SparsityPattern &pattern) const
+  {
+    const Utilities::MPI::Partitioner   &layout = *nodes().partitioner();
+    std::vector<Bond>                    bonds;
+    std::vector<types::global_dof_index> columns;
+    for (unsigned int i = 0; i < layout.locally_owned_size(); ++i)
+      {
+        coupled->bonds_of(i, bonds);
+        if (bonds.empty())
+          continue;
+        columns.clear();
+        for (const Bond &bond : bonds)
+          for (unsigned int d = 0; d < dim; ++d)
+            columns.push_back(dim * layout.local_to_global(bond.neighbor) + d);
+        for (unsigned int d = 0; d < dim; ++d)
+          columns.push_back(dim * layout.local_to_global(i) + d);
+        for (unsigned int d = 0; d < dim; ++d)
+          pattern.add_entries(dim * layout.local_to_global(i) + d, columns.begin(), columns.end());
+      }
+    for (unsigned int i = 0; i < layout.locally_owned_size(); ++i)
+      coupled->visit_nodes_of_family(i, [&](const Family &family) {
+        unknowns_of(family, columns);
+        for (unsigned int a = 0; a < columns.size(); ++a)
+          if (family.has_row[a / dim])
+            pattern.add_entries(columns[a], columns.begin(), columns.end());
+      });
+  }
+
+
+  template <int dim>
+  double SolidBondsBesideElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &matrix,
+                                                  const CrackSideFactors         *factors) const
+  {
+    const Utilities::MPI::Partitioner   &layout = *nodes().partitioner();
+    std::vector<Bond>                    bonds;
+    std::vector<types::global_dof_index> columns;
+    std::vector<double>                  values[dim];
+    double                               n = 0.;
+    for (unsigned int i = 0; i < layout.locally_owned_size(); ++i)
+      {
+        coupled->bonds_of(i, bonds);
+        if (bonds.empty())
+          continue;
+        const auto own = layout.local_to_global(i);
+        columns.clear();
+        for (unsigned int c = 0; c < dim; ++c)
+          {
+            columns.push_back(dim * own + c);
+            values[c].assign(dim, 0.);
+          }
+        for (const Bond &bond : bonds)
+          {
+            if (bond.cut && factors != nullptr)
+              continue;
+            n += 0.5;
+            const double factor = factors == nullptr ? 1. : factors->of_bond(i, bond.neighbor);
+            for (unsigned int e = 0; e < dim; ++e)
+              columns.push_back(dim * layout.local_to_global(bond.neighbor) + e);
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int e = 0; e < dim; ++e)
+                {
+                  values[c].push_back(-factor * bond.block[c][e]);
+                  values[c][e] += factor * bond.block[c][e];
+                }
+          }
+        for (unsigned int c = 0; c < dim; ++c)
+          matrix.add(dim * own + c, columns.size(), columns.data(), values[c].data());
+      }
+    return n;
+  }
+
+
+  template <int dim>
+  double SolidBondsBesideElements<dim>::add_families(TrilinosWrappers::SparseMatrix &matrix,
+                                                     const bool                      intact) const
+  {
+    std::vector<types::global_dof_index> indices;
+    double                               n = 0.;
+    for (unsigned int i = 0; i < nodes().n_owned(); ++i)
+      coupled->visit_family(i, intact, {}, [&](const Family &family) {
+        unknowns_of(family, indices);
+        n += family.n_bonds;
+        for (unsigned int a = 0; a < indices.size(); ++a)
+          if (family.has_row[a / dim])
+            matrix.add(indices[a],
+                       static_cast<types::global_dof_index>(indices.size()),
+                       indices.data(),
+                       &family.stiffness(a, 0));
+      });
+    return n;
+  }
+
+
+  template <int dim>
+  double SolidBondsBesideElements<dim>::add_to(TrilinosWrappers::SparseMatrix &matrix,
+                                               const CrackSideFactors         &factors) const
+  {
+    const double n_pairs = add_bonds(matrix, &factors);
+    return n_pairs + add_families(matrix, false);
+  }
+
+
+  template <int dim>
+  void SolidBondsBesideElements<dim>::add_intact(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    add_bonds(matrix, nullptr);
+    add_families(matrix, true);
+  }
+
+
+  template <int dim>
+  double SolidBondsBesideElements<dim>::add_thermal(Vector                 &loads,
+                                                    const CrackSideFactors &factors,
+                                                    const ThermalStrain    &strain) const
+  {
+    std::vector<Bond>                    bonds;
+    std::vector<types::global_dof_index> indices;
+    double                               energy = 0.;
+    for (unsigned int i = 0; i < nodes().n_owned(); ++i)
+      {
+        coupled->bonds_of(i, bonds);
+        for (const Bond &bond : bonds)
+          {
+            if (bond.cut)
+              continue;
+            const Tensor<1, dim> xi   = nodes().position(bond.neighbor) - nodes().position(i);
+            const double         mean = 0.5 * (strain(i) + strain(bond.neighbor));
+            const Tensor<1, dim> force =
+              factors.of_bond(i, bond.neighbor) * mean * (bond.block * xi);
+            for (unsigned int d = 0; d < dim; ++d)
+              loads.local_element(dim * i + d) -= force[d];
+            energy += 0.25 * mean * (force * xi); // each bond is seen from both of its ends
+          }
+      }
+    for (unsigned int i = 0; i < nodes().n_owned(); ++i)
+      coupled->visit_family(i, false, strain, [&](const Family &family) {
+        unknowns_of(family, indices);
+        for (unsigned int a = 0; a < indices.size(); ++a)
+          loads(indices[a]) += family.thermal(a);
+        energy += family.thermal_energy;
+      });
+    return energy;
+  }
+
+
+  template <int dim>
+  void SolidBondsBesideElements<dim>::add_to(CrackSideFactors::Sums &sums) const
+  {
+    std::vector<Bond> bonds;
+    for (unsigned int i = 0; i < nodes().n_owned(); ++i)
+      {
+        coupled->bonds_of(i, bonds);
+        for (const Bond &bond : bonds)
+          if (bond.cut)
+            sums.marked.local_element(i) = 1.;
+          else
+            sums.trace.local_element(i) +=
+              0.5 * trace(bond.block) *
+              (nodes().position(bond.neighbor) - nodes().position(i)).norm_square();
+      }
+  }
+
+
+  template class SolidBondsBesideElements<1>;
+  template class SolidBondsBesideElements<2>;
+  template class SolidBondsBesideElements<3>;
+} // namespace PeriDeal
