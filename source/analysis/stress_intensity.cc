@@ -179,7 +179,37 @@ namespace PeriDeal
   }
 
 
-  std::vector<CrackEndIntegral> crack_end_integrals(const Scene<2> &scene)
+  namespace
+  {
+    /** An end of a crack at a time, and the last corner on the way to it. */
+    std::pair<Point<2>, Point<2>> last_stretch(const Cracks<2>   &cracks,
+                                               const unsigned int crack,
+                                               const unsigned int end,
+                                               const double       time)
+    {
+      std::pair<Point<2>, Point<2>> stretch(cracks.cracks[crack][end],
+                                            cracks.cracks[crack][1 - end]);
+      for (const CrackTip<2> &tip : cracks.tips)
+        if (tip.crack == crack && tip.corner == end)
+          {
+            const Tensor<1, 2> first = stretch.first - stretch.second;
+            stretch.first            = tip.at(time);
+            for (const auto &[turn, corner] : tip.path)
+              {
+                const Tensor<1, 2> on       = stretch.first - corner;
+                const bool         straight = std::abs(cross_product_2d(first) * on) <
+                                      1e-9 * first.norm() * on.norm();
+                // Where the way begins straight on, the crack does not turn.
+                if (turn < time && on.norm() > 0. && !(straight && corner == tip.path[0].second))
+                  stretch.second = corner;
+              }
+          }
+      return stretch;
+    }
+  } // namespace
+
+
+  std::vector<CrackEndIntegral> crack_end_integrals(const Scene<2> &scene, const double time)
   {
     std::vector<CrackEndIntegral> list;
     const auto                   &cracks   = scene.cracks.cracks;
@@ -192,21 +222,21 @@ namespace PeriDeal
                           scene.domain.shape == Shape::plate_with_hole;
     if (!scene.elasticity.is_static() || !is_plate || !material.uniform_moduli() || warm)
       return list;
+    const std::vector<CrackPiece<2>> pieces = scene.cracks.pieces(time);
     for (unsigned int k = 0; k < cracks.size(); ++k)
       for (unsigned int e = 0; e < 2; ++e)
         {
-          const Point<2>     end    = cracks[k][e];
-          const Tensor<1, 2> along  = end - cracks[k][1 - e];
+          const auto [end, corner]  = last_stretch(scene.cracks, k, e, time);
+          const Tensor<1, 2> along  = end - corner;
           const double       length = along.norm();
           double             room   = 0.5 * length;
           for (unsigned int d = 0; d < 2; ++d)
             room = std::min(
               {room, end[d] - scene.domain.body_lower[d], scene.domain.body_upper[d] - end[d]});
-          room =
-            std::min({room, scene.domain.holes.distance(end), distance_to_parts(scene, end)});
-          for (unsigned int other = 0; other < cracks.size(); ++other)
-            if (other != k)
-              room = std::min(room, distance_to_piece(cracks[other], end));
+          room = std::min({room, scene.domain.holes.distance(end), distance_to_parts(scene, end)});
+          for (const CrackPiece<2> &piece : pieces)
+            if (piece.crack != k)
+              room = std::min(room, distance_to_piece(piece.corners, end));
           if (0.45 * room < size)
             continue;
           list.emplace_back("crack " + std::to_string(k + 1) + " end " + std::to_string(e + 1),

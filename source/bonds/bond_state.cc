@@ -29,7 +29,7 @@ namespace PeriDeal
     AssertIndexRange(number, marks.size());
     Assert(marks[number] == whole && mark != whole, ExcInternalError());
     marks[number] = mark;
-    if (mark != parted)
+    if (mark != parted || time > 0.)
       times.emplace_back(number, time);
   }
 

@@ -103,7 +103,10 @@ namespace PeriDeal
     : bonds(bonds)
     , scene(scene)
     , breaks(scene.material.fracture_energy || scene.material.critical_stretch)
+    , changes(breaks || bonds.families.cracks().history().changes_ever())
   {
+    if (changes)
+      state.resize(bonds.rows.n_stored());
     if (!breaks)
       return;
     find_critical_stretches();
@@ -122,7 +125,6 @@ namespace PeriDeal
     std::vector<typename Families<dim>::Member> family;
     std::string                                 message;
     Vector                                      stretches(nodes.partitioner());
-    state.resize(bonds.rows.n_stored());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const Point<dim> &p   = nodes.position(i);
@@ -307,9 +309,10 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
-    if (!breaks)
+    if (!changes)
       return;
-    so_far.exchange(archive);
+    if (breaks)
+      so_far.exchange(archive);
     for (const std::size_t number : state.exchange(archive, bonds.rows.first_of_nodes(), keys))
       bonds.kinematics.release(number);
     if (bonds.beyond)
@@ -326,14 +329,16 @@ namespace PeriDeal
     std::vector<double>                         result(nodes.n_owned());
     for (const unsigned int i : bonds.rows.nodes_with_rows()) // others have no bond cut
       {
-        // Bonds are stored in the order of the family, those that cracks cut left out.
+        // Bonds are stored in the order of the family, those left out that cracks cut at first.
         bonds.families.members_of(i, family);
         double      all = 0., left = 0.;
         std::size_t k = bonds.rows.first_of_nodes()[i];
         for (const auto &bond : family)
           {
             const double volume = nodes.volume(bond.neighbor);
-            if (bond.cut || bond.weight == 0.)
+            const bool   stored = k < bonds.rows.first_of_nodes()[i + 1] &&
+                                bonds.rows.neighbor(k) == bond.neighbor && bond.weight != 0.;
+            if (!stored)
               {
                 bonds.families.cracks().crossed_cracks(i, bond.neighbor, crossed);
                 if (!crossed.empty() || bonds.families.is_parted(i, bond.neighbor))

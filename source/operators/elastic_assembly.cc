@@ -9,6 +9,7 @@
 #include <perideal/base/matrix_rows.h>
 #include <perideal/operators/spectrum.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -157,9 +158,10 @@ namespace PeriDeal
       zone_bonds->add_pattern(pattern);
     pattern.compress();
     stiffness.reinit(pattern);
-    if (scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling && zone_bonds &&
-        !scene.cracks.cracks.empty())
+    if (scales_beside_cracks())
       find_crack_factors();
+    mass          = 0.;
+    thermal_loads = 0.;
     volumes.reinit(nodes);
     double energy = 0.;
     for_each_own_cell([&](const Cell &cell, CellData &of_cell) {
@@ -172,18 +174,84 @@ namespace PeriDeal
         volumes(of_cell.indices[i]) += of_cell.volume(i);
     });
     if (zone_bonds)
-      n_bonds = std::llround(
-        Utilities::MPI::sum(zone_bonds->add_to(stiffness, crack_factors), dofs.get_communicator()));
+      n_bonds = zone_bonds->add_to(stiffness, crack_factors);
     finish_thermal(energy);
     stiffness.compress(VectorOperation::add);
     mass.compress(VectorOperation::add);
     volumes.compress(VectorOperation::add);
+    find_diagonal();
+  }
+
+
+  template <int dim>
+  bool ElasticElements<dim>::scales_beside_cracks() const
+  {
+    return scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling &&
+           zone_bonds && !scene.cracks.cracks.empty();
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::find_diagonal()
+  {
     for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
       if (column == unknowns->local_to_global(i))
         stiffness_diagonal.local_element(i) = value;
     });
     conditions->mask(stiffness_diagonal, 1.);
     throw_if_isolated();
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::add_near(const std::vector<Cell> &cells,
+                                      const ChangeSet<dim>    &change,
+                                      const double             sign)
+  {
+    for (const Cell &cell : cells)
+      if (cell->is_locally_owned())
+        {
+          cell_data->values.reinit(cell);
+          cell_data->set_indices(cell);
+          assemble_cell(*cell_data);
+          change_cell(cell, *cell_data);
+          cell_data->stiffness *= sign;
+          cell_data->add_stiffness_to(stiffness);
+        }
+    if (zone_bonds)
+      n_bonds += zone_bonds->add_to(stiffness, crack_factors, zone_bonds->nodes_near(change), sign);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::apply_change(const ChangeSet<dim> &change, const bool)
+  {
+    const auto pieces = this->history.pieces(change.to);
+    if (scales_beside_cracks()) // factors of cells and bonds change farther away
+      {
+        cut_by_cracks.set(pieces, 0.);
+        zone_bonds->set_cracks_of(change.to);
+        assemble();
+      }
+    else
+      {
+        if (!search)
+          search = std::make_unique<CellSearch<dim>>(dofs);
+        std::vector<Cell> cells;
+        search->find(change.boxes, 0., cells);
+        std::sort(cells.begin(), cells.end());
+        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+        add_near(cells, change, -1.);
+        cut_by_cracks.set(cells, pieces, 0.);
+        if (zone_bonds)
+          zone_bonds->set_cracks_of(change.to);
+        add_near(cells, change, 1.);
+        stiffness.compress(VectorOperation::add);
+        find_diagonal();
+        if (any_thermal())
+          find_thermal();
+      }
+    this->keep_constant_loads();
   }
 
 
@@ -225,6 +293,14 @@ namespace PeriDeal
   void ElasticElements<dim>::set_temperature_change(const Vector &nodal)
   {
     this->keep_temperature_change(nodal);
+    find_thermal();
+    this->keep_constant_loads();
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::find_thermal()
+  {
     thermal_loads = 0.;
     thermal_loads.zero_out_ghost_values();
     double energy = 0.;
@@ -233,7 +309,6 @@ namespace PeriDeal
       add_thermal(of_cell, energy);
     });
     finish_thermal(energy);
-    this->keep_constant_loads();
   }
 
 
@@ -364,6 +439,7 @@ namespace PeriDeal
 
 #define PERIDEAL_INSTANTIATE(dim)                                                               \
   template void         ElasticElements<dim>::assemble();                                       \
+  template void         ElasticElements<dim>::apply_change(const ChangeSet<dim> &, const bool); \
   template void         ElasticElements<dim>::set_temperature_change(const Vector &);           \
   template void         ElasticElements<dim>::find_loads(Vector &, const double) const;         \
   template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;       \

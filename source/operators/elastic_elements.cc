@@ -11,6 +11,7 @@
 #include <perideal/operators/spectrum.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "elastic_cell_data.h"
@@ -44,7 +45,7 @@ namespace PeriDeal
                                                                        dofs.get_communicator()));
     find_positions();
     find_conditions();
-    cut_by_cracks.set(scene.cracks.pieces(0.), 0.);
+    cut_by_cracks.set(this->history.pieces(this->cracks_of), 0.);
     assemble();
     this->keep_constant_loads();
   }
@@ -191,7 +192,7 @@ namespace PeriDeal
     OperatorSize size;
     size.unknowns = unknowns->size();
     size.nonzeros = stiffness.n_nonzero_elements();
-    size.bonds    = n_bonds;
+    size.bonds    = std::llround(Utilities::MPI::sum(n_bonds, dofs.get_communicator()));
     size.memory   = stiffness.memory_consumption() + positions.capacity() * sizeof(Point<dim>);
     if (zone_bonds)
       size.memory += zone_bonds->coupling().memory_consumption();

@@ -70,9 +70,14 @@ namespace PeriDeal
   ElasticExchange<dim>::ElasticExchange(Nodes<dim>       &nodes,
                                         const Scene<dim> &scene,
                                         const Zone<dim>  &zone)
-    : bonds(nodes, scene, zone, [&](const Point<dim> &p) {
-      return bond_part(scene.material.moduli(p), dim, scene.elasticity.plane);
-    })
+    : bonds(
+        nodes,
+        scene,
+        zone,
+        [&](const Point<dim> &p) {
+          return bond_part(scene.material.moduli(p), dim, scene.elasticity.plane);
+        },
+        true)
   {
     calibrate();
     find_surplus();
@@ -300,6 +305,12 @@ namespace PeriDeal
   const Families<dim> &ElasticExchange<dim>::families() const
   {
     return bonds.families;
+  }
+
+  template <int dim>
+  void ElasticExchange<dim>::set_cracks_of(const double time)
+  {
+    bonds.families.cracks().set_time(time);
   }
 
   template <int dim>

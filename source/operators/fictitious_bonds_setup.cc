@@ -250,6 +250,59 @@ namespace PeriDeal
 
 
   template <int dim>
+  void FictitiousBonds<dim>::part(const unsigned int node, const double t)
+  {
+    std::vector<Term> terms;
+    for_each_of(node, [&](const Bond &bond) {
+      if (!bond.whole)
+        return;
+      terms.clear();
+      fictitious.for_each_term(bond.image, [&](const Term &term) { terms.push_back(term); });
+      const bool cut = is_cut(node, terms, [&](const Term &term) {
+        return Point<dim>(fictitious[bond.image].place +
+                          (families.nodes().position(term.node) - Point<dim>()));
+      });
+      if (cut)
+        break_bond(bond.number, BondState::parted, t);
+    });
+  }
+
+
+  template <int dim>
+  bool FictitiousBonds<dim>::is_parted(const unsigned int node) const
+  {
+    bool any = false;
+    for_each_of(node, [&](const Bond &bond) {
+      // What was cut from the start has never had a weight.
+      any = any || (state[bond.number] == BondState::parted && squares[bond.number] > 0.);
+    });
+    return any;
+  }
+
+
+  template <int dim>
+  double FictitiousBonds<dim>::weight_left(const unsigned int node) const
+  {
+    double sum = 0.;
+    for_each_of(node, [&](const Bond &bond) {
+      if (state[bond.number] != BondState::parted)
+        sum += squares[bond.number] / families.nodes().volume(node);
+    });
+    return sum;
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::renew_springs(const unsigned int node, const NodeLaws<dim> &laws)
+  {
+    for_each_of(node, [&](const Bond &bond) {
+      if (bond.whole)
+        springs[bond.number] = laws.stiffness(node) / squares[bond.number];
+    });
+  }
+
+
+  template <int dim>
   void FictitiousBonds<dim>::add_weights(Vector &q) const
   {
     for_each([&](const Bond &bond) {
@@ -261,6 +314,8 @@ namespace PeriDeal
   template <int dim>
   void FictitiousBonds<dim>::find_springs(const NodeLaws<dim> &laws, const bool full)
   {
+    if (families.cracks().history().changes_ever())
+      squares = springs;
     for (const unsigned int i : list)
       for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
         springs[k] = state.is_whole(k) ? laws.stiffness(i) / springs[k] : 0.;
@@ -300,14 +355,18 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                          \
-  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                    \
-                                                 const std::array<BeyondSide, 2 * dim> &); \
-  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                    \
-                                                 const std::vector<BoundaryImage<dim>> &); \
-  template void FictitiousBonds<dim>::add_weights(Vector &) const;                         \
-  template void FictitiousBonds<dim>::find_springs(const NodeLaws<dim> &, const bool);     \
-  template void FictitiousBonds<dim>::set_thermal_strains(const ThermalStrains &);
+#define PERIDEAL_INSTANTIATE(dim)                                                                 \
+  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                           \
+                                                 const std::array<BeyondSide, 2 * dim> &);        \
+  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                           \
+                                                 const std::vector<BoundaryImage<dim>> &);        \
+  template void   FictitiousBonds<dim>::part(const unsigned int, const double);                   \
+  template bool   FictitiousBonds<dim>::is_parted(const unsigned int) const;                      \
+  template double FictitiousBonds<dim>::weight_left(const unsigned int) const;                    \
+  template void   FictitiousBonds<dim>::renew_springs(const unsigned int, const NodeLaws<dim> &); \
+  template void   FictitiousBonds<dim>::add_weights(Vector &) const;                              \
+  template void   FictitiousBonds<dim>::find_springs(const NodeLaws<dim> &, const bool);          \
+  template void   FictitiousBonds<dim>::set_thermal_strains(const ThermalStrains &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

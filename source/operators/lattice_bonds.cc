@@ -18,7 +18,8 @@ namespace PeriDeal
   LatticeBonds<dim>::LatticeBonds(Nodes<dim>       &nodes,
                                   const Scene<dim> &scene,
                                   const Zone<dim>  &zone,
-                                  const Stiffness  &stiffness)
+                                  const Stiffness  &stiffness,
+                                  const bool        whole_way)
     : families(nodes, scene, HaloAround::cells)
     , zone(zone)
     , last(scene.cracks.end_time)
@@ -30,7 +31,7 @@ namespace PeriDeal
         nodes.position(0),
         scene.initial_and_source.initial_value.value(nodes.position(0)));
     find_offsets();
-    find_sites(scene);
+    find_sites(scene, whole_way);
     find_cells(scene, stiffness);
   }
 
@@ -97,14 +98,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeBonds<dim>::find_sites(const Scene<dim> &scene)
+  void LatticeBonds<dim>::find_sites(const Scene<dim> &scene, const bool whole_way)
   {
     const Nodes<dim>        &nodes   = families.nodes();
     const Lattice<dim>      &lattice = *nodes.lattice();
     const CrackHistory<dim> &history = families.cracks().history();
     Zone<dim>                at_end  = zone;
     at_end.set_cracks(history.pieces(last));
-    zone.set_cracks(history.pieces(history.representative(0.)));
+    zone.set_cracks(history.pieces(whole_way ? last : history.representative(0.)));
     const std::vector<bool> hanging = hanging_nodes(nodes);
     std::vector<bool>       candidates(nodes.n_local());
     double                  n_in_zone = 0.;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/user_error.h>
 #include <perideal/operators/solid_bonds.h>
 #include <perideal/scene/beyond_sides.h>
 
@@ -59,6 +60,7 @@ namespace PeriDeal
     , rows(families, laws, scene)
     , kinematics(families, rows, thermal, scene.elasticity.kinematics == Kinematics::full)
     , beyond(complete_families(families, rows, scene, laws.weighted))
+    , weights_follow(scene.elasticity.micromodulus != Micromodulus::constant)
   {
     if (scene.elasticity.micromodulus == Micromodulus::constant)
       laws.weighted = rows.complete_weighted();
@@ -67,6 +69,70 @@ namespace PeriDeal
     kinematics.keep_lengths();
     if (beyond)
       beyond->find_springs(laws, kinematics.is_full());
+  }
+
+
+  template <int dim>
+  void SolidBonds<dim>::part(const unsigned int i, const double t, BondState &state)
+  {
+    rows.for_each_stored(i, [&](const auto &bond) {
+      if (!state.is_whole(bond.number) || !families.cracks().cuts(i, bond.neighbor))
+        return;
+      state.mark(bond.number, BondState::parted, t);
+      kinematics.release(bond.number);
+    });
+    if (beyond)
+      beyond->part(i, t);
+  }
+
+
+  template <int dim>
+  bool SolidBonds<dim>::has_parted(const unsigned int i, const BondState &state) const
+  {
+    bool any = beyond && beyond->is_parted(i);
+    rows.for_each_stored(i, [&](const auto &bond) {
+      any = any || state[bond.number] == BondState::parted;
+    });
+    return any;
+  }
+
+
+  template <int dim>
+  void SolidBonds<dim>::renew_weights(const std::vector<unsigned int> &of_nodes,
+                                      const BondState                 &state)
+  {
+    std::string message;
+    for (const unsigned int i : of_nodes)
+      if (has_parted(i, state))
+        {
+          const double q = rows.weight_left(i, message);
+          if (weights_follow)
+            laws.weighted.local_element(i) = q + (beyond ? beyond->weight_left(i) : 0.);
+        }
+    throw_on_all_if_any(families.nodes().communicator(), message);
+    laws.weighted.update_ghost_values();
+  }
+
+
+  template <int dim>
+  void SolidBonds<dim>::apply_change(const ChangeSet<dim> &change,
+                                     BondState            &state,
+                                     const bool            marked)
+  {
+    const Neighbors<dim> &neighbors = families.neighbors();
+    const double          reach     = families.weights().reach();
+    families.cracks().set_time(change.to);
+    const std::vector<unsigned int> near = neighbors.nodes_near(change.boxes, reach);
+    if (!marked)
+      for (const unsigned int i : near)
+        part(i, change.since, state);
+    renew_weights(near, state);
+    for (const unsigned int i : neighbors.nodes_near(change.boxes, 2. * reach))
+      {
+        rows.renew_springs(i, state);
+        if (beyond)
+          beyond->renew_springs(i, laws);
+      }
   }
 
 

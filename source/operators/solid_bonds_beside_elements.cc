@@ -63,65 +63,92 @@ namespace PeriDeal
 
 
   template <int dim>
-  double SolidBondsBesideElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &matrix,
-                                                  const CrackSideFactors         *factors) const
+  std::vector<unsigned int> SolidBondsBesideElements<dim>::nodes_near(
+    const ChangeSet<dim> &change) const
   {
-    const Utilities::MPI::Partitioner   &layout = *nodes().partitioner();
-    std::vector<Bond>                    bonds;
-    std::vector<types::global_dof_index> columns;
-    std::vector<double>                  values[dim];
-    double                               n = 0.;
-    for (unsigned int i = 0; i < layout.locally_owned_size(); ++i)
+    const Families<dim> &families = coupled->families();
+    return families.neighbors().nodes_near(change.boxes, families.weights().reach());
+  }
+
+
+  template <int dim>
+  double SolidBondsBesideElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &matrix,
+                                                  const CrackSideFactors         *factors,
+                                                  const unsigned int              node,
+                                                  const double                    multiple,
+                                                  Rows                           &rows) const
+  {
+    const Utilities::MPI::Partitioner &layout = *nodes().partitioner();
+    coupled->bonds_of(node, rows.bonds);
+    if (rows.bonds.empty())
+      return 0.;
+    const auto own = layout.local_to_global(node);
+    double     n   = 0.;
+    rows.columns.clear();
+    for (unsigned int c = 0; c < dim; ++c)
       {
-        coupled->bonds_of(i, bonds);
-        if (bonds.empty())
-          continue;
-        const auto own = layout.local_to_global(i);
-        columns.clear();
-        for (unsigned int c = 0; c < dim; ++c)
-          {
-            columns.push_back(dim * own + c);
-            values[c].assign(dim, 0.);
-          }
-        for (const Bond &bond : bonds)
-          {
-            if (bond.cut && factors != nullptr)
-              continue;
-            n += 0.5;
-            const double factor = factors == nullptr ? 1. : factors->of_bond(i, bond.neighbor);
-            for (unsigned int e = 0; e < dim; ++e)
-              columns.push_back(dim * layout.local_to_global(bond.neighbor) + e);
-            for (unsigned int c = 0; c < dim; ++c)
-              for (unsigned int e = 0; e < dim; ++e)
-                {
-                  values[c].push_back(-factor * bond.block[c][e]);
-                  values[c][e] += factor * bond.block[c][e];
-                }
-          }
-        for (unsigned int c = 0; c < dim; ++c)
-          matrix.add(dim * own + c, columns.size(), columns.data(), values[c].data());
+        rows.columns.push_back(dim * own + c);
+        rows.values[c].assign(dim, 0.);
       }
+    for (const Bond &bond : rows.bonds)
+      {
+        if (bond.cut && factors != nullptr)
+          continue;
+        n += 0.5 * multiple;
+        const double factor =
+          multiple * (factors == nullptr ? 1. : factors->of_bond(node, bond.neighbor));
+        for (unsigned int e = 0; e < dim; ++e)
+          rows.columns.push_back(dim * layout.local_to_global(bond.neighbor) + e);
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int e = 0; e < dim; ++e)
+            {
+              rows.values[c].push_back(-factor * bond.block[c][e]);
+              rows.values[c][e] += factor * bond.block[c][e];
+            }
+      }
+    for (unsigned int c = 0; c < dim; ++c)
+      matrix.add(dim * own + c, rows.columns.size(), rows.columns.data(), rows.values[c].data());
     return n;
   }
 
 
   template <int dim>
-  double SolidBondsBesideElements<dim>::add_families(TrilinosWrappers::SparseMatrix &matrix,
-                                                     const bool                      intact) const
+  double SolidBondsBesideElements<dim>::add_family(TrilinosWrappers::SparseMatrix &matrix,
+                                                   const bool                      intact,
+                                                   const unsigned int              node,
+                                                   const double                    multiple,
+                                                   Rows                           &rows) const
   {
-    std::vector<types::global_dof_index> indices;
-    double                               n = 0.;
+    double n = 0.;
+    coupled->visit_family(node, intact, {}, [&](const Family &family) {
+      unknowns_of(family, rows.columns);
+      n += multiple * family.n_bonds;
+      rows.values[0].resize(rows.columns.size());
+      for (unsigned int a = 0; a < rows.columns.size(); ++a)
+        if (family.has_row[a / dim])
+          {
+            for (unsigned int b = 0; b < rows.columns.size(); ++b)
+              rows.values[0][b] = multiple * family.stiffness(a, b);
+            matrix.add(rows.columns[a],
+                       static_cast<types::global_dof_index>(rows.columns.size()),
+                       rows.columns.data(),
+                       rows.values[0].data());
+          }
+    });
+    return n;
+  }
+
+
+  template <int dim>
+  double SolidBondsBesideElements<dim>::add_all(TrilinosWrappers::SparseMatrix &matrix,
+                                                const CrackSideFactors         *factors) const
+  {
+    Rows   rows;
+    double n = 0.;
     for (unsigned int i = 0; i < nodes().n_owned(); ++i)
-      coupled->visit_family(i, intact, {}, [&](const Family &family) {
-        unknowns_of(family, indices);
-        n += family.n_bonds;
-        for (unsigned int a = 0; a < indices.size(); ++a)
-          if (family.has_row[a / dim])
-            matrix.add(indices[a],
-                       static_cast<types::global_dof_index>(indices.size()),
-                       indices.data(),
-                       &family.stiffness(a, 0));
-      });
+      n += add_bonds(matrix, factors, i, 1., rows);
+    for (unsigned int i = 0; i < nodes().n_owned(); ++i)
+      n += add_family(matrix, factors == nullptr, i, 1., rows);
     return n;
   }
 
@@ -130,16 +157,31 @@ namespace PeriDeal
   double SolidBondsBesideElements<dim>::add_to(TrilinosWrappers::SparseMatrix &matrix,
                                                const CrackSideFactors         &factors) const
   {
-    const double n_pairs = add_bonds(matrix, &factors);
-    return n_pairs + add_families(matrix, false);
+    return add_all(matrix, &factors);
+  }
+
+
+  template <int dim>
+  double SolidBondsBesideElements<dim>::add_to(TrilinosWrappers::SparseMatrix  &matrix,
+                                               const CrackSideFactors          &factors,
+                                               const std::vector<unsigned int> &of_nodes,
+                                               const double                     multiple) const
+  {
+    Rows   rows;
+    double n = 0.;
+    for (const unsigned int i : of_nodes)
+      {
+        n += add_bonds(matrix, &factors, i, multiple, rows);
+        n += add_family(matrix, false, i, multiple, rows);
+      }
+    return n;
   }
 
 
   template <int dim>
   void SolidBondsBesideElements<dim>::add_intact(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    add_bonds(matrix, nullptr);
-    add_families(matrix, true);
+    add_all(matrix, nullptr);
   }
 
 

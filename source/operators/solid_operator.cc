@@ -35,6 +35,8 @@ namespace PeriDeal
   template <int dim>
   SolidOperator<dim>::SolidOperator(const Scene<dim> &scene)
     : scene(scene)
+    , history(scene.crack_history())
+    , cracks_of(history.representative(0.))
     , loads_vary(loads_depend_on_time(scene))
   {}
 
@@ -52,8 +54,37 @@ namespace PeriDeal
   template <int dim>
   void SolidOperator<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
+    if (history.changes_ever())
+      {
+        double time = cracks_of;
+        archive.exchange("cracks of", time);
+        archive.exchange("released by growth", this->released_by_growth);
+        if (archive.loads() && time != cracks_of)
+          set_cracks_of(time, history.begin_of_span(time), true);
+      }
     conditions->exchange(archive, keys);
     ElasticOperator::exchange(archive, keys);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::set_cracks_of(const double time, const double since, const bool loaded)
+  {
+    apply_change({cracks_of, time, since, history.changes(cracks_of, time)}, loaded);
+    cracks_of = time;
+  }
+
+
+  template <int dim>
+  bool SolidOperator<dim>::grow_cracks(const Vector &u, const double t)
+  {
+    const double time = history.representative(t);
+    if (time == cracks_of || !history.changes_ever())
+      return false;
+    const double before = this->energy(u);
+    set_cracks_of(time, history.begin_of_span(t), false);
+    this->released_by_growth += before - this->energy(u);
+    return true;
   }
 
 

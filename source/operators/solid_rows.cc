@@ -72,20 +72,25 @@ namespace PeriDeal
     const double      q         = leave_out ? complete_weighted() : 0.;
     Family            family;
     std::string       message;
+    std::vector<bool> changing;
     if (leave_out)
-      list_lattice_bonds();
+      {
+        list_lattice_bonds();
+        changing = find_changing(scene);
+      }
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const bool complete = leave_out && has_complete_family(i);
-        if (complete && !families.near_crack(i))
+        if (complete && !families.near_crack(i) && !changing[i])
           n_whole += 0.5 * static_cast<double>(lattice_bonds.size()); // at each end
         else
           {
             families.members_of(i, family);
             if (leave_out)
-              on_lattice[i] = std::none_of(family.begin(), family.end(), [](const auto &bond) {
-                return bond.cut || bond.weight == 0.;
-              });
+              on_lattice[i] = !changing[i] &&
+                              std::none_of(family.begin(), family.end(), [](const auto &bond) {
+                                return bond.cut || bond.weight == 0.;
+                              });
             store(i, family, message);
           }
         if (complete && on_lattice[i])
@@ -100,6 +105,26 @@ namespace PeriDeal
 
   template <int dim>
   SolidRows<dim>::~SolidRows() = default;
+
+
+  template <int dim>
+  std::vector<bool> SolidRows<dim>::find_changing(const Scene<dim> &scene) const
+  {
+    constexpr unsigned int   n_spans = 64; // boxes around parts of a crooked way take in less
+    const CrackHistory<dim> &history = families.cracks().history();
+    std::vector<bool>        changing(families.nodes().n_owned(), false);
+    if (!history.changes_ever())
+      return changing;
+    // q of a node whose bonds are cut changes the springs of its neighbours.
+    const double distance = 2. * families.weights().reach();
+    const double end      = scene.cracks.end_time;
+    for (unsigned int k = 0; k < n_spans; ++k)
+      for (const unsigned int i : families.neighbors().nodes_near(
+             history.changes(end * k / n_spans, end * (k + 1) / n_spans),
+             distance))
+        changing[i] = true;
+    return changing;
+  }
 
 
   template <int dim>
@@ -171,8 +196,18 @@ namespace PeriDeal
         springs.push_back(w * xi.norm_square());
       }
     laws.weighted.local_element(i) = q;
-    if (!message.empty())
-      return;
+    if (message.empty())
+      message = fault_of(i, q, shape);
+  }
+
+
+  template <int dim>
+  std::string SolidRows<dim>::fault_of(const unsigned int             i,
+                                       const double                   q,
+                                       const SymmetricTensor<2, dim> &shape) const
+  {
+    const Nodes<dim> &nodes = families.nodes();
+    std::string       message;
     if (!(q > 0.))
       message =
         "The node at " + place_text(nodes.position(i)) + " is isolated: no bond of it is left. ";
@@ -181,6 +216,45 @@ namespace PeriDeal
                 " lie in one line or plane, across which nothing holds it. ";
     if (!message.empty())
       message += advice_on_horizon(horizon, nodes.volume(i), dim);
+    return message;
+  }
+
+
+  template <int dim>
+  double SolidRows<dim>::weight_left(const unsigned int i, std::string &message) const
+  {
+    Family                  family;
+    SymmetricTensor<2, dim> shape;
+    double                  q = 0.;
+    families.members_of(i, family);
+    for (const auto &bond : family)
+      if (!bond.cut && bond.weight != 0.)
+        {
+          const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
+          q += bond.weight * xi.norm_square() / families.nodes().volume(i);
+          shape += bond.weight * symmetrize(outer_product(xi, xi));
+        }
+    if (message.empty())
+      message = fault_of(i, q, shape);
+    return q;
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::renew_springs(const unsigned int i, const BondState &state)
+  {
+    Family family;
+    families.members_of(i, family);
+    std::size_t k = starts[i];
+    for (const auto &bond : family)
+      if (k < starts[i + 1] && neighbors[k] == bond.neighbor && bond.weight != 0.)
+        {
+          const double square =
+            bond.weight * families.neighbors().bond_vector(i, bond.neighbor).norm_square();
+          if (state.is_whole(k))
+            springs[k] = (laws.stiffness(i) + laws.stiffness(neighbors[k])) / square;
+          ++k;
+        }
   }
 
 

@@ -18,9 +18,8 @@ namespace PeriDeal
     : bonds(nodes, scene, HaloAround::cells)
     , node_weights(nodes, given_zone, scene.coupling.overlap * bonds.weights().horizon())
   {
-    const CrackHistory<dim> &history = bonds.cracks().history();
-    Zone<dim>                zone    = given_zone;
-    zone.set_cracks(history.pieces(history.representative(0.)));
+    Zone<dim> zone = given_zone;
+    zone.set_cracks(bonds.cracks().history().pieces(scene.cracks.end_time)); // their whole way
     node_weights.set(zone);
     throw_if_zone_empty(node_weights.n_owned_in_zone(), nodes.communicator());
     if (scene.peridynamics.completes_families())
@@ -248,6 +247,13 @@ namespace PeriDeal
         if (reached)
           list.push_back(bond);
       }
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::set_cracks_of(const double time)
+  {
+    bonds.cracks().set_time(time);
   }
 
 

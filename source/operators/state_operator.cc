@@ -440,13 +440,21 @@ namespace PeriDeal
     const unsigned long long before = this->n_broken_bonds();
     if (!breakage.break_bonds(u, t, share, [&]() { return energy(u); }))
       return 0;
-    follow_breaks();
+    follow_bonds();
     return this->n_broken_bonds() - before;
   }
 
 
   template <int dim>
-  void StateOperator<dim>::follow_breaks()
+  void StateOperator<dim>::apply_change(const ChangeSet<dim> &change, const bool loaded)
+  {
+    breakage.apply_change(change, loaded);
+    follow_bonds();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::follow_bonds()
   {
     find_diagonal();
     if (solid.thermal.any())
@@ -459,7 +467,7 @@ namespace PeriDeal
   {
     breakage.exchange(archive, keys);
     if (archive.loads() && this->brittle())
-      follow_breaks();
+      follow_bonds();
     SolidOperator<dim>::exchange(archive, keys);
   }
 

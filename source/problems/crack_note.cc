@@ -3,6 +3,8 @@
 
 #include "crack_note.h"
 
+#include <perideal/scene/lists.h>
+
 #include <algorithm>
 
 namespace PeriDeal
@@ -29,8 +31,23 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim) \
-  template void note_missing_crack_scaling(const Scene<dim> &, std::vector<std::string> &);
+  template <int dim>
+  void note_growth(const Scene<dim> &scene, std::vector<std::string> &notes)
+  {
+    if (scene.cracks.tips.empty())
+      return;
+    const CrackHistory<dim> history = scene.crack_history();
+    notes.push_back(
+      "the cracks grow in " + std::to_string(history.events().size()) +
+      " events, between which no tip advances more than " + number_text(history.longest_advance()) +
+      "; bonds are cut too early or too late by at most the time that it needs for half of that ('Growth step' in section "
+      "'Cracks').");
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                           \
+  template void note_missing_crack_scaling(const Scene<dim> &, std::vector<std::string> &); \
+  template void note_growth(const Scene<dim> &, std::vector<std::string> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -12,9 +12,12 @@ namespace PeriDeal
 {
   /**
    * Tell of `Surface correction = crack scaling` where something diffuses around insulating cracks
-   * without it: bonds and cut cells beside a
-   * crack conduct too little along it.
+   * without it: bonds and cut cells beside a crack conduct too little along it.
    */
   template <int dim>
   void note_missing_crack_scaling(const Scene<dim> &scene, std::vector<std::string> &notes);
+
+  /** Tell in how many events cracks grow, if they do. */
+  template <int dim>
+  void note_growth(const Scene<dim> &scene, std::vector<std::string> &notes);
 } // namespace PeriDeal

@@ -16,16 +16,7 @@ namespace PeriDeal
   template <int dim>
   void note_diffusion(const Scene<dim> &scene, std::vector<std::string> &notes)
   {
-    if (!scene.cracks.tips.empty())
-      {
-        const CrackHistory<dim> history = scene.crack_history();
-        notes.push_back(
-          "the cracks grow in " + std::to_string(history.events().size()) +
-          " events, between which no tip advances more than " +
-          number_text(history.longest_advance()) +
-          "; bonds are cut too early or too late by at most the time that it needs for half of that ('Growth step' in section "
-          "'Cracks').");
-      }
+    note_growth(scene, notes);
     if (!scene.peridynamics.natural_fluxes() && scene.boundary_conditions.flux.empty())
       notes.push_back(
         "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' (an insulated side "

@@ -176,7 +176,7 @@ namespace PeriDeal
         std::vector<StressIntensity> list;
         if constexpr (dim == 2)
           {
-            std::vector<CrackEndIntegral> ends = crack_end_integrals(scene);
+            std::vector<CrackEndIntegral> ends = crack_end_integrals(scene, elements->crack_time());
             if (!ends.empty())
               visit_cells(QGauss<dim>(handler.get_fe().degree + 1),
                           [&](const auto        &values,

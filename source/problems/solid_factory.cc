@@ -12,6 +12,7 @@
 
 #include <algorithm>
 
+#include "crack_note.h"
 #include "physics_factories.h"
 
 namespace PeriDeal
@@ -33,8 +34,10 @@ namespace PeriDeal
           std::find(models.begin(), models.end(), ModelKind::finite_elements) == models.end(),
         "'Kinematics' in section 'Elasticity': 'full' is for 'Models = peridynamics' alone; finite elements have small displacements. "
         "Leave them out, or use 'linear'.");
-      require(scene.cracks.tips.empty(),
-              "'Growth' in section 'Cracks' cannot be used with 'Physics = elasticity' yet.");
+      if (!scene.cracks.tips.empty() && scene.peridynamics.corrects_elastic_bonds())
+        entry_error(scene.peridynamics.where("Surface correction"),
+                    "does not follow cracks that grow ('Growth', 'Paths' in section 'Cracks') in a "
+                    "body that deforms. Use 'none' or 'fictitious nodes'.");
       require(scene.domain.coarsening == 0,
               "'Coarsening' in section 'Domain' cannot be used with 'Physics = elasticity' yet.");
     }
@@ -99,6 +102,7 @@ namespace PeriDeal
                       std::vector<std::string> &notes) const override
       {
         note_own_poisson_ratio(scene, mesh, notes);
+        note_growth(scene, notes);
       }
 
       std::unique_ptr<Problem<dim>> make_problem(const ModelKind           model,

@@ -33,10 +33,16 @@ namespace PeriDeal
         balance["strain"] = energy.strain;
         balance["start"]  = energy.start;
         add("work", "work of loads and supports", energy.work);
+        if (problem.op().may_release_energy())
+          {
+            add("released",
+                problem.op().brittle() ? "energy released by broken bonds" :
+                                         "energy released by cracks",
+                problem.op().released_energy());
+            add("dissipated", "energy dissipated", lost);
+          }
         if (problem.op().brittle())
           {
-            add("released", "energy released by broken bonds", problem.op().released_energy());
-            add("dissipated", "energy dissipated", lost);
             const auto n_broken = problem.op().n_broken_bonds();
             add("broken bonds", "broken bonds", static_cast<double>(n_broken));
             if (json &kept = context.record.extremes[problem.name()];

@@ -170,6 +170,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  double CrackHistory<dim>::begin_of_span(const double t) const
+  {
+    const auto next = std::upper_bound(times.begin(), times.end(), t + same_time * end);
+    return next == times.begin() ? 0. : *(next - 1);
+  }
+
+
+  template <int dim>
   std::vector<CrackPiece<dim>> CrackHistory<dim>::pieces(const double t,
                                                          const bool   cut_at_tips) const
   {

@@ -377,7 +377,11 @@ namespace PeriDeal
               "', which finds an equilibrium. Use 'dynamics', or 'Displacement' with t in its formula.");
       // With a computed temperature it is the heat problem that is steady.
       if (scene.is_loaded_slowly() && scene.time.steady && !with_heat)
-        entry_error(scene.time.where("Steady"), "is true, but there are loads that depend on t.");
+        entry_error(
+          scene.time.where("Steady"),
+          scene.cracks.tips.empty() ?
+            "is true, but there are loads that depend on t." :
+            "is true, but there are cracks that grow ('Growth' or 'Paths' in section 'Cracks').");
     }
 
 

@@ -204,11 +204,8 @@ namespace PeriDeal
       if (!scene.time.steady)
         return;
       if (!scene.cracks.tips.empty())
-        scene.cracks.tip_error(
-          scene.cracks.tips.front(),
-          scene.general.physics == Physics::elasticity ?
-            "moves, but 'Solver' in section 'Elasticity' finds an equilibrium, in which there is no time." :
-            "moves, but 'Steady' in section 'Time' is true.");
+        scene.cracks.tip_error(scene.cracks.tips.front(),
+                               "moves, but 'Steady' in section 'Time' is true.");
       if (scene.general.physics == Physics::elasticity)
         return; // the rest: check_elasticity()
       const auto refuse_time = [](const Expression &expression, const std::string &where) {
@@ -322,7 +319,9 @@ namespace PeriDeal
         for (unsigned int d = 1; d < dim; ++d)
           step = std::min(step, 0.25 * h[d]);
       }
-    return CrackHistory<dim>(cracks, step, time.steady ? 1. : time.end_time, time.time_step);
+    // Bodies that deform change between any two steps; what diffuses stops at each event.
+    const double whole_steps = general.physics == Physics::elasticity ? -1. : time.time_step;
+    return CrackHistory<dim>(cracks, step, time.steady ? 1. : time.end_time, whole_steps);
   }
 
 
@@ -331,7 +330,7 @@ namespace PeriDeal
   {
     const auto &forces = initial_and_source.body_force;
     return general.physics == Physics::elasticity && elasticity.is_static() &&
-           (warms_slowly() || boundary_conditions.depends_on_time() ||
+           (warms_slowly() || !cracks.tips.empty() || boundary_conditions.depends_on_time() ||
             std::any_of(forces.begin(), forces.end(), [](const auto &force) {
               return force.depends_on_time();
             }));

@@ -134,11 +134,12 @@ namespace PeriDeal
   }
 
 
-  void MotionStepper::break_bonds(const Vector &u, const double t)
+  void MotionStepper::change_bonds(const Vector &u, const double t)
   {
     // Between two steps: within one, half a step of their force would be lost and with it energy of
     // order dt.
-    if (op.break_bonds(u, t) == 0)
+    const bool grown = op.grow_cracks(u, t);
+    if (op.break_bonds(u, t) == 0 && !grown)
       return;
     const double before = account.kept_back(unbalanced);
     operator_changed();
@@ -187,7 +188,7 @@ namespace PeriDeal
     change = u;
     change -= last;
     account.add_step(change, unbalanced, next);
-    break_bonds(u, next);
+    change_bonds(u, next);
     span.now = next;
     ++span.n_done;
     tell_step(next);
@@ -265,7 +266,7 @@ namespace PeriDeal
     if (!explicit_step)
       return make_newmark(op, chosen);
     auto stepper = make_verlet(op, chosen);
-    if (op.nonlinear() || op.brittle())
+    if (op.nonlinear() || op.may_release_energy())
       stepper->set_limit(std::make_unique<StepLimit>(op, chosen.time_step, options.time_step < 0.));
     return stepper;
   }

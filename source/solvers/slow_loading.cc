@@ -93,14 +93,14 @@ namespace PeriDeal
   }
 
 
-  void SlowLoading::break_bonds(Vector &u, const double t, const AfterStep &after_round)
+  void SlowLoading::change_bonds(Vector &u, const double t, const AfterStep &after_round)
   {
     constexpr double share = 0.9; // of the largest stretch: what breaks at once
-    if (!op.brittle())
+    if (!op.may_release_energy())
       return;
     if (!breaking.is_open)
       breaking = {t, op.energy(u), false, true};
-    while (op.break_bonds(u, t, share) > 0)
+    for (bool grown = op.grow_cracks(u, t); grown || op.break_bonds(u, t, share) > 0; grown = false)
       {
         breaking.any = true;
         solver->operator_changed();
@@ -131,7 +131,7 @@ namespace PeriDeal
     so_far.start = op.energy(u);
     op.unbalanced(unbalanced, u, t);
     work_of_forces.begin(unbalanced, t);
-    break_bonds(u, t, {});
+    change_bonds(u, t, {});
     now = t;
   }
 
@@ -164,7 +164,7 @@ namespace PeriDeal
   void SlowLoading::go_on(Vector &u, const AfterStep &after_round)
   {
     const double t = breaking.time;
-    break_bonds(u, t, after_round);
+    change_bonds(u, t, after_round);
     before.sadd(-1., 1., u);
     has_before = true;
     last_time  = now;

@@ -16,6 +16,7 @@ namespace PeriDeal
     , may_change(may_change)
     , step(step)
     , n_broken(op.n_broken_bonds())
+    , next_growth(op.next_event(0.))
   {}
 
 
@@ -38,7 +39,7 @@ namespace PeriDeal
     const double     now     = op.largest_stretch(u);
     const bool       grown   = now > stretch + std::max(much, much * stretch);
     const bool       relaxed = step < first && now < 0.5 * stretch;
-    const bool       broken  = op.n_broken_bonds() > n_broken;
+    const bool       broken  = op.n_broken_bonds() > n_broken || t >= next_growth;
     if (!grown && !relaxed && !broken)
       return step;
     if (spent > at_first + cost * n_steps && now < (1. + alarming) * (stretch + alarming))
@@ -46,13 +47,16 @@ namespace PeriDeal
     const double limit = estimate(u);
     stretch            = now;
     n_broken           = op.n_broken_bonds();
+    next_growth        = op.next_event(t);
     std::ostringstream message;
     if (!may_change && !(step <= limit))
-      message
-        << "'Time step' in section 'Time' is " << step << ", but at t = " << t
-        << " 'verlet' is stable up to " << limit
-        << " only: the deformed body is stiffer than the body at rest. Choose a smaller step, 'Time step = auto', which follows the deformation, or "
-           "'Stepper = newmark'.";
+      message << "'Time step' in section 'Time' is " << step << ", but at t = " << t
+              << " 'verlet' is stable up to " << limit
+              << (op.nonlinear() ?
+                    " only: the deformed body is stiffer than the body at rest. " :
+                    " only: beside cracks that have grown the body is stiffer than at the start. ")
+              << "Choose a smaller step, 'Time step = auto', which follows the deformation, or "
+                 "'Stepper = newmark'.";
     AssertThrow(message.str().empty(), UserError(message.str()));
     if (may_change && (step > near * limit || relaxed))
       step = std::min(first, share * limit);
@@ -65,6 +69,7 @@ namespace PeriDeal
     archive.exchange("limited step", step);
     archive.exchange("stretch at limit", stretch);
     archive.exchange("broken bonds at limit", n_broken);
+    archive.exchange("next growth after limit", next_growth);
     archive.exchange("applications for limits", spent);
   }
 } // namespace PeriDeal

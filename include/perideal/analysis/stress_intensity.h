@@ -86,6 +86,7 @@ namespace PeriDeal
    * cells have none; holes, and regions and points that are held or loaded, stay outside the rings.
    * Empty unless the body is at rest, is no mesh file or image, and has two dimensions and one
    * material without thermal strain.
+   * @param time of the cracks, whose ends may move (CrackHistory::representative())
    */
-  std::vector<CrackEndIntegral> crack_end_integrals(const Scene<2> &scene);
+  std::vector<CrackEndIntegral> crack_end_integrals(const Scene<2> &scene, const double time);
 } // namespace PeriDeal

@@ -25,7 +25,7 @@ namespace PeriDeal
     enum Mark : std::uint8_t
     {
       whole,
-      parted,   // by a crack of the scene
+      parted,   // by a crack of the scene, from the start or as it grew
       broken,   // stretched too far
       dependent // of a fictitious node: what it follows from is gone
     };

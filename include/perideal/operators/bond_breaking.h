@@ -21,8 +21,8 @@ namespace PeriDeal
    *   D = h_n sum over the layers on one side of (1/q sum over what crosses of omega f V x^2)^2.
    * q stays that of the body before.
    *
-   * Which bonds between nodes are broken and since when stands here (broken_state()), of those to
-   * fictitious nodes in FictitiousBonds.
+   * Which bonds between nodes are broken, or cut by cracks as they grow, and since when stands here
+   * (broken_state()), of those to fictitious nodes in FictitiousBonds.
    */
   template <int dim>
   class BondBreaking
@@ -44,7 +44,16 @@ namespace PeriDeal
                      const double                   share,
                      const std::function<double()> &energy);
 
-    /** What has broken, and since when. @param keys of the owned nodes. Collective. */
+    /**
+     * What cracks cut as they grow is marked, too. Collective. Throws UserError.
+     * @param marked the change has been loaded with the state of the bonds
+     */
+    void apply_change(const ChangeSet<dim> &change, const bool marked)
+    {
+      bonds.apply_change(change, state, marked);
+    }
+
+    /** What has broken or been cut, and since when. @param keys of the owned nodes. Collective. */
     void exchange(Archive &archive, const NodeKeys &keys);
 
     /** What has broken so far; null: bonds do not break. */
@@ -79,7 +88,7 @@ namespace PeriDeal
 
     SolidBonds<dim>          &bonds;
     const Scene<dim>         &scene;
-    const bool                breaks; // some bond may, on any process
+    const bool                breaks, changes; // some bond may break, or be cut by a growing crack
     std::vector<double>       critical;
     BondState                 state;
     BreakHistory              so_far;

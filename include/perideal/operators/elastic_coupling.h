@@ -112,6 +112,12 @@ namespace PeriDeal
     /** The bonds between nodes, and the nodes. */
     virtual const Families<dim> &families() const = 0;
 
+    /**
+     * Let cracks be those of another representative time (CrackHistory). The zone is that of their
+     * whole way from the start.
+     */
+    virtual void set_cracks_of(const double time) = 0;
+
     virtual std::size_t memory_consumption() const = 0;
 
     /** Share of the body's volume whose nodes are in the zone. Collective. */

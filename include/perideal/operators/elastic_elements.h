@@ -7,6 +7,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <perideal/laws/elasticity.h>
+#include <perideal/mesh/cell_search.h>
 #include <perideal/operators/condition_faces.h>
 #include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/cut_cells.h>
@@ -113,6 +114,7 @@ namespace PeriDeal
     double lowest_remainder() const;
 
   protected:
+    void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
     void find_loads(Vector &loads, const double t) const override;
 
   private:
@@ -139,6 +141,10 @@ namespace PeriDeal
     bool any_thermal() const;
     void add_thermal(const CellData &data, double &energy);
     void finish_thermal(const double energy);
+    void find_thermal();
+    void find_diagonal();
+    bool scales_beside_cracks() const;
+    void add_near(const std::vector<Cell> &cells, const ChangeSet<dim> &change, const double sign);
     void throw_if_isolated() const;
     template <typename Visit>
     void for_each_own_cell(const Visit &visit) const;
@@ -155,7 +161,8 @@ namespace PeriDeal
     std::unique_ptr<CellData>                      cell_data;
     Vector                                         volumes;
     CrackSideFactors                               crack_factors;
-    unsigned long long                             n_bonds = 0;
+    std::unique_ptr<CellSearch<dim>>               search;       // where cracks grow
+    double                                         n_bonds = 0.; // of this process
     double thermal_energy = 0.; // of a body that is held everywhere
   };
 } // namespace PeriDeal

@@ -197,10 +197,30 @@ namespace PeriDeal
       return 0;
     }
 
-    /** Strain energy that broken bonds have released so far, and how many. Not collective. */
+    /**
+     * Make the cracks of the scene those of the span of time between events that holds t. What they
+     * cut gives up energy at u, which released_energy() counts. Returns whether K has changed: then
+     * its diagonal has, too, and its spectrum may have. Collective. Throws UserError where they
+     * leave a node without hold.
+     */
+    virtual bool grow_cracks(const Vector & /*u*/, const double /*t*/)
+    {
+      return false;
+    }
+
+    /** Some strain energy may be released: bonds break, or cracks grow. Not collective. */
+    bool may_release_energy() const
+    {
+      return brittle() || next_event(0.) < std::numeric_limits<double>::infinity();
+    }
+
+    /**
+     * Strain energy that broken bonds, and what growing cracks have cut, have released so far, and
+     * how many bonds have broken. Not collective.
+     */
     double released_energy() const
     {
-      return brittle() ? break_history()->released : 0.;
+      return released_by_growth + (brittle() ? break_history()->released : 0.);
     }
 
     unsigned long long n_broken_bonds() const
@@ -233,6 +253,8 @@ namespace PeriDeal
   protected:
     /** Numbers that look random but depend on the unknowns' places alone. Not collective. */
     virtual void fill_noise(Vector &vector) const = 0;
+
+    double released_by_growth = 0.;
 
     /** Keeps what temperature_change() gives. Collective. */
     void keep_temperature_change(const Vector &nodal);

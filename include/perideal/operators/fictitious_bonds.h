@@ -191,6 +191,18 @@ namespace PeriDeal
                          const std::vector<unsigned int> &lost,
                          const double                     t);
 
+    /** Cut those bonds of a node that cracks cut as they are now. @param t since when */
+    void part(const unsigned int node, const double t);
+
+    /** Some bond of a node has been cut by a crack that grows. */
+    bool is_parted(const unsigned int node) const;
+
+    /** What they add to q of a node, with the cracks as they are; broken ones included. */
+    double weight_left(const unsigned int node) const;
+
+    /** Where cracks grow: make the springs of a node those of b_i/q_i as it is now. */
+    void renew_springs(const unsigned int node, const NodeLaws<dim> &laws);
+
     /** What has broken. @param keys of the owned nodes. Collective. */
     void exchange(Archive &archive, const NodeKeys &keys);
 
@@ -249,5 +261,6 @@ namespace PeriDeal
     BondState                           state;
     std::vector<dealii::Tensor<1, dim>> moments;
     std::vector<double>                 springs, lengths, across, strains; // springs: first W x^2
+    std::vector<double>                 squares; // W x^2, where cracks grow
   };
 } // namespace PeriDeal

@@ -63,11 +63,13 @@ namespace PeriDeal
     /**
      * Adds the halo to the nodes. Collective. Throws UserError for a zone without nodes.
      * @param stiffness if empty the conductivity
+     * @param whole_way the zone around cracks that grow is that of their whole way from the start
      */
     LatticeBonds(Nodes<dim>       &nodes,
                  const Scene<dim> &scene,
                  const Zone<dim>  &zone,
-                 const Stiffness  &stiffness = {});
+                 const Stiffness  &stiffness = {},
+                 const bool        whole_way = false);
 
     /**
      * Visit (neighbour, offset, strength) for the active bonds of an owned node, broken ones
@@ -110,7 +112,7 @@ namespace PeriDeal
 
   private:
     void            find_offsets();
-    void            find_sites(const Scene<dim> &scene);
+    void            find_sites(const Scene<dim> &scene, const bool whole_way);
     void            set_table_around(const std::vector<bool> &candidates);
     void            find_cells(const Scene<dim> &scene, const Stiffness &stiffness);
     const SiteData *at(const Site &site) const;

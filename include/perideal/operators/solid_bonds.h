@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/bonds/change_set.h>
 #include <perideal/operators/bond_kinematics.h>
 #include <perideal/operators/fictitious_bonds.h>
 
@@ -22,11 +23,26 @@ namespace PeriDeal
 
     SolidBonds(const SolidBonds &) = delete;
 
+    /**
+     * Let the cracks be those of a later time: bonds that they cut bear nothing any more, and q and
+     * the springs that follow from it are those of the bonds that are left, as if the cracks had
+     * been there from the start. Collective. Throws UserError: nodes without hold.
+     * @param state  of the stored bonds
+     * @param marked it has what is cut already, and bonds have been released
+     */
+    void apply_change(const ChangeSet<dim> &change, BondState &state, const bool marked);
+
     Families<dim>                         families;
     NodeLaws<dim>                         laws;
     ThermalStrains                        thermal;
     SolidRows<dim>                        rows;
     BondKinematics<dim>                   kinematics;
     std::unique_ptr<FictitiousBonds<dim>> beyond; // or none, on all processes
+
+  private:
+    bool       has_parted(const unsigned int i, const BondState &state) const; // since the start
+    void       part(const unsigned int i, const double t, BondState &state);
+    void       renew_weights(const std::vector<unsigned int> &of_nodes, const BondState &state);
+    const bool weights_follow; // q is that of the family, and not of a complete one
   };
 } // namespace PeriDeal

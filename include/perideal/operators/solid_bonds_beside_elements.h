@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/bonds/change_set.h>
 #include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/elastic_coupling.h>
 
@@ -42,6 +43,14 @@ namespace PeriDeal
       return coupled->families().nodes();
     }
 
+    void set_cracks_of(const double time)
+    {
+      coupled->set_cracks_of(time);
+    }
+
+    /** Owned nodes whose bonds or families may change with the cracks, in ascending order. */
+    std::vector<unsigned int> nodes_near(const ChangeSet<dim> &change) const;
+
     void add_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
 
     /**
@@ -50,6 +59,15 @@ namespace PeriDeal
      */
     double add_to(dealii::TrilinosWrappers::SparseMatrix &matrix,
                   const CrackSideFactors                 &factors) const;
+
+    /**
+     * Add a multiple of what these owned nodes, each once, have of that: the rows of their pairs,
+     * and their families. Returns that multiple of the number.
+     */
+    double add_to(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                  const CrackSideFactors                 &factors,
+                  const std::vector<unsigned int>        &of_nodes,
+                  const double                            multiple) const;
 
     /** The same as if no crack were there, without factors. */
     void add_intact(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
@@ -69,10 +87,27 @@ namespace PeriDeal
     using Bond   = typename ElasticCoupling<dim>::Bond;
     using Family = typename ElasticCoupling<dim>::Family;
 
+    /** Memory of the functions that add. */
+    struct Rows
+    {
+      std::vector<Bond>                            bonds;
+      std::vector<dealii::types::global_dof_index> columns;
+      std::vector<double>                          values[dim];
+    };
+
     /** @param factors null: as if no crack were there. Returns the number as add_to() does. */
     double add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix,
-                     const CrackSideFactors                 *factors) const;
-    double add_families(dealii::TrilinosWrappers::SparseMatrix &matrix, const bool intact) const;
+                     const CrackSideFactors                 *factors,
+                     const unsigned int                      node,
+                     const double                            multiple,
+                     Rows                                   &rows) const;
+    double add_family(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                      const bool                              intact,
+                      const unsigned int                      node,
+                      const double                            multiple,
+                      Rows                                   &rows) const;
+    double add_all(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                   const CrackSideFactors                 *factors) const;
     void   unknowns_of(const Family                                 &family,
                        std::vector<dealii::types::global_dof_index> &indices) const;
 

@@ -5,8 +5,10 @@
 
 #include <deal.II/base/partitioner.h>
 
+#include <perideal/bonds/change_set.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/displacement_conditions.h>
+#include <perideal/scene/crack_history.h>
 
 #include <memory>
 
@@ -14,8 +16,9 @@ namespace PeriDeal
 {
   /**
    * What all models of solids have alike: unknowns, displacements that are prescribed, masses,
-   * loads that are kept while they do not change, and thermal strains alpha dT (in plane strain
-   * (1 + nu) alpha dT) from the formula of the scene or from temperatures at nodes.
+   * loads that are kept while they do not change, thermal strains alpha dT (in plane strain
+   * (1 + nu) alpha dT) from the formula of the scene or from temperatures at nodes, and cracks that
+   * grow.
    */
   template <int dim>
   class SolidOperator : public ElasticOperator
@@ -70,6 +73,19 @@ namespace PeriDeal
       return true; // scenes that leave rigid motions free are refused when they are read
     }
 
+    double next_event(const double t) const override
+    {
+      return history.next_event(t);
+    }
+
+    bool grow_cracks(const Vector &u, const double t) override;
+
+    /** The representative time of the cracks as they are in K (CrackHistory). Not collective. */
+    double crack_time() const
+    {
+      return cracks_of;
+    }
+
     void exchange(Archive &archive, const NodeKeys &keys) override;
 
     std::vector<Vector> near_null_space() const override;
@@ -89,6 +105,12 @@ namespace PeriDeal
 
     /** Sets the layouts and allocates all vectors, to zero. Collective. */
     void set_layout(const Layout &of_nodes);
+
+    /**
+     * Mend what a change names. Collective. Throws UserError.
+     * @param loaded bonds have been marked already, by what was loaded
+     */
+    virtual void apply_change(const ChangeSet<dim> &change, const bool loaded) = 0;
 
     /** y = -F(u), without loads. */
     virtual void find_forces(Vector &y, const Vector &u) const
@@ -124,12 +146,15 @@ namespace PeriDeal
     }
 
     const Scene<dim>                            &scene;
+    const CrackHistory<dim>                      history;
+    double                                       cracks_of; // representative time of those in K
     Layout                                       nodes, unknowns;
     std::unique_ptr<DisplacementConditions<dim>> conditions;
     const bool                                   loads_vary;
     Vector                                       mass, stiffness_diagonal, thermal_loads;
 
   private:
+    void   set_cracks_of(const double time, const double since, const bool loaded);
     Vector constant_loads;
 
   protected:

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/bonds/bond_state.h>
 #include <perideal/bonds/families.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/node_laws.h>
@@ -20,10 +21,12 @@ namespace PeriDeal
   /**
    * The bonds of the linear peridynamic solid between nodes of the body (StateOperator), row by
    * row, and the sums over them that an application takes. On a lattice in 2D and 3D, with linear
-   * kinematics, where nothing breaks and no surface is corrected, nodes without cut bonds store
-   * none (StateLattice). Other bonds are stored at both ends: W xi, one number, a column.
+   * kinematics, where nothing breaks and no surface is corrected, nodes store none (StateLattice)
+   * whose bonds no crack cuts, now or later. Other bonds are stored at both ends: W xi, one number,
+   * a column.
    *
-   * A bond that breaks stays in its row and bears nothing (release()).
+   * A bond that breaks, or that a growing crack cuts, stays in its row and bears nothing
+   * (release()).
    */
   template <int dim>
   class SolidRows
@@ -117,10 +120,24 @@ namespace PeriDeal
     /** Let a bond bear nothing any more. */
     void release(const std::size_t number);
 
+    /**
+     * q of the bonds in the body of an owned node that cracks leave it now, broken ones included;
+     * @p message is set, if it is empty, where they do not hold it.
+     */
+    double weight_left(const unsigned int i, std::string &message) const;
+
+    /** Make the springs of the whole bonds of an owned node those of q as it is now. */
+    void renew_springs(const unsigned int i, const BondState &state);
+
     /** Make a stored bond that of the tangent. */
     void set_moment(const std::size_t number, const dealii::Tensor<1, dim> &moment)
     {
       moments[number] = moment;
+    }
+
+    unsigned int neighbor(const std::size_t number) const
+    {
+      return neighbors[number];
     }
 
     /** How many of this process's bonds are stored, each counted at both ends. */
@@ -163,11 +180,15 @@ namespace PeriDeal
   private:
     using Family = std::vector<typename Families<dim>::Member>;
 
-    bool has_complete_family(const unsigned int i) const; // cut or not
-    void list_lattice_bonds();
-    void store(const unsigned int i, const Family &family, std::string &message);
-    void correct_surface(const Scene<dim> &scene);
-    void make_lattice();
+    bool              has_complete_family(const unsigned int i) const; // cut or not
+    void              list_lattice_bonds();
+    std::vector<bool> find_changing(const Scene<dim> &scene) const;
+    void              store(const unsigned int i, const Family &family, std::string &message);
+    std::string       fault_of(const unsigned int                     i,
+                               const double                           q,
+                               const dealii::SymmetricTensor<2, dim> &shape) const;
+    void              correct_surface(const Scene<dim> &scene);
+    void              make_lattice();
 
     const Families<dim>                &families;
     NodeLaws<dim>                      &laws;

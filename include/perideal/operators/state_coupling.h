@@ -56,6 +56,7 @@ namespace PeriDeal
     std::vector<dealii::types::boundary_id> mirrors() const override;
     bool                                    in_zone(const unsigned int node) const override;
     const Families<dim>                    &families() const override;
+    void                                    set_cracks_of(const double time) override;
     std::size_t                             memory_consumption() const override;
 
   protected:

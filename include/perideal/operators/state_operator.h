@@ -89,6 +89,7 @@ namespace PeriDeal
     NodalTensors<dim> tensors(const Vector &u) const;
 
   protected:
+    void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
     void find_forces(Vector &y, const Vector &u) const override;
     void find_loads(Vector &loads, const double t) const override;
 
@@ -104,7 +105,7 @@ namespace PeriDeal
     void find_thermal_strains();
     void find_thermal_loads();
     void find_diagonal();
-    void follow_breaks(); // by what is found of all bonds
+    void follow_bonds(); // what is found of all of them
 
     /** tau; the functions below leave ghosts of displacements as they are, up to date. */
     void find_tensions(const Vector &u, const bool strained) const;

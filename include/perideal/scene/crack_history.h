@@ -49,6 +49,9 @@ namespace PeriDeal
      */
     double representative(const double t) const;
 
+    /** When the span that holds t has begun: an event, or 0. */
+    double begin_of_span(const double t) const;
+
     /** The pieces of all cracks, whole history included, at that very time. */
     std::vector<CrackPiece<dim>> pieces(const double t, const bool cut_at_tips = true) const;
 

@@ -102,7 +102,7 @@ namespace PeriDeal
 
     /**
      * An elastic body in equilibrium at each time, under loads or with a temperature that depend on
-     * time.
+     * time, or with cracks that grow.
      */
     bool is_loaded_slowly() const;
 

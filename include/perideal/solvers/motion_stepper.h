@@ -95,7 +95,7 @@ namespace PeriDeal
      */
     virtual void step(Vector &u, Vector &v, const double t, const double dt) = 0;
 
-    /** Bonds have broken: K is another one. */
+    /** Bonds have broken, or cracks have grown: K is another one. */
     virtual void operator_changed() {}
 
     /** y = M^{-1} r on free unknowns, zero elsewhere. */
@@ -118,7 +118,7 @@ namespace PeriDeal
     void check_drift(const Vector &u, const Vector &v, const double t);
     void check_inversion(const Vector &u, const double t) const;
     bool follow_body(const Vector &u, const double t);
-    void break_bonds(const Vector &u, const double t);
+    void change_bonds(const Vector &u, const double t);
 
     StepSpan                   span;
     double                     longest, shortest;

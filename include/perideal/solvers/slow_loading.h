@@ -20,7 +20,8 @@ namespace PeriDeal
     double start     = 0.; // strain energy of the first equilibrium, before any bond broke
     double work      = 0.; // of loads and supports since then
     double exchanged = 0.; // the most that start and work together have been so far
-    // By broken bonds, and by the motion that a real body would make before it is at rest again.
+    // By broken bonds and growing cracks, and by the motion that a real body would make before it is
+    // at rest again.
     double dissipated = 0.;
 
     /**
@@ -37,7 +38,8 @@ namespace PeriDeal
 
   /**
    * A body under loads that change so slowly that it is always at rest: equilibria at one load
-   * after the other, at each of which bonds break until none is stretched too far. Of those that
+   * after the other, at each of which cracks grow to where they are by then, and bonds break until
+   * none is stretched too far. Of those that
    * are, the most stretched break first, and the others are asked again in the new equilibrium, so
    * that a large step of the load does not shatter what a crack would relieve. Vectors are
    * allocated once.
@@ -103,7 +105,7 @@ namespace PeriDeal
     };
 
     void solve(Vector &u, const double t);
-    void break_bonds(Vector &u, const double t, const AfterStep &after_round);
+    void change_bonds(Vector &u, const double t, const AfterStep &after_round);
     void check_inversion(Vector &u, const double t) const;
 
     ElasticOperator              &op;

@@ -13,8 +13,8 @@ namespace PeriDeal
    * limit 2/omega_max is that of the tangent, which changes with the directions and forces of the
    * bonds. Looking costs half an application where bonds are those of the deformed body, else
    * nothing; a new estimate, by Lanczos iterations, some thirty. There is one only when the largest
-   * stretch has changed much or bonds have broken since the last, and only as long as all of them
-   * together take at most some percent of the applications, or the body has stretched far since.
+   * stretch has changed much, bonds have broken or cracks have grown since the last, and only as
+   * long as all of them together take at most some percent of the applications, or the body has stretched far since.
    */
   class StepLimit
   {
@@ -50,5 +50,6 @@ namespace PeriDeal
     const bool         may_change;
     double             step, stretch   = 0.; // those of the last estimate
     unsigned long long n_broken, spent = 0;
+    double             next_growth; // of cracks, after the last estimate
   };
 } // namespace PeriDeal
