@@ -126,6 +126,7 @@ namespace PeriDeal
   {
     const Vector           layout(nodes);
     CrackSideFactors::Sums sums(layout);
+    crack_factors.start(layout); // sums are those without factors
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
         {
@@ -144,7 +145,6 @@ namespace PeriDeal
     sums.compress();
     std::vector<unsigned int> owned(nodes->locally_owned_size());
     std::iota(owned.begin(), owned.end(), 0);
-    crack_factors.start(layout);
     crack_factors.find(owned, sums);
   }
 

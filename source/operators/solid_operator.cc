@@ -5,11 +5,13 @@
 
 #include <perideal/base/interleaved.h>
 #include <perideal/base/place_text.h>
+#include <perideal/base/user_error.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/solid_operator.h>
 #include <perideal/operators/spectrum.h>
 
 #include <algorithm>
+#include <sstream>
 
 namespace PeriDeal
 {
@@ -70,7 +72,16 @@ namespace PeriDeal
   template <int dim>
   void SolidOperator<dim>::set_cracks_of(const double time, const double since, const bool loaded)
   {
-    apply_change({cracks_of, time, since, history.changes(cracks_of, time)}, loaded);
+    try
+      {
+        apply_change({cracks_of, time, since, history.changes(cracks_of, time)}, loaded);
+      }
+    catch (const UserError &fault)
+      {
+        std::ostringstream message;
+        message << "With the cracks as they are from t = " << since << " on: " << fault.message();
+        throw UserError(message.str());
+      }
     cracks_of = time;
   }
 
