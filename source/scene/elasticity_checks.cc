@@ -77,8 +77,8 @@ namespace PeriDeal
         " Hold the side by 'Displacement', or use 'blending'.");
       const double reach = scene.horizon() + scene.domain.spacing().norm();
       for (const types::boundary_id side : symmetry)
-        for (const auto &crack : scene.cracks.cracks)
-          refuse(distance_to_side(scene, crack, side) < reach,
+        for (const CrackPiece<dim> &piece : scene.cracks.pieces(scene.time.end_time))
+          refuse(distance_to_side(scene, piece.corners, side) < reach,
                  "cannot mirror a crack that comes within a horizon of the plane of symmetry '" +
                    name_of_side(side, true) + "'.",
                  " Hold that side by 'Displacement', or use another correction.");

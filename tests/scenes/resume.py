@@ -44,7 +44,8 @@ SCENES = {
     "motion": [("fracture/branching_crack.prm", {"Domain/Cells": "60, 24"}, 0),
                ("fracture/branching_crack.prm", {"Domain/Cells": "61, 25", "Domain/Nodes": "cell centers", "Elasticity/Kinematics": "full"}, 0),
                ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],
-    "loading": [("fracture/centre_crack.prm", {"Domain/Cells": "30, 60", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/thermal_stress.prm", {}, IMPLICIT)],
+    "loading": [("fracture/centre_crack.prm", {"Domain/Cells": "30, 60", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/thermal_stress.prm", {}, IMPLICIT),
+                ("elasticity/growing_crack.prm", {"Domain/Cells": "66, 11", "Solver/Tolerance": "1e-13"}, IMPLICIT)],
 }
 # Runs of some seconds, which signals can meet on their way.
 LONGER = {

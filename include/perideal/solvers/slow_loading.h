@@ -20,8 +20,8 @@ namespace PeriDeal
     double start     = 0.; // strain energy of the first equilibrium, before any bond broke
     double work      = 0.; // of loads and supports since then
     double exchanged = 0.; // the most that start and work together have been so far
-    // By broken bonds and growing cracks, and by the motion that a real body would make before it is
-    // at rest again.
+    // By broken bonds and growing cracks, and by the motion that a real body would make before it
+    // is at rest again.
     double dissipated = 0.;
 
     /**

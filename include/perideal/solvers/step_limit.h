@@ -14,7 +14,8 @@ namespace PeriDeal
    * bonds. Looking costs half an application where bonds are those of the deformed body, else
    * nothing; a new estimate, by Lanczos iterations, some thirty. There is one only when the largest
    * stretch has changed much, bonds have broken or cracks have grown since the last, and only as
-   * long as all of them together take at most some percent of the applications, or the body has stretched far since.
+   * long as all of them together take at most some percent of the applications, or the body has
+   * stretched far since.
    */
   class StepLimit
   {
