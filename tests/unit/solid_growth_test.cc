@@ -238,7 +238,7 @@ namespace PeriDeal
 
   TEST(SolidGrowth, a_node_without_hold_is_told)
   {
-    // Around the node at (0.40625, 0.40625): cracks above and on the right grow until it is cut off.
+    // Around the node at (0.40625, 0.40625): cracks above and beside it grow until it is cut off.
     const Settings base =
       box<2>() + centers +
       Settings{{"Peridynamics/Horizon ratio", "2"},
