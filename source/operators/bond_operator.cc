@@ -199,9 +199,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool BondOperator<dim>::move_cracks(const double, const double to)
+  bool BondOperator<dim>::apply_change(const ChangeSet<dim> &change)
   {
-    const auto boxes = bonds.cracks().set_time(to);
+    const auto &boxes = change.cuts;
+    bonds.cracks().set_time(change.to);
     if (boxes.empty())
       return false;
     std::vector<unsigned int> rows = bonds.neighbors().nodes_near(boxes, bonds.weights().reach());

@@ -46,11 +46,11 @@ namespace PeriDeal
   template <int dim>
   bool DiffusionOperatorBase<dim>::update(const double t)
   {
-    const double before = cracks_of, time = history.representative(t);
-    if (time == before || !history.changes_ever())
+    if (history.representative(t) == cracks_of || !history.changes_ever())
       return false;
-    cracks_of = time;
-    return move_cracks(before, time);
+    const ChangeSet<dim> change = history.change(cracks_of, t);
+    cracks_of                   = change.to;
+    return apply_change(change);
   }
 
 

@@ -238,7 +238,7 @@ namespace PeriDeal
         if (!search)
           search = std::make_unique<CellSearch<dim>>(dofs);
         std::vector<Cell> cells;
-        search->find(change.boxes, 0., cells);
+        search->find(change.cuts, 0., cells);
         std::sort(cells.begin(), cells.end());
         cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
         add_near(cells, change, -1.);

@@ -109,9 +109,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool FEMOperator<dim>::move_cracks(const double from, const double to)
+  bool FEMOperator<dim>::apply_change(const ChangeSet<dim> &change)
   {
-    const auto cuts = history.changes(from, to);
+    const auto  &cuts = change.cuts;
+    const double to   = change.to;
     if (cuts.empty())
       return false;
     if (!event)
@@ -322,7 +323,7 @@ namespace PeriDeal
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
   template void FEMOperator<dim>::assemble();                                                      \
   template void FEMOperator<dim>::take_material_at(const Vector &);                                \
-  template bool FEMOperator<dim>::move_cracks(const double, const double);                         \
+  template bool FEMOperator<dim>::apply_change(const ChangeSet<dim> &);                            \
   template void FEMOperator<dim>::visit_conductances(                                              \
     const std::function<void(const unsigned int, const unsigned int, const double)> &visit) const; \
   template void FEMOperator<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &, const bool)    \

@@ -122,12 +122,12 @@ namespace PeriDeal
     const Neighbors<dim> &neighbors = families.neighbors();
     const double          reach     = families.weights().reach();
     families.cracks().set_time(change.to);
-    const std::vector<unsigned int> near = neighbors.nodes_near(change.boxes, reach);
+    const std::vector<unsigned int> near = neighbors.nodes_near(change.cuts, reach);
     if (!marked)
       for (const unsigned int i : near)
         part(i, change.since, state);
     renew_weights(near, state);
-    for (const unsigned int i : neighbors.nodes_near(change.boxes, 2. * reach))
+    for (const unsigned int i : neighbors.nodes_near(change.cuts, 2. * reach))
       {
         rows.renew_springs(i, state);
         if (beyond)

@@ -67,7 +67,7 @@ namespace PeriDeal
     const ChangeSet<dim> &change) const
   {
     const Families<dim> &families = coupled->families();
-    return families.neighbors().nodes_near(change.boxes, families.weights().reach());
+    return families.neighbors().nodes_near(change.cuts, families.weights().reach());
   }
 
 

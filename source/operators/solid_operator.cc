@@ -62,7 +62,7 @@ namespace PeriDeal
         archive.exchange("cracks of", time);
         archive.exchange("released by growth", this->released_by_growth);
         if (archive.loads() && time != cracks_of)
-          set_cracks_of(time, history.begin_of_span(time), true);
+          change_cracks(time, true);
       }
     conditions->exchange(archive, keys);
     ElasticOperator::exchange(archive, keys);
@@ -70,19 +70,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidOperator<dim>::set_cracks_of(const double time, const double since, const bool loaded)
+  void SolidOperator<dim>::change_cracks(const double t, const bool loaded)
   {
+    const ChangeSet<dim> change = history.change(cracks_of, t);
     try
       {
-        apply_change({cracks_of, time, since, history.changes(cracks_of, time)}, loaded);
+        apply_change(change, loaded);
       }
     catch (const UserError &fault)
       {
         std::ostringstream message;
-        message << "With the cracks as they are from t = " << since << " on: " << fault.message();
+        message << "With the cracks as they are from t = " << change.since
+                << " on: " << fault.message();
         throw UserError(message.str());
       }
-    cracks_of = time;
+    cracks_of = change.to;
   }
 
 
@@ -93,7 +95,7 @@ namespace PeriDeal
     if (time == cracks_of || !history.changes_ever())
       return false;
     const double before = this->energy(u);
-    set_cracks_of(time, history.begin_of_span(t), false);
+    change_cracks(t, false);
     this->released_by_growth += before - this->energy(u);
     return true;
   }

@@ -193,6 +193,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  ChangeSet<dim> CrackHistory<dim>::change(const double from, const double t) const
+  {
+    const double to = representative(t);
+    return {from, to, begin_of_span(t), changes(from, to)};
+  }
+
+
+  template <int dim>
   std::vector<BoundingBox<dim>> CrackHistory<dim>::changes(const double t_1, const double t_2) const
   {
     std::vector<BoundingBox<dim>> boxes;

@@ -77,10 +77,10 @@ namespace PeriDeal
       std::vector<std::pair<double, double>> moves;
 
     protected:
-      bool move_cracks(const double from, const double to) override
+      bool apply_change(const ChangeSet<2> &change) override
       {
-        moves.emplace_back(from, to);
-        return to > 0.5;
+        moves.emplace_back(change.from, change.to);
+        return change.to > 0.5;
       }
 
       void find_flows(Balance &balance, Vector &heat, const Vector &u, const double) const override

@@ -91,7 +91,7 @@ namespace PeriDeal
     }
 
   protected:
-    bool move_cracks(const double from, const double to) override;
+    bool apply_change(const ChangeSet<dim> &change) override;
     void find_flows(Balance &balance, Vector &heat, const Vector &u, const double t) const override;
     dealii::Point<dim> position(const unsigned int local_index) const override
     {

@@ -100,11 +100,8 @@ namespace PeriDeal
     /** Sets capacity and diagonal to zero. Not collective. */
     void set_layout(const Layout &of_vectors);
 
-    /**
-     * Move on from the cracks of one representative time (CrackHistory) to those of another.
-     * Returns whether K has changed. Collective.
-     */
-    virtual bool move_cracks(const double from, const double to) = 0;
+    /** Mend what a change names. Returns whether K has changed. Collective. Throws UserError. */
+    virtual bool apply_change(const ChangeSet<dim> &change) = 0;
 
     /**
      * Add to a balance what this process has, apart from what is stored, which is

@@ -156,7 +156,7 @@ namespace PeriDeal
     double heat(const Vector &u) const;
 
   protected:
-    bool move_cracks(const double from, const double to) override;
+    bool apply_change(const ChangeSet<dim> &change) override;
     void find_flows(Balance &balance, Vector &heat, const Vector &u, const double t) const override;
     dealii::Point<dim> position(const unsigned int local_index) const override;
 

@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <perideal/bonds/change_set.h>
 #include <perideal/operators/bond_kinematics.h>
 #include <perideal/operators/fictitious_bonds.h>
 

@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <perideal/bonds/change_set.h>
 #include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/elastic_coupling.h>
 

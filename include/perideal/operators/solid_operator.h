@@ -5,7 +5,6 @@
 
 #include <deal.II/base/partitioner.h>
 
-#include <perideal/bonds/change_set.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/displacement_conditions.h>
 #include <perideal/scene/crack_history.h>
@@ -154,7 +153,7 @@ namespace PeriDeal
     Vector                                       mass, stiffness_diagonal, thermal_loads;
 
   private:
-    void   set_cracks_of(const double time, const double since, const bool loaded);
+    void   change_cracks(const double t, const bool loaded);
     Vector constant_loads;
 
   protected:

@@ -5,6 +5,7 @@
 
 #include <deal.II/base/bounding_box.h>
 
+#include <perideal/scene/change_set.h>
 #include <perideal/scene/cracks.h>
 
 #include <vector>
@@ -56,6 +57,9 @@ namespace PeriDeal
     std::vector<CrackPiece<dim>> pieces(const double t, const bool cut_at_tips = true) const;
 
     double transmission(const double t) const;
+
+    /** What changes from the cracks of a representative time to those that hold at t. */
+    ChangeSet<dim> change(const double from, const double t) const;
 
     /**
      * Boxes around all that changes with the cracks between two times, t_1 < t_2. Empty if nothing

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/bounding_box.h>
+
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * What has changed of a body from one time to another: made by the history of its cracks
+   * (CrackHistory::change()), consumed by operators and their bonds, cells and couplings, which
+   * mend only what it names. The same on all processes.
+   */
+  template <int dim>
+  struct ChangeSet
+  {
+    double                                from = 0., to = 0.; // representative times of the cracks
+    double                                since = 0.; // when those of `to` begin: an event, or 0
+    std::vector<dealii::BoundingBox<dim>> cuts;       // around what is cut, or conducts otherwise
+  };
+} // namespace PeriDeal
