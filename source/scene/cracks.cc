@@ -259,10 +259,10 @@ namespace PeriDeal
               "; with '" + (contact_conductance > 0. ? "Contact conductance" : "Transmission") +
               "' greater than 0 use 'pairs'.");
     if (mesh == CrackMesh::faces && !tips.empty())
-      error(
-        "Mesh",
-        "'faces' cuts the cracks into the mesh before the run; for cracks that grow use 'pairs' "
-        "or 'removed'.");
+      error("Mesh",
+            std::string(
+              "'faces' cuts the cracks into the mesh before the run; for cracks that grow use ") +
+              (physics == Physics::elasticity ? "'removed'." : "'pairs' or 'removed'."));
   }
 
 

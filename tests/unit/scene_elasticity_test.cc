@@ -387,12 +387,9 @@ end
     expect(elastic_fault({t + "Stepper=rk4"}), t + "Stepper", {"'Solver' in section 'Elasticity'"});
     expect(elastic_fault({"Output/Write at=0.1"}), "Output/Write at", {"equilibrium"});
     EXPECT_EQ(elastic_fault({"Output/Write at=0.1", e + "Solver=dynamics"}), "");
-    const char *const growth[] = {"Cracks/Segments=0.2,0.5 ; 0.5,0.5", "Cracks/Growth=2: 0, 0.1,0"};
-    expect(elastic_fault({growth[0], growth[1], t + "Steady=true"}),
-           t + "Steady",
-           {"cracks that grow"});
-    EXPECT_EQ(elastic_fault({growth[0], growth[1]}), "");
-    EXPECT_EQ(elastic_fault({growth[0], growth[1], "Output/Write at=0.1"}), "");
+    const std::string a = "Cracks/Segments=0.2,0.5 ; 0.5,0.5", b = "Cracks/Growth=2: 0, 0.1,0";
+    expect(elastic_fault({a, b, t + "Steady=true"}), t + "Steady", {"cracks that grow"});
+    EXPECT_EQ(elastic_fault({a, b, "Output/Write at=0.1"}), "");
     expect(elastic_fault({"Cracks/Segments=0.2,0.5 ; 0.5,0.5", "Cracks/Transmission=0.5"}),
            "Cracks/Transmission",
            {"no force"});
