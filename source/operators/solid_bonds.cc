@@ -121,13 +121,15 @@ namespace PeriDeal
   {
     const Neighbors<dim> &neighbors = families.neighbors();
     const double          reach     = families.weights().reach();
+    // On a mesh nodes follow from others that lie farther away.
+    const double touched = beyond && !families.nodes().lattice() ? halo_of_images(reach) : reach;
     families.cracks().set_time(change.to);
-    const std::vector<unsigned int> near = neighbors.nodes_near(change.cuts, reach);
+    const std::vector<unsigned int> near = neighbors.nodes_near(change.cuts, touched);
     if (!marked)
       for (const unsigned int i : near)
         part(i, change.since, state);
     renew_weights(near, state);
-    for (const unsigned int i : neighbors.nodes_near(change.cuts, 2. * reach))
+    for (const unsigned int i : neighbors.nodes_near(change.cuts, touched + reach))
       {
         rows.renew_springs(i, state);
         if (beyond)

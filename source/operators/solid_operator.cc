@@ -58,7 +58,11 @@ namespace PeriDeal
   {
     if (history.changes_ever())
       {
-        double time = cracks_of;
+        double time = cracks_of, first = history.representative(0.);
+        archive.exchange("cracks of the start", first);
+        AssertThrow(first == history.representative(0.),
+                    UserError("The cracks grow in other steps than those of the checkpoint. Go on "
+                              "with the same 'End time' in section 'Time'."));
         archive.exchange("cracks of", time);
         archive.exchange("released by growth", this->released_by_growth);
         if (archive.loads() && time != cracks_of)
@@ -92,7 +96,7 @@ namespace PeriDeal
   bool SolidOperator<dim>::grow_cracks(const Vector &u, const double t)
   {
     const double time = history.representative(t);
-    if (time == cracks_of || !history.changes_ever())
+    if (time <= cracks_of || !history.changes_ever())
       return false;
     const double before = this->energy(u);
     change_cracks(t, false);

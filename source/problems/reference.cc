@@ -79,7 +79,8 @@ namespace PeriDeal
           if (domain.shape == Shape::plate_with_hole && domain.holes.has_one &&
               domain.holes.listed.empty() && domain.holes.shape == HoleShape::circle)
             context.hole = {domain.holes.center[0], domain.holes.center[1], domain.holes.radius};
-          else if (domain.holes.listed.size() == 1 && !domain.holes.has_one && domain.holes.listed[0].radius > 0.)
+          else if (domain.holes.listed.size() == 1 && !domain.holes.has_one &&
+                   domain.holes.listed[0].radius > 0.)
             context.hole = {domain.holes.listed[0].center[0],
                             domain.holes.listed[0].center[1],
                             domain.holes.listed[0].radius};
@@ -88,7 +89,7 @@ namespace PeriDeal
                    (upper - p)[1] > 0.;
           };
           const auto pieces = scene.cracks.pieces(0.);
-          if (pieces.size() == 1 && pieces[0].corners.size() == 2)
+          if (pieces.size() == 1 && pieces[0].corners.size() == 2 && !scene.cracks.change())
             {
               const Point<dim> &a = pieces[0].corners[0], &b = pieces[0].corners[1];
               context.crack         = {a[0], a[1], b[0], b[1]};

@@ -74,7 +74,7 @@ namespace PeriDeal
     constexpr double applications_of_step = 5.;
     if (scene.time.steady)
       return first;
-    const bool alike = !op.nonlinear() && !scene.warms_slowly();
+    const bool alike = !op.nonlinear() && !scene.warms_slowly() && scene.cracks.tips.empty();
     return first + n_steps * (alike ? applications_of_step * time_of_application(op) : first);
   }
 

@@ -94,7 +94,8 @@ namespace PeriDeal
       bool may_solve_again(const Scene<dim> &scene) const override
       {
         return scene.elasticity.is_static() &&
-               (scene.material.fracture_energy || scene.material.critical_stretch);
+               (scene.material.fracture_energy || scene.material.critical_stretch ||
+                !scene.cracks.tips.empty());
       }
 
       void note_scene(const Scene<dim>         &scene,

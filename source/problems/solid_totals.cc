@@ -35,10 +35,13 @@ namespace PeriDeal
         add("work", "work of loads and supports", energy.work);
         if (problem.op().may_release_energy())
           {
-            add("released",
-                problem.op().brittle() ? "energy released by broken bonds" :
-                                         "energy released by cracks",
-                problem.op().released_energy());
+            const double by_growth = problem.op().energy_released_by_growth();
+            if (problem.op().brittle())
+              add("released",
+                  "energy released by broken bonds",
+                  problem.op().released_energy() - by_growth);
+            if (problem.op().has_growing_cracks())
+              add("released by cracks", "energy released by cracks", by_growth);
             add("dissipated", "energy dissipated", lost);
           }
         if (problem.op().brittle())
@@ -124,7 +127,7 @@ namespace PeriDeal
     context.record.balances[problem.name()] = {{"boundary force", balance.sides},
                                                {"strain energy", energy},
                                                {"mean stress", stress}};
-    if (problem.stepper || problem.op().brittle() ||
+    if (problem.stepper || problem.op().may_release_energy() ||
         (problem.scene.is_loaded_slowly() && !problem.scene.warms_slowly()))
       context.record.balances[problem.name()]["energy balance"] = add_energies(problem, t, context);
     if (!problem.stepper)

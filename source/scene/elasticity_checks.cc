@@ -241,8 +241,8 @@ namespace PeriDeal
     void check_extra_layers(const Scene<dim> &scene)
     {
       const Domain<dim> &domain = scene.domain;
-      for (const auto &crack : scene.cracks.cracks)
-        for (const Point<dim> &p : crack)
+      for (const CrackPiece<dim> &piece : scene.cracks.pieces(scene.time.end_time))
+        for (const Point<dim> &p : piece.corners)
           for (unsigned int d = 0; d < dim; ++d)
             {
               const double slack = 1e-9 * (domain.body_upper[d] - domain.body_lower[d]);
@@ -317,8 +317,8 @@ namespace PeriDeal
       for (const VectorCondition &condition : conditions.traction)
         {
           check_layer(scene, condition, conditions.traction_layer, where, "Traction");
-          for (const auto &crack : scene.cracks.cracks)
-            if (distance_to_side(scene, crack, conditions.side_of(condition.id)) <
+          for (const CrackPiece<dim> &piece : scene.cracks.pieces(scene.time.end_time))
+            if (distance_to_side(scene, piece.corners, conditions.side_of(condition.id)) <
                 conditions.traction_layer)
               entry_error(
                 where,

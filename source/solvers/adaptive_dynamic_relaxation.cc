@@ -30,11 +30,9 @@ namespace PeriDeal
         : op(op)
         , options(options)
       {
-        constexpr double margin = 1.1;
         for (Vector *v : {&mass, &velocity, &residual, &last})
           op.initialize_vector(*v);
-        mass = op.diagonal();
-        mass *= 0.25 * margin * op.scaled_bound();
+        find_mass();
       }
 
       std::string name() const override
@@ -45,6 +43,8 @@ namespace PeriDeal
       unsigned int solve(Vector &u, const double t, const double size) override
       {
         ResidualGoal goal(name(), options, size);
+        if (outdated)
+          find_mass();
         op.distribute(u, t);
         op.residual(residual, u, t);
         velocity       = 0.;
@@ -65,7 +65,20 @@ namespace PeriDeal
         return n;
       }
 
+      void operator_changed() override
+      {
+        outdated = op.has_growing_cracks(); // what only breaks gets no stiffer
+      }
+
     private:
+      void find_mass()
+      {
+        constexpr double margin = 1.1;
+        mass                    = op.diagonal();
+        mass *= 0.25 * margin * op.scaled_bound();
+        outdated = false;
+      }
+
       /** The damping from the last step; raises the mass where that step was not stable. */
       double adapt(const Vector &u)
       {
@@ -89,6 +102,7 @@ namespace PeriDeal
       ElasticOperator    &op;
       const StaticOptions options;
       Vector              mass, velocity, residual, last;
+      bool                outdated = false; // the mass
     };
   } // namespace
 

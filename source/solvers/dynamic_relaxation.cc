@@ -42,6 +42,12 @@ namespace PeriDeal
       {
         constexpr unsigned int period = 50;
         ResidualGoal           goal(name(), options, size);
+        if (outdated)
+          {
+            stiffest    = op.spectrum().sharp;
+            most_damped = op.damping_bound();
+            outdated    = false;
+          }
         op.distribute(u, t);
         op.linearize(u);
         op.residual(residual, u, t);
@@ -66,6 +72,11 @@ namespace PeriDeal
             op.residual(residual, u, t);
           }
         return n;
+      }
+
+      void operator_changed() override
+      {
+        outdated = op.has_growing_cracks(); // what only breaks gets no stiffer
       }
 
     private:
@@ -97,7 +108,8 @@ namespace PeriDeal
       ElasticOperator          &op;
       const StaticOptions       options;
       const std::vector<double> inverse_mass;
-      const double              stiffest, most_damped;
+      double                    stiffest, most_damped;
+      bool                      outdated  = false; // these two
       double                    viscosity = 0., dt = 0.;
       Vector                    velocity, residual, drag, marked, marked_residual;
     };

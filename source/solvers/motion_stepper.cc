@@ -223,6 +223,8 @@ namespace PeriDeal
     account.exchange(archive, keys);
     if (limit)
       limit->exchange(archive);
+    if (archive.loads() && op.has_growing_cracks())
+      operator_changed();
   }
 
 

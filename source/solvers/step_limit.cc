@@ -35,7 +35,9 @@ namespace PeriDeal
     // Stretches that differ by a tenth change the limit by a few percent; 0.8 of it leaves room
     // for 25. A step that is not ours has less room, and is looked after more closely.
     constexpr double alarming = 0.25, near = 0.9, at_first = 15.;
-    const double     much = may_change ? 0.1 : 0.03, cost = may_change ? 0.03 : 0.1;
+    const double     much = may_change ? 0.1 : 0.03, cost = may_change              ? 0.03 :
+                                                            op.has_growing_cracks() ? 0.25 :
+                                                                                      0.1;
     const double     now     = op.largest_stretch(u);
     const bool       grown   = now > stretch + std::max(much, much * stretch);
     const bool       relaxed = step < first && now < 0.5 * stretch;

@@ -211,7 +211,19 @@ namespace PeriDeal
     /** Some strain energy may be released: bonds break, or cracks grow. Not collective. */
     bool may_release_energy() const
     {
-      return brittle() || next_event(0.) < std::numeric_limits<double>::infinity();
+      return brittle() || has_growing_cracks();
+    }
+
+    /** Not collective. */
+    bool has_growing_cracks() const
+    {
+      return next_event(0.) < std::numeric_limits<double>::infinity();
+    }
+
+    /** What growing cracks have released alone. Not collective. */
+    double energy_released_by_growth() const
+    {
+      return released_by_growth;
     }
 
     /**

@@ -30,8 +30,9 @@ namespace PeriDeal
       dealii::Point<dim>                          place;
       std::array<dealii::types::boundary_id, dim> planes; // that it may lie beyond
       double                                      volume;
-      unsigned int                                origin; // the node that it is an image of
-      Index                                       site;   // on a lattice
+      unsigned int                                origin;       // the node that it is an image of
+      Index                                       site;         // on a lattice
+      dealii::Point<dim>                          twice_planes; // on a mesh (BoundaryImage)
     };
 
     explicit FictitiousImages(const Nodes<dim> &nodes);
