@@ -174,13 +174,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<BoundingBox<dim>> CrackSet<dim>::set_time(const double t)
+  void CrackSet<dim>::set_time(const double t)
   {
-    const auto boxes = past.changes(time, t);
-    cracks           = make_crack_geometries(past.pieces(t, cut_at_tips));
-    transmission     = past.transmission(t);
-    time             = t;
-    return boxes;
+    cracks       = make_crack_geometries(past.pieces(t, cut_at_tips));
+    transmission = past.transmission(t);
+    time         = t;
   }
 
 

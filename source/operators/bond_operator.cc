@@ -201,15 +201,15 @@ namespace PeriDeal
   template <int dim>
   bool BondOperator<dim>::apply_change(const ChangeSet<dim> &change)
   {
-    const auto &boxes = change.cuts;
     bonds.cracks().set_time(change.to);
-    if (boxes.empty())
+    if (change.cuts.empty())
       return false;
-    std::vector<unsigned int> rows = bonds.neighbors().nodes_near(boxes, bonds.weights().reach());
+    std::vector<unsigned int> rows =
+      bonds.neighbors().nodes_near(change.cuts, bonds.weights().reach());
     if (factors.any())
       {
         factors.find(rows);
-        rows = bonds.neighbors().nodes_near(boxes, 2. * bonds.weights().reach());
+        rows = bonds.neighbors().nodes_near(change.cuts, 2. * bonds.weights().reach());
       }
     constraints.update(bonds, scene);
     form->update_rows(rows, stiffness_diagonal.begin());

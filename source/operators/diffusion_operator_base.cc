@@ -46,11 +46,11 @@ namespace PeriDeal
   template <int dim>
   bool DiffusionOperatorBase<dim>::update(const double t)
   {
-    if (history.representative(t) == cracks_of || !history.changes_ever())
+    const auto change = history.change(cracks_of, t);
+    if (!change)
       return false;
-    const ChangeSet<dim> change = history.change(cracks_of, t);
-    cracks_of                   = change.to;
-    return apply_change(change);
+    cracks_of = change->to;
+    return apply_change(*change);
   }
 
 

@@ -204,22 +204,22 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticElements<dim>::add_near(const std::vector<Cell> &cells,
-                                      const ChangeSet<dim>    &change,
-                                      const double             sign)
+  void ElasticElements<dim>::add_parts(const std::vector<Cell>         &of_cells,
+                                       const std::vector<unsigned int> &of_nodes,
+                                       const double                     multiple)
   {
-    for (const Cell &cell : cells)
+    for (const Cell &cell : of_cells)
       if (cell->is_locally_owned())
         {
           cell_data->values.reinit(cell);
           cell_data->set_indices(cell);
           assemble_cell(*cell_data);
           change_cell(cell, *cell_data);
-          cell_data->stiffness *= sign;
+          cell_data->stiffness *= multiple;
           cell_data->add_stiffness_to(stiffness);
         }
     if (zone_bonds)
-      n_bonds += zone_bonds->add_to(stiffness, crack_factors, zone_bonds->nodes_near(change), sign);
+      n_bonds += zone_bonds->add_to(stiffness, crack_factors, of_nodes, multiple);
   }
 
 
@@ -241,11 +241,13 @@ namespace PeriDeal
         search->find(change.cuts, 0., cells);
         std::sort(cells.begin(), cells.end());
         cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-        add_near(cells, change, -1.);
+        const std::vector<unsigned int> near = zone_bonds ? zone_bonds->nodes_near(change) :
+                                                            std::vector<unsigned int>();
+        add_parts(cells, near, -1.);
         cut_by_cracks.set(cells, pieces, 0.);
         if (zone_bonds)
           zone_bonds->set_cracks_of(change.to);
-        add_near(cells, change, 1.);
+        add_parts(cells, near, 1.);
         stiffness.compress(VectorOperation::add);
         find_diagonal();
         if (any_thermal())

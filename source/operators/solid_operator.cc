@@ -65,8 +65,8 @@ namespace PeriDeal
                               "with the same 'End time' in section 'Time'."));
         archive.exchange("cracks of", time);
         archive.exchange("released by growth", this->released_by_growth);
-        if (archive.loads() && time != cracks_of)
-          change_cracks(time, true);
+        if (const auto change = history.change(cracks_of, time); change && archive.loads())
+          take(*change, true);
       }
     conditions->exchange(archive, keys);
     ElasticOperator::exchange(archive, keys);
@@ -74,9 +74,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidOperator<dim>::change_cracks(const double t, const bool loaded)
+  void SolidOperator<dim>::take(const ChangeSet<dim> &change, const bool loaded)
   {
-    const ChangeSet<dim> change = history.change(cracks_of, t);
     try
       {
         apply_change(change, loaded);
@@ -95,11 +94,11 @@ namespace PeriDeal
   template <int dim>
   bool SolidOperator<dim>::grow_cracks(const Vector &u, const double t)
   {
-    const double time = history.representative(t);
-    if (time <= cracks_of || !history.changes_ever())
+    const auto change = history.change(cracks_of, t);
+    if (!change || change->to < cracks_of) // what has been cut stays cut
       return false;
     const double before = this->energy(u);
-    change_cracks(t, false);
+    take(*change, false);
     this->released_by_growth += before - this->energy(u);
     return true;
   }

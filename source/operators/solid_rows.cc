@@ -175,39 +175,41 @@ namespace PeriDeal
   template <int dim>
   void SolidRows<dim>::store(const unsigned int i, const Family &family, std::string &message)
   {
-    const Nodes<dim>       &nodes  = families.nodes();
-    const bool              stored = !is_on_lattice(i);
-    SymmetricTensor<2, dim> shape;
-    double                  q = 0.;
+    const bool stored = !is_on_lattice(i);
     for (const auto &bond : family)
       {
         if (bond.cut || bond.weight == 0.)
           continue;
-        AssertIndexRange(bond.neighbor, nodes.n_local()); // no fictitious nodes
-        const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
-        const double         w  = bond.weight;
-        q += w * xi.norm_square() / nodes.volume(i);
-        shape += w * symmetrize(outer_product(xi, xi));
-        n_whole += 0.5; // at each end
+        AssertIndexRange(bond.neighbor, families.nodes().n_local()); // no fictitious nodes
+        n_whole += 0.5;                                              // at each end
         if (!stored)
           continue;
+        const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
         neighbors.push_back(bond.neighbor);
-        moments.push_back(w * xi);
-        springs.push_back(w * xi.norm_square());
+        moments.push_back(bond.weight * xi);
+        springs.push_back(bond.weight * xi.norm_square());
       }
-    laws.weighted.local_element(i) = q;
-    if (message.empty())
-      message = fault_of(i, q, shape);
+    laws.weighted.local_element(i) = weight_of(i, family, message);
   }
 
 
   template <int dim>
-  std::string SolidRows<dim>::fault_of(const unsigned int             i,
-                                       const double                   q,
-                                       const SymmetricTensor<2, dim> &shape) const
+  double SolidRows<dim>::weight_of(const unsigned int i,
+                                   const Family      &family,
+                                   std::string       &message) const
   {
-    const Nodes<dim> &nodes = families.nodes();
-    std::string       message;
+    const Nodes<dim>       &nodes = families.nodes();
+    SymmetricTensor<2, dim> shape;
+    double                  q = 0.;
+    for (const auto &bond : family)
+      if (!bond.cut && bond.weight != 0.)
+        {
+          const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
+          q += bond.weight * xi.norm_square() / nodes.volume(i);
+          shape += bond.weight * symmetrize(outer_product(xi, xi));
+        }
+    if (!message.empty())
+      return q;
     if (!(q > 0.))
       message =
         "The node at " + place_text(nodes.position(i)) + " is isolated: no bond of it is left. ";
@@ -216,27 +218,16 @@ namespace PeriDeal
                 " lie in one line or plane, across which nothing holds it. ";
     if (!message.empty())
       message += advice_on_horizon(horizon, nodes.volume(i), dim);
-    return message;
+    return q;
   }
 
 
   template <int dim>
   double SolidRows<dim>::weight_left(const unsigned int i, std::string &message) const
   {
-    Family                  family;
-    SymmetricTensor<2, dim> shape;
-    double                  q = 0.;
+    Family family;
     families.members_of(i, family);
-    for (const auto &bond : family)
-      if (!bond.cut && bond.weight != 0.)
-        {
-          const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
-          q += bond.weight * xi.norm_square() / families.nodes().volume(i);
-          shape += bond.weight * symmetrize(outer_product(xi, xi));
-        }
-    if (message.empty())
-      message = fault_of(i, q, shape);
-    return q;
+    return weight_of(i, family, message);
   }
 
 

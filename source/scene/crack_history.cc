@@ -193,10 +193,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  ChangeSet<dim> CrackHistory<dim>::change(const double from, const double t) const
+  std::optional<ChangeSet<dim>> CrackHistory<dim>::change(const double from, const double t) const
   {
     const double to = representative(t);
-    return {from, to, begin_of_span(t), changes(from, to)};
+    if (to == from || !changes_ever())
+      return std::nullopt;
+    return ChangeSet<dim>{from, to, begin_of_span(t), changes(from, to)};
   }
 
 

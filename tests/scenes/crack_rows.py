@@ -23,7 +23,7 @@ QUIET = {"Output/Fields": "none", "Output/Line": "", "Output/Write at": "", "Tim
 
 
 def heat_content(run, model):
-    return [row["value"] for row in run.totals if row["model"] == model and row["quantity"] == "heat content"][-1]
+    return run.total("heat content", model)
 
 
 def temperatures(run, model, points=POINTS):

@@ -39,7 +39,7 @@ CUBE = {"Dimension": "3", "Domain/Lower corner": "0, 0, 0", "Domain/Upper corner
 
 
 def force(run, model, side, direction="y"):
-    return next(r["value"] for r in reversed(run.totals) if r["model"] == model and r["quantity"] == f"force on {side} in {direction}")
+    return run.total(f"force on {side} in {direction}", model)
 
 
 def flux(run, model, side):

@@ -75,6 +75,14 @@ class Run:
     def totals(self):
         return self.table("totals.csv")
 
+    def total(self, quantity, model, time=None):
+        """One number of totals.csv; without a time the last one written."""
+        rows = [row for row in self.totals if row["model"] == model and row["quantity"] == quantity
+                and (time is None or math.isclose(row["time"], time, rel_tol=1e-9, abs_tol=1e-12))]
+        if not rows:
+            raise SystemExit(f"no row '{quantity}' of {model} at time {time} in {self.folder}/totals.csv")
+        return rows[-1]["value"]
+
     def rows(self, model, point=None, time=None, table="probes.csv"):
         """The rows of a model, at one point and one time if given."""
         found = []

@@ -128,7 +128,8 @@ namespace PeriDeal
     Vector      before = body.field(bumpy<2>), still = before, after = before, fresh = before;
     body.constraints.distribute(before, 0.);
     const auto &history = body.problem.scene.crack_history();
-    EXPECT_FALSE(body.bonds.cracks().set_time(history.representative(1.)).empty());
+    EXPECT_FALSE(history.change(body.bonds.cracks().now(), 1.)->cuts.empty());
+    body.bonds.cracks().set_time(history.representative(1.));
     body.constraints.distribute(still, 0.);
     body.constraints.update(body.bonds, body.problem.scene);
     body.constraints.distribute(after, 0.);

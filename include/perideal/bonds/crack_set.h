@@ -63,11 +63,8 @@ namespace PeriDeal
     /** Whether some crack is within a distance of a node; with voids always. */
     bool is_near(const unsigned int node, const double distance) const;
 
-    /**
-     * Make the cracks those of the representative time (CrackHistory), and return the boxes around
-     * what has changed: bonds of nodes farther from all of them than the reach are as before.
-     */
-    std::vector<dealii::BoundingBox<dim>> set_time(const double time);
+    /** Make the cracks those of the representative time (CrackHistory). */
+    void set_time(const double time);
 
     /** The representative time of the cracks as they are now. */
     double now() const;

@@ -144,7 +144,9 @@ namespace PeriDeal
     void find_thermal();
     void find_diagonal();
     bool scales_beside_cracks() const;
-    void add_near(const std::vector<Cell> &cells, const ChangeSet<dim> &change, const double sign);
+    void add_parts(const std::vector<Cell>         &of_cells,
+                   const std::vector<unsigned int> &of_nodes,
+                   const double                     multiple);
     void throw_if_isolated() const;
     template <typename Visit>
     void for_each_own_cell(const Visit &visit) const;

@@ -153,7 +153,7 @@ namespace PeriDeal
     Vector                                       mass, stiffness_diagonal, thermal_loads;
 
   private:
-    void   change_cracks(const double t, const bool loaded);
+    void   take(const ChangeSet<dim> &change, const bool loaded);
     Vector constant_loads;
 
   protected:

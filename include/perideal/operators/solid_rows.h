@@ -184,11 +184,9 @@ namespace PeriDeal
     void              list_lattice_bonds();
     std::vector<bool> find_changing(const Scene<dim> &scene) const;
     void              store(const unsigned int i, const Family &family, std::string &message);
-    std::string       fault_of(const unsigned int                     i,
-                               const double                           q,
-                               const dealii::SymmetricTensor<2, dim> &shape) const;
-    void              correct_surface(const Scene<dim> &scene);
-    void              make_lattice();
+    double weight_of(const unsigned int i, const Family &family, std::string &message) const;
+    void   correct_surface(const Scene<dim> &scene);
+    void   make_lattice();
 
     const Families<dim>                &families;
     NodeLaws<dim>                      &laws;

@@ -8,6 +8,7 @@
 #include <perideal/scene/change_set.h>
 #include <perideal/scene/cracks.h>
 
+#include <optional>
 #include <vector>
 
 namespace PeriDeal
@@ -50,16 +51,16 @@ namespace PeriDeal
      */
     double representative(const double t) const;
 
-    /** When the span that holds t has begun: an event, or 0. */
-    double begin_of_span(const double t) const;
-
     /** The pieces of all cracks, whole history included, at that very time. */
     std::vector<CrackPiece<dim>> pieces(const double t, const bool cut_at_tips = true) const;
 
     double transmission(const double t) const;
 
-    /** What changes from the cracks of a representative time to those that hold at t. */
-    ChangeSet<dim> change(const double from, const double t) const;
+    /**
+     * What changes from the cracks of a representative time to those that hold at t; nothing if
+     * they are the same.
+     */
+    std::optional<ChangeSet<dim>> change(const double from, const double t) const;
 
     /**
      * Boxes around all that changes with the cracks between two times, t_1 < t_2. Empty if nothing
@@ -79,6 +80,7 @@ namespace PeriDeal
     double longest_advance() const;
 
   private:
+    double begin_of_span(const double t) const; // that holds t: an event, or 0
     void   add_growth_events(const double step, const double end_time, const double time_step);
     void   add_transmission_events(const double end_time);
     void   refine_transmission(const double a, const double b, const double end_time);

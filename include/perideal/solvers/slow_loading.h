@@ -39,10 +39,9 @@ namespace PeriDeal
   /**
    * A body under loads that change so slowly that it is always at rest: equilibria at one load
    * after the other, at each of which cracks grow to where they are by then, and bonds break until
-   * none is stretched too far. Of those that
-   * are, the most stretched break first, and the others are asked again in the new equilibrium, so
-   * that a large step of the load does not shatter what a crack would relieve. Vectors are
-   * allocated once.
+   * none is stretched too far. Of those that are, the most stretched break first, and the others
+   * are asked again in the new equilibrium, so that a large step of the load does not shatter what
+   * a crack would relieve. Vectors are allocated once.
    */
   class SlowLoading
   {
