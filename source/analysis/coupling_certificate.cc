@@ -215,6 +215,8 @@ namespace PeriDeal
         held.local_element(dim * share.node + d) = 1.;
     for (unsigned int i = 0; i < noise.locally_owned_size(); ++i)
       noise.local_element(i) = position_noise(op.position(i / dim)) * (1. + i % dim);
+    op.hanging_nodes().set(held, 1.);
+    op.hanging_nodes().set(noise, 0.);
     CouplingCertificate result = examine<dim>(op, held, noise, op.symmetric(), dim);
     result.n_nonzeros_of_full  = 0; // depends on whether a dilatation joins bonds
     return result;

@@ -164,6 +164,20 @@ namespace PeriDeal
 
 
   template <int dim>
+  void DisplacementConditions<dim>::let_follow(std::vector<unsigned int> unknowns)
+  {
+    following = std::move(unknowns);
+    prescribed.erase(
+      std::remove_if(prescribed.begin(),
+                     prescribed.end(),
+                     [&](const Prescribed &entry) {
+                       return std::binary_search(following.begin(), following.end(), entry.unknown);
+                     }),
+      prescribed.end());
+  }
+
+
+  template <int dim>
   void DisplacementConditions<dim>::distribute(Vector &u, const double t) const
   {
     for (const Prescribed &entry : prescribed)
@@ -189,6 +203,8 @@ namespace PeriDeal
   {
     for (const Prescribed &entry : prescribed)
       y.local_element(entry.unknown) = value;
+    for (const unsigned int unknown : following)
+      y.local_element(unknown) = value;
   }
 
 

@@ -114,8 +114,7 @@ namespace PeriDeal
       if (cell->is_locally_owned())
         {
           data.set_indices(cell);
-          for (const auto row : data.unknowns)
-            pattern.add_entries(row, data.unknowns.begin(), data.unknowns.end());
+          hanging.add_to(pattern, data.unknowns);
         }
     return pattern;
   }
@@ -167,7 +166,7 @@ namespace PeriDeal
     for_each_own_cell([&](const Cell &cell, CellData &of_cell) {
       change_cell(cell, of_cell);
       add_thermal(of_cell, energy);
-      of_cell.add_stiffness_to(stiffness);
+      hanging.add_to(stiffness, of_cell.stiffness, of_cell.unknowns);
       for (unsigned int i = 0; i < of_cell.unknowns.size(); ++i)
         mass(of_cell.unknowns[i]) += of_cell.mass(i / dim);
       for (unsigned int i = 0; i < of_cell.indices.size(); ++i)
@@ -178,6 +177,9 @@ namespace PeriDeal
     finish_thermal(energy);
     stiffness.compress(VectorOperation::add);
     mass.compress(VectorOperation::add);
+    hanging.condense(mass);
+    // Their masters have it; as good as nothing, but a mass.
+    hanging.set(mass, std::numeric_limits<double>::epsilon() * mass.l1_norm() / mass.size());
     volumes.compress(VectorOperation::add);
     find_diagonal();
   }
@@ -216,7 +218,7 @@ namespace PeriDeal
           assemble_cell(*cell_data);
           change_cell(cell, *cell_data);
           cell_data->stiffness *= multiple;
-          cell_data->add_stiffness_to(stiffness);
+          hanging.add_to(stiffness, cell_data->stiffness, cell_data->unknowns);
         }
     if (zone_bonds)
       n_bonds += zone_bonds->add_to(stiffness, crack_factors, of_nodes, multiple);
@@ -288,6 +290,7 @@ namespace PeriDeal
                                                     }),
                             dofs.get_communicator());
     thermal_loads.compress(VectorOperation::add);
+    hanging.condense(thermal_loads);
   }
 
 
@@ -375,6 +378,7 @@ namespace PeriDeal
       loads(unknown) += value;
     });
     loads.compress(VectorOperation::add);
+    hanging.condense(loads);
   }
 
 
@@ -385,7 +389,7 @@ namespace PeriDeal
     this->initialize_vector(loads);
     this->initialize_vector(reactions);
     find_loads(loads, t);
-    stiffness.vmult(reactions, u);
+    multiply(reactions, u);
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     if (zone_bonds)
       for (const types::boundary_id side : zone_bonds->coupling().mirrors())
@@ -415,7 +419,7 @@ namespace PeriDeal
     for_each_own_cell([&](const Cell &cell, CellData &data) {
       if (with_bonds && zone_bonds)
         zone_bonds->coupling().change_cell(cell, data.stiffness);
-      data.add_stiffness_to(matrix);
+      hanging.add_to(matrix, data.stiffness, data.unknowns);
     });
     if (with_bonds && zone_bonds)
       zone_bonds->add_intact(matrix);

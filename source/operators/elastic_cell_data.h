@@ -43,12 +43,6 @@ namespace PeriDeal
           unknowns[dim * i + d] = dim * indices[i] + d;
     }
 
-    void add_stiffness_to(dealii::TrilinosWrappers::SparseMatrix &matrix) const
-    {
-      for (unsigned int i = 0; i < unknowns.size(); ++i)
-        matrix.add(unknowns[i], unknowns.size(), unknowns.data(), &stiffness(i, 0));
-    }
-
     dealii::FEValues<dim>                        values;
     dealii::FEFaceValues<dim>                    face_values;
     dealii::FullMatrix<double>                   stiffness;

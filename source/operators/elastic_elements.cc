@@ -8,6 +8,7 @@
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/elastic_elements.h>
+#include <perideal/operators/element_layout.h>
 #include <perideal/operators/spectrum.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ namespace PeriDeal
   ElasticElements<dim>::ElasticElements(const DoFHandler<dim>                &dof_handler,
                                         const Scene<dim>                     &scene,
                                         std::unique_ptr<ElasticCoupling<dim>> coupling)
-    : SolidOperator<dim>(scene)
+    : SolidOperator<dim>(scene, element_layout(dof_handler, coupling.get()))
     , dofs(dof_handler)
     , zone_bonds(coupling ? std::make_unique<SolidBondsBesideElements<dim>>(std::move(coupling)) :
                             nullptr)
@@ -35,14 +36,8 @@ namespace PeriDeal
                      scene.cracks.contact_conductance,
                      [&scene] { return scene.horizon(); }})
     , condition_faces(dofs, scene.boundary_conditions)
+    , hanging(dofs, *nodes, dim)
   {
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
-    this->set_layout(
-      zone_bonds ? zone_bonds->nodes().partitioner() :
-                   std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
-                                                                       relevant,
-                                                                       dofs.get_communicator()));
     find_positions();
     find_conditions();
     cut_by_cracks.set(this->history.pieces(this->cracks_of), 0.);
@@ -136,6 +131,7 @@ namespace PeriDeal
                                                                false,
                                                                dofs.get_communicator());
     conditions->pin(own, scene, false);
+    conditions->let_follow(hanging.owned());
   }
 
 
@@ -172,6 +168,8 @@ namespace PeriDeal
     for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
       row_sums[row] += std::abs(value);
     });
+    for (const unsigned int i : hanging.owned())
+      row_sums[i] = 0.;
     double bound = 0.;
     for (unsigned int i = 0; i < row_sums.size(); ++i)
       bound = std::max(bound, row_sums[i] / mass.local_element(i));
@@ -205,7 +203,7 @@ namespace PeriDeal
   {
     Vector image;
     this->initialize_vector(image);
-    stiffness.vmult(image, u);
+    multiply(image, u);
     return 0.5 * (u * image) - u * thermal_loads + thermal_energy;
   }
 

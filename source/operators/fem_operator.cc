@@ -7,6 +7,7 @@
 
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
+#include <perideal/operators/element_layout.h>
 #include <perideal/operators/fem_operator.h>
 
 #include <algorithm>
@@ -15,24 +16,6 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  namespace
-  {
-    /** With the halo of the nodes, or of finite elements alone with the locally relevant dofs. */
-    template <int dim>
-    std::shared_ptr<const Utilities::MPI::Partitioner> layout_of(const DoFHandler<dim> &dofs,
-                                                                 const Coupling<dim>   *coupling)
-    {
-      if (coupling != nullptr)
-        return coupling->families().nodes().partitioner();
-      IndexSet relevant;
-      DoFTools::extract_locally_relevant_dofs(dofs, relevant);
-      return std::make_shared<const Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
-                                                                 relevant,
-                                                                 dofs.get_communicator());
-    }
-  } // namespace
-
-
   template <int dim>
   FEMOperator<dim>::FEMOperator(const DoFHandler<dim>         &dof_handler,
                                 const Scene<dim>              &scene,
@@ -40,7 +23,7 @@ namespace PeriDeal
                                 const double                   start)
     : DiffusionOperatorBase<dim>(scene,
                                  start,
-                                 layout_of(dof_handler, coupling.get()),
+                                 element_layout(dof_handler, coupling.get()),
                                  [this](Vector &vector) { fill_noise(vector); })
     , dofs(dof_handler)
     , zone_bonds(coupling ?

@@ -35,12 +35,15 @@ namespace PeriDeal
 
 
   template <int dim>
-  SolidOperator<dim>::SolidOperator(const Scene<dim> &scene)
+  SolidOperator<dim>::SolidOperator(const Scene<dim> &scene, const Layout &of_nodes)
     : scene(scene)
     , history(scene.crack_history())
     , cracks_of(history.representative(0.))
     , loads_vary(loads_depend_on_time(scene))
-  {}
+  {
+    if (of_nodes)
+      set_layout(of_nodes);
+  }
 
 
   template <int dim>

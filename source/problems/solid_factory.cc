@@ -38,8 +38,6 @@ namespace PeriDeal
         entry_error(scene.peridynamics.where("Surface correction"),
                     "does not follow cracks that grow ('Growth', 'Paths' in section 'Cracks') in a "
                     "body that deforms. Use 'none' or 'fictitious nodes'.");
-      require(scene.domain.coarsening == 0,
-              "'Coarsening' in section 'Domain' cannot be used with 'Physics = elasticity' yet.");
     }
 
 

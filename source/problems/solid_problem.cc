@@ -116,8 +116,15 @@ namespace PeriDeal
     fill(displacement, given.initial_displacement);
     fill(velocity, given.initial_velocity);
     op().distribute(displacement, 0.);
-    // Supports have the velocity of their first step.
+    // Supports have the velocity of their first step; what follows from others has theirs.
     op().clear_constrained(velocity);
+    Vector moved(displacement);
+    moved += velocity;
+    op().distribute(moved, 0.);
+    const std::vector<bool> held = held_unknowns(op());
+    for (unsigned int i = 0; i < held.size(); ++i)
+      if (held[i])
+        velocity.local_element(i) = moved.local_element(i) - displacement.local_element(i);
     AssertThrow(
       std::isfinite(displacement.l1_norm()) && std::isfinite(velocity.l1_norm()),
       UserError(

@@ -63,6 +63,7 @@ namespace PeriDeal
             change = 0.;
             spent.iterations += solver.solve(factor, 1., change, residual);
             u += change;
+            op.distribute(u, t + dt); // for unknowns that follow from others
             op.unbalanced(unbalanced, u, t + dt);
             if (!op.nonlinear())
               break;

@@ -55,6 +55,7 @@ namespace PeriDeal
     try
       {
         iterations += solver->solve(u, t, size);
+        op.distribute(u, t); // unknowns that follow from others
       }
     catch (const UserError &failure)
       {

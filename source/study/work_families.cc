@@ -150,6 +150,11 @@ namespace PeriDeal
         for (const char *const c : {"0.5", "1", "2"})
           for (const bool scaled : {false, true})
             all.push_back(zone(m, c, scaled));
+      for (const unsigned int k : {2u, 3u})
+        for (const WorkFamily &uniform : {family("FEM, crack on faces", elements, "faces", "none"),
+                                          zone("2", "1", true),
+                                          zone("3", "1", true)})
+          all.push_back(graded(uniform, k));
       for (WorkFamily &one : all)
         {
           one.deforms = true;

@@ -27,6 +27,7 @@ CORNER = {"Domain/Upper corner": "0.6, 0.6, 0.6", "Domain/Cells": "9, 9, 9"}  # 
 OVERRIDES = {
     "coupling/adaptive_zone.prm": {"Domain/Cells": "24, 24"},  # halved three times
     "coupling/graded_mesh.prm": {"Domain/Cells": "24, 24"},
+    "elasticity/graded_crack.prm": {"Domain/Cells": "40, 40"},
     "fracture/cracked_block.prm": {"Domain/Cells": "16, 32, 2"},  # two layers, or bonds would lie in a plane
     "papers/diyaroglu_2017/example_d.prm": CORNER,
     "papers/diyaroglu_2017/example_d_paper.prm": CORNER,

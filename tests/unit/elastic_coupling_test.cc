@@ -54,6 +54,25 @@ TEST(ElasticExchange, linear_patch_on_rectangles)
 }
 
 
+TEST(ElasticExchange, linear_patch_on_graded_meshes)
+{
+  const auto graded = [](const std::string &n, const std::string &cells, const std::string &fine) {
+    return Settings{{"Domain/Cells", cells}, {"Domain/Coarsening", n}, {"Domain/Fine where", fine}};
+  };
+  for (const std::string ratio : {"2", "3"})
+    for (const std::string levels : {"1", "2"})
+      {
+        const Settings m{{"Peridynamics/Horizon ratio", ratio}};
+        check_patch<2>(zoned<2>("0.1 - abs(x-0.8)", 0.3) +
+                       graded(levels, "28, 24", "0.1 - abs(x-0.8)") + m);
+        check_patch<2>(zoned<2>("0.03 - (x-0.6)^2 - (y-0.5)^2", 0.2, "strain") +
+                       graded(levels, "28, 24", "-1") + m);
+      }
+  check_patch<1>(zoned<1>("x - 1.2", 0.) + graded("2", "32", "x - 1.2"));
+  check_patch<3>(zoned<3>("x - 0.55", 0.25) + graded("1", "16, 14, 12", "x - 0.55"));
+}
+
+
 TEST(ElasticExchange, layers_stay_exact)
 {
   // Two phases in series: the strain jumps at the interface, across which no bond is active.
@@ -109,6 +128,10 @@ TEST(ElasticExchange, same_on_all_processes)
   expect_same_on_all_processes(zoned<2>("cracks: 1", 0.3) +
                                Settings{{"Cracks/Segments", "0.4, 0.55 ; 1.0, 0.75"},
                                         {"Peridynamics/Surface correction", "crack scaling"}});
+  expect_same_on_all_processes(zoned<2>("cracks: 0.5", 0.3) +
+                               Settings{{"Domain/Cells", "56, 48"},
+                                        {"Domain/Coarsening", "2"},
+                                        {"Cracks/Segments", "0.4, 0.55 ; 0.7, 0.65"}});
 }
 
 

@@ -43,6 +43,7 @@ namespace PeriDeal
       body.elements->assemble_intact(with, true);
       body.elements->assemble_intact(without, false);
       Vector x = body.values(field), y(x), z(x);
+      body.elements->hanging_nodes().set(x, 0.);
       with.vmult(y, x);
       without.vmult(z, x);
       const double size = z.linfty_norm();
@@ -71,6 +72,7 @@ namespace PeriDeal
       Matrix matrix;
       body.elements->assemble_intact(matrix, true);
       Vector x = body.values(bumpy_vector<dim>), y(x);
+      body.elements->hanging_nodes().set(x, 0.);
       matrix.vmult(y, x);
       double largest = 0.;
       for (const Vector &motion : body.elements->near_null_space())

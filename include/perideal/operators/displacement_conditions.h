@@ -55,6 +55,12 @@ namespace PeriDeal
              const Scene<dim>                      &scene,
              const bool                             at_centers);
 
+    /**
+     * Let owned unknowns, ascending, follow from others (HangingNodes): no condition holds them,
+     * and they are not free. Not collective.
+     */
+    void let_follow(std::vector<unsigned int> unknowns);
+
     /** Set the prescribed values of time t. */
     void distribute(Vector &u, const double t) const;
 
@@ -90,8 +96,9 @@ namespace PeriDeal
     /** The integral of a velocity from time 0 on. Steps forward add to that of the last call. */
     double moved(const Prescribed &entry, const double t) const;
 
-    std::vector<Prescribed> prescribed; // first by conditions, then pinned ones
-    bool                    varies = false;
+    std::vector<Prescribed>   prescribed; // first by conditions, then pinned ones
+    std::vector<unsigned int> following;
+    bool                      varies = false;
   };
 
 

@@ -11,6 +11,7 @@
 #include <perideal/operators/condition_faces.h>
 #include <perideal/operators/crack_side_factors.h>
 #include <perideal/operators/cut_cells.h>
+#include <perideal/operators/hanging_nodes.h>
 #include <perideal/operators/solid_bonds_beside_elements.h>
 #include <perideal/operators/solid_operator.h>
 
@@ -30,7 +31,9 @@ namespace PeriDeal
    * temperature at nodes interpolated there. The thermal strain alpha dT (in plane strain (1 + nu)
    * alpha dT) makes the load int grad_a (dim lambda + 2 mu) alpha dT.
    *
-   * One scalar DoFHandler numbers the nodes; each has dim unknowns, interleaved.
+   * One scalar DoFHandler numbers the nodes; each has dim unknowns, interleaved. Hanging nodes of a
+   * graded mesh follow from their neighbours: K is C^T K C, and their rows, without mass, are those
+   * of unknowns that are not free.
    *
    * With a coupling its bonds and families are added, with their thermal loads
    * (SolidBondsBesideElements), and the cells changed (ElasticCoupling); K is as symmetric as the
@@ -69,6 +72,13 @@ namespace PeriDeal
     void         multiply(Vector &y, const Vector &x) const override
     {
       stiffness.vmult(y, x);
+      hanging.set(y, 0.); // the nodes they follow from have all of it
+    }
+
+    void distribute(Vector &u, const double t) const override
+    {
+      conditions->distribute(u, t);
+      hanging.interpolate(u);
     }
 
     void      set_temperature_change(const Vector &nodal) override;
@@ -86,6 +96,12 @@ namespace PeriDeal
     double volume(const unsigned int node) const
     {
       return volumes.local_element(node);
+    }
+
+    /** Of all components. */
+    const HangingNodes<dim> &hanging_nodes() const
+    {
+      return hanging;
     }
 
     /** Only in the model `coupled`. */
@@ -157,6 +173,7 @@ namespace PeriDeal
     std::unique_ptr<SolidBondsBesideElements<dim>> zone_bonds; // null: finite elements alone
     CutCells<dim>                                  cut_by_cracks;
     ConditionFaces<dim>                            condition_faces;
+    const HangingNodes<dim>                        hanging;
     std::vector<PartUnknown<dim>>                  part_unknowns; // of regions and points
     std::vector<dealii::Point<dim>>                positions;
     dealii::TrilinosWrappers::SparseMatrix         stiffness;

@@ -7,6 +7,7 @@
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/types.h>
 
@@ -19,7 +20,7 @@ namespace PeriDeal
    * Nodes on the sides of larger cells. So that fields are continuous they follow from nodes of
    * the larger cell, their masters: u_h = sum c_hm u_m, or u = C u_free for all nodes. A matrix of
    * cells then is C^T K C and a load C^T b. Rows of hanging nodes are those of unknowns that are
-   * not free.
+   * not free. Where nodes have several unknowns, interleaved, each component follows by itself.
    *
    * Where a mesh has no hanging node on any process, all functions but add_to() do nothing, and
    * none is collective.
@@ -29,25 +30,31 @@ namespace PeriDeal
   {
   public:
     /**
-     * @param dofs   with one component
-     * @param layout of the vectors: owned dofs, and ghosts with the masters among them
+     * @param dofs         with one component: the nodes
+     * @param layout       of the nodes: owned dofs, and ghosts with the masters among them
+     * @param n_components of vectors and matrices: component c of node i is n_components i + c
      *
      * Collective.
      */
     HangingNodes(const dealii::DoFHandler<dim>             &dofs,
-                 const dealii::Utilities::MPI::Partitioner &layout);
+                 const dealii::Utilities::MPI::Partitioner &layout,
+                 const unsigned int                         n_components = 1);
 
     /** On any process. */
     bool any() const;
 
-    /** By global number; known for owned dofs and those of ghost cells. */
-    bool is_hanging(const dealii::types::global_dof_index dof) const;
+    /** By global number of an unknown; known for those of owned nodes and of ghost cells. */
+    bool is_hanging(const dealii::types::global_dof_index unknown) const;
 
-    /** Local numbers of the owned ones, ascending. */
+    /** Local numbers of the owned unknowns, ascending. */
     const std::vector<unsigned int> &owned() const;
 
     /** For the patterns of matrices. */
     const dealii::AffineConstraints<double> &constraints() const;
+
+    /** Add the entries of one cell to the pattern of a matrix. Not collective. */
+    void add_to(dealii::TrilinosWrappers::SparsityPattern          &pattern,
+                const std::vector<dealii::types::global_dof_index> &indices) const;
 
     /**
      * b := C^T b: give what owned hanging nodes have of an integral, a load for instance, to their
@@ -72,7 +79,7 @@ namespace PeriDeal
   private:
     dealii::AffineConstraints<double> lines;
     bool                              on_any_process;
-    std::vector<unsigned int>         nodes; // owned
+    std::vector<unsigned int>         unknowns; // owned
 
     // Of each owned one: local numbers and weights.
     std::vector<std::vector<std::pair<unsigned int, double>>> masters;

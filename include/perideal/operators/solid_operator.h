@@ -100,7 +100,8 @@ namespace PeriDeal
   protected:
     using Layout = std::shared_ptr<const dealii::Utilities::MPI::Partitioner>;
 
-    explicit SolidOperator(const Scene<dim> &scene);
+    /** @param of_nodes the layout; if null, set_layout() has to be called by constructors. */
+    explicit SolidOperator(const Scene<dim> &scene, const Layout &of_nodes = nullptr);
 
     /** Sets the layouts and allocates all vectors, to zero. Collective. */
     void set_layout(const Layout &of_nodes);
