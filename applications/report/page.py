@@ -3,6 +3,7 @@
 """The page: sections of text, figures and tables, with everything embedded."""
 
 import base64
+import functools
 import io
 import os
 import re
@@ -75,15 +76,21 @@ class Page:
                 f"</main></body></html>\n")
 
 
+@functools.lru_cache(maxsize=None)
+def is_formula(text):
+    """Whether matplotlib reads a text with dollar signs."""
+    try:
+        MathTextParser("path").parse(text)
+        return True
+    except ValueError:
+        return False
+
+
 def leave_dollars_alone(figure):
     """Texts of the user that are no formulas of matplotlib, though they have dollar signs, are drawn as they are."""
-    parser = MathTextParser("path")
     for text in figure.findobj(Text):
-        if "$" in text.get_text():
-            try:
-                parser.parse(text.get_text())
-            except ValueError:
-                text.set_parse_math(False)
+        if "$" in text.get_text() and not is_formula(text.get_text()):
+            text.set_parse_math(False)
 
 
 def encode(figure, vector):
@@ -93,7 +100,8 @@ def encode(figure, vector):
     if vector:
         figure.savefig(buffer, format="svg", metadata={"Date": None})
         return buffer.getvalue(), "image/svg+xml"
-    figure.savefig(buffer, format="png", dpi=200, metadata={"Software": None})
+    # More compression takes half as long again for files that are 3 % smaller.
+    figure.savefig(buffer, format="png", dpi=200, metadata={"Software": None}, pil_kwargs={"compress_level": 4})
     return buffer.getvalue(), "image/png"
 
 

@@ -36,6 +36,15 @@ def shape_gradients(points, dimension):
     return gradients
 
 
+def boxes_along_axes(corners):
+    """(lower corners, extents) where all cells are such boxes, their vertices in the order of VTK, else None."""
+    lower, extent = corners[:, 0], corners[:, 2 if corners.shape[2] == 2 else 6] - corners[:, 0]
+    expected = lower[:, None] + REFERENCE[corners.shape[2]] * extent[:, None]
+    if np.all(extent > 0) and np.abs(corners - expected).max(initial=0) <= 1e-9 * extent.max(initial=0):
+        return lower, extent
+    return None
+
+
 def reference_points(corners, points):
     """Newton's inverse of the multilinear map; one step suffices on parallelepipeds."""
     dimension = points.shape[1]
@@ -160,7 +169,8 @@ class PixelMap:
             points[:, view.axis] = view.position
         nodes = mesh.cells[part[cell]]
         corners = mesh.nodes[nodes]
-        at = reference_points(corners, points)
+        boxes = boxes_along_axes(mesh.nodes[mesh.cells[part]])
+        at = reference_points(corners, points) if boxes is None else (points - boxes[0][cell]) / boxes[1][cell]
         inside = np.all((at > -1e-6) & (at < 1 + 1e-6), axis=1)
         nodes, corners, at = nodes[inside], corners[inside], at[inside]
         weights = shape_values(np.clip(at, 0, 1), mesh.dimension)
