@@ -212,9 +212,13 @@ namespace PeriDeal
   TEST(CrackGrowth, heat_stays_through_every_cut)
   {
     const Settings graded{{"Domain/Cells", "48, 40"}, {"Domain/Coarsening", "2"}};
+    // What a stepper does is the same on any number of processes.
+    std::vector<std::string> steppers{"chebyshev", "sdirk2"};
+    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
+      steppers.insert(steppers.end(), {"euler", "rkc2"});
     for (const ModelKind model :
          {ModelKind::peridynamics, ModelKind::finite_elements, ModelKind::coupled})
-      for (const std::string stepper : {"euler", "chebyshev", "rkc2", "sdirk2"})
+      for (const std::string &stepper : steppers)
         {
           const bool       merged = model == ModelKind::coupled;
           const Problem<2> problem(square + growing + (merged ? graded : Settings()), model);

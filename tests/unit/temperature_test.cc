@@ -83,10 +83,13 @@ namespace PeriDeal
                                                          {"bdf2", 2.},
                                                          {"crank nicolson", 2.}})
           {
-            const bool   is_explicit = order == 1. && stepper != "rkc2";
-            const double step        = is_explicit ? 1.2e-4 : 0.05 / 32;
-            const double coarse      = largest_difference(advanced(problem, stepper, step), exact),
-                         fine = largest_difference(advanced(problem, stepper, 0.5 * step), exact);
+            const bool is_explicit = order == 1. && stepper != "rkc2";
+            // Thousands of steps, whose order is the same on any number of processes.
+            if (is_explicit && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+              continue;
+            const double step   = is_explicit ? 1.2e-4 : 0.05 / 32;
+            const double coarse = largest_difference(advanced(problem, stepper, step), exact),
+                         fine   = largest_difference(advanced(problem, stepper, 0.5 * step), exact);
             EXPECT_NEAR(std::log2(coarse / fine), order, 0.25)
               << to_string(model) << ", " << stepper << ": " << coarse << ", " << fine;
           }
