@@ -108,7 +108,8 @@ namespace PeriDeal
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary())
             for (unsigned int i = 0; i < indices.size(); ++i)
-              if (fe.has_support_on_face(i, f) && nodes->in_local_range(indices[i]))
+              if (fe.has_support_on_face(i, f) && nodes->in_local_range(indices[i]) &&
+                  !hanging.is_hanging(dim * indices[i]))
                 {
                   const types::boundary_id side = cell->face(f)->boundary_id();
                   const unsigned int       node = nodes->global_to_local(indices[i]);
@@ -120,7 +121,9 @@ namespace PeriDeal
                       on_sides.push_back({node, part.id, positions[node]});
                 }
       }
-    part_unknowns = unknowns_of_parts(dofs, scene.boundary_conditions);
+    part_unknowns = unknowns_of_parts(dofs, scene.boundary_conditions, [&](const auto node) {
+      return hanging.is_hanging(dim * node);
+    });
     for (const PartUnknown<dim> &unknown : part_unknowns)
       on_sides.push_back({unknown.node, unknown.id, unknown.position});
     const std::vector<Point<dim>> own(positions.begin(),

@@ -24,7 +24,9 @@ namespace PeriDeal
     , any_source(!source.is_constant() || source.value(Point<dim>()) != 0.)
     , varies(source.depends_on_time() || conditions.depends_on_time())
     , faces(dofs, conditions)
-    , of_parts(unknowns_of_parts(dofs, conditions))
+    , of_parts(unknowns_of_parts(dofs,
+                                 conditions,
+                                 [&](const auto dof) { return hanging.is_hanging(dof); }))
     , values(dofs.get_fe(),
              QGauss<dim>(dofs.get_fe().degree + 1),
              update_values | update_quadrature_points | update_JxW_values)

@@ -54,6 +54,16 @@ def loads():
         for found, expected in zip(*(run.model(FE)["boundary force"][side] for run in (graded, whole))):
             table.add(f"force on {side}", found, expected, absolute=1e-8)
     table.add("strain energy under loads", graded.total("strain energy", FE) / whole.total("strain energy", FE), 1, absolute=1e-3)
+    # A point on a hanging node, which cannot be held: the nearest other node is.
+    at_point = {**QUIET, **WAVE, "Elasticity/Solver": "linear", "Time/End time": "1", "Output/Write at": "", "Boundary conditions/Velocity": "",
+                "Boundary conditions/Parts": "pin: point 2.125,0.03125", "Output/Probes": "2.09375,0.03125"}
+    held = run_scene(STRIP, {**at_point, "Boundary conditions/Displacement": "left: 0, 0 ; pin: 0.1, free"})
+    table.add("displacement held at a point", held.probe(FE, (2.09375, 0.03125), column="ux"), 0.1, absolute=1e-12)
+    forces = held.model(FE)["boundary force"]
+    table.add("force at the point over that on the side", forces["pin"][0] / forces["left"][0], -1, absolute=1e-8)
+    loaded = run_scene(STRIP, {**at_point, "Boundary conditions/Displacement": "left: 0, 0", "Boundary conditions/Traction": "pin: 1, 0.2"})
+    for found, expected in zip(loaded.model(FE)["boundary force"]["left"], (-1, -0.2)):
+        table.add("force on the side of a load at a point", found, expected, absolute=1e-8)
     graded, whole = (run_scene(GROWING, {**QUIET, **GROWN, "Domain/Coarsening": k}) for k in ("2", "0"))
     for model in (FE, COUPLED):
         table.add(f"{model}: energy of a crack that grows", graded.total("energy dissipated", model, time=1) / whole.total("energy dissipated", model, time=1), 1,

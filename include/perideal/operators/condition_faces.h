@@ -142,11 +142,16 @@ namespace PeriDeal
   /**
    * The regions and points among the parts: this process's unknowns there. The volume of an unknown
    * is an equal share of its cells.
-   * @param dofs with one component. Collective.
+   * @param dofs with one component
+   * @param is_hanging by global number: those that follow from others and cannot be held. They
+   *                   belong to no part.
+   *
+   * Collective.
    */
-  template <int dim>
+  template <int dim, typename IsHanging>
   std::vector<PartUnknown<dim>> unknowns_of_parts(const dealii::DoFHandler<dim> &dofs,
-                                                  const BoundaryConditions<dim> &conditions)
+                                                  const BoundaryConditions<dim> &conditions,
+                                                  const IsHanging               &is_hanging)
   {
     if (conditions.parts.empty())
       return {};
@@ -169,10 +174,23 @@ namespace PeriDeal
                   mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i));
               }
         }
+    std::vector<unsigned int> numbers;
+    for (unsigned int i = 0; i < positions.size(); ++i)
+      if (!is_hanging(first + i))
+        {
+          positions[numbers.size()] = positions[i];
+          volumes[numbers.size()]   = volumes[i];
+          numbers.push_back(i);
+        }
+    positions.resize(numbers.size());
+    volumes.resize(numbers.size());
     std::vector<PartUnknown<dim>> unknowns;
     for (const PartNode &node :
          nodes_of_parts(conditions, positions, volumes, dofs.get_communicator()))
-      unknowns.push_back({node, positions[node.node]});
+      {
+        unknowns.push_back({node, positions[node.node]});
+        unknowns.back().node = numbers[node.node];
+      }
     return unknowns;
   }
 
