@@ -26,7 +26,9 @@ namespace PeriDeal
                *layout.get_partitioner(),
                problem.scene.boundary_conditions,
                hanging,
-               unknowns_of_parts(problem.handler, problem.scene.boundary_conditions))
+               unknowns_of_parts(problem.handler,
+                                 problem.scene.boundary_conditions,
+                                 [&](const auto dof) { return hanging.is_hanging(dof); }))
       {}
 
       Problem<2>          problem;
