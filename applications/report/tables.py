@@ -89,6 +89,7 @@ def certificate_rows(run):
     rows = []
     for title, path in (("Share of the body in the zone", ("share of the body",)),
                         ("Share of the bonds' conductance kept", ("share of the conductance kept",)),
+                        ("Share of the bonds' stiffness kept", ("share of the stiffness kept",)),
                         ("Patch error, linear field", ("patch error", "linear")),
                         ("Patch error, quadratic field", ("patch error", "quadratic")),
                         ("Patch error, cubic field", ("patch error", "cubic")),

@@ -172,6 +172,7 @@ namespace PeriDeal
       result.lowest_remainder       = symmetric ? op.lowest_remainder() :
                                                   std::numeric_limits<double>::infinity();
       result.zone_share             = op.bonds().zone_share();
+      result.kept_share             = op.bonds().kept_share();
       const auto [n_nodes, n_bonds] = count_all_bonds(families);
       result.n_bonds_of_full        = n_bonds;
       result.n_nonzeros_of_full     = 2 * n_bonds + n_nodes;
@@ -198,9 +199,7 @@ namespace PeriDeal
     for (const BoundaryShare &share : op.bonds().families().nodes().boundary_shares())
       held.local_element(share.node) = 1.;
     op.hanging_nodes().set(held, 1.);
-    CouplingCertificate result = examine<dim>(op, held, op.noise(), symmetric, 1);
-    result.kept_share          = op.bonds().kept_share();
-    return result;
+    return examine<dim>(op, held, op.noise(), symmetric, 1);
   }
 
 

@@ -6,7 +6,8 @@
 #include <perideal/base/user_error.h>
 #include <perideal/operators/lattice_exchange.h>
 #include <perideal/operators/mesh_exchange.h>
-#include <perideal/operators/weighted_coupling.h>
+#include <perideal/operators/state_coupling.h>
+#include <perideal/operators/weighted_bonds.h>
 
 namespace PeriDeal
 {
@@ -41,38 +42,69 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    template <typename Law, int dim>
+    std::unique_ptr<Coupling<dim>> make_exchange(Nodes<dim>       &nodes,
+                                                 const Scene<dim> &scene,
+                                                 const Zone<dim>  &zone)
+    {
+      if (nodes.lattice() && !nodes.has_doubled_nodes())
+        return std::make_unique<LatticeExchange<dim, Law>>(nodes, scene, zone);
+      return std::make_unique<MeshExchange<dim, Law>>(nodes, scene, zone);
+    }
+  } // namespace
+
+
   template <int dim>
   std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>          &nodes,
                                                const Scene<dim>    &scene,
                                                const Zone<dim>     &zone,
                                                const CouplingScheme scheme)
   {
-    if (scheme == CouplingScheme::splice)
-      return std::make_unique<Splice<dim>>(nodes, scene, zone);
-    if (scheme == CouplingScheme::blending)
-      return std::make_unique<Blending<dim>>(nodes, scene, zone);
-    if (nodes.lattice() && !nodes.has_doubled_nodes())
-      return std::make_unique<LatticeExchange<dim>>(nodes, scene, zone);
-    return std::make_unique<MeshExchange<dim>>(nodes, scene, zone);
+    if (scheme != CouplingScheme::exchange)
+      return std::make_unique<WeightedBonds<dim>>(nodes, scene, zone, make_weighting(scheme));
+    return make_exchange<ConductingBonds<dim>>(nodes, scene, zone);
   }
 
 
-  template std::vector<bool>            hanging_nodes(const Nodes<1> &);
-  template std::vector<bool>            hanging_nodes(const Nodes<2> &);
-  template std::vector<bool>            hanging_nodes(const Nodes<3> &);
-  template double                       Coupling<1>::zone_share() const;
-  template double                       Coupling<2>::zone_share() const;
-  template double                       Coupling<3>::zone_share() const;
-  template std::unique_ptr<Coupling<1>> make_coupling(Nodes<1> &,
-                                                      const Scene<1> &,
-                                                      const Zone<1> &,
-                                                      const CouplingScheme);
-  template std::unique_ptr<Coupling<2>> make_coupling(Nodes<2> &,
-                                                      const Scene<2> &,
-                                                      const Zone<2> &,
-                                                      const CouplingScheme);
-  template std::unique_ptr<Coupling<3>> make_coupling(Nodes<3> &,
-                                                      const Scene<3> &,
-                                                      const Zone<3> &,
-                                                      const CouplingScheme);
+  template <int dim>
+  std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim> &nodes, const Scene<dim> &scene)
+  {
+    Zone<dim> zone(scene.coupling, scene.horizon());
+    zone.stay_in({{scene.domain.lower, scene.domain.upper}});
+    if (scene.coupling.scheme != CouplingScheme::exchange)
+      return std::make_unique<StateCoupling<dim>>(nodes,
+                                                  scene,
+                                                  zone,
+                                                  make_weighting(scene.coupling.scheme));
+    return make_exchange<ElasticBonds<dim>>(nodes, scene, zone);
+  }
+
+
+  template <int dim>
+  std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim>       &nodes,
+                                                          const Scene<dim> &scene)
+  {
+    return std::make_unique<StateCoupling<dim>>(nodes,
+                                                scene,
+                                                Zone<dim>(),
+                                                make_weighting(CouplingScheme::blending));
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                \
+  template std::vector<bool>              hanging_nodes(const Nodes<dim> &);                     \
+  template double                         Coupling<dim>::zone_share() const;                     \
+  template std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim> &,                            \
+                                                        const Scene<dim> &,                      \
+                                                        const Zone<dim> &,                       \
+                                                        const CouplingScheme);                   \
+  template std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim> &, const Scene<dim> &); \
+  template std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim> &,                 \
+                                                                   const Scene<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

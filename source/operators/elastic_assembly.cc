@@ -75,7 +75,7 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::change_cell(const Cell &cell, CellData &data) const
   {
-    if (zone_bonds && zone_bonds->coupling().change_cell(cell, data.stiffness))
+    if (zone_bonds && zone_bonds->leave_remainder(cell, data.stiffness))
       {
         // The remainder carries a uniform thermal strain like the whole cell less its bonds.
         double change = 0.;
@@ -392,7 +392,7 @@ namespace PeriDeal
     multiply(reactions, u);
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     if (zone_bonds)
-      for (const types::boundary_id side : zone_bonds->coupling().mirrors())
+      for (const types::boundary_id side : zone_bonds->mirrors())
         for (unsigned int i = side / 2; i < reactions.locally_owned_size(); i += dim)
           sums[side][side / 2] -= reactions.local_element(i) - thermal_loads.local_element(i);
     reactions -= loads;
@@ -418,7 +418,7 @@ namespace PeriDeal
       }
     for_each_own_cell([&](const Cell &cell, CellData &data) {
       if (with_bonds && zone_bonds)
-        zone_bonds->coupling().change_cell(cell, data.stiffness);
+        zone_bonds->leave_remainder(cell, data.stiffness);
       hanging.add_to(matrix, data.stiffness, data.unknowns);
     });
     if (with_bonds && zone_bonds)
@@ -433,7 +433,7 @@ namespace PeriDeal
     double lowest = std::numeric_limits<double>::infinity();
     if (zone_bonds)
       for_each_own_cell([&](const Cell &cell, CellData &data) {
-        if (zone_bonds->coupling().change_cell(cell, data.stiffness))
+        if (zone_bonds->leave_remainder(cell, data.stiffness))
           lowest = std::min(lowest,
                             lowest_eigenvalue(data.stiffness) /
                               (scene.material.moduli(cell->center()).shear *

@@ -23,9 +23,9 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  ElasticElements<dim>::ElasticElements(const DoFHandler<dim>                &dof_handler,
-                                        const Scene<dim>                     &scene,
-                                        std::unique_ptr<ElasticCoupling<dim>> coupling)
+  ElasticElements<dim>::ElasticElements(const DoFHandler<dim>         &dof_handler,
+                                        const Scene<dim>              &scene,
+                                        std::unique_ptr<Coupling<dim>> coupling)
     : SolidOperator<dim>(scene, element_layout(dof_handler, coupling.get()))
     , dofs(dof_handler)
     , zone_bonds(coupling ? std::make_unique<SolidBondsBesideElements<dim>>(std::move(coupling)) :
@@ -141,12 +141,14 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::throw_if_isolated() const
   {
-    const double largest = stiffness_diagonal.linfty_norm();
-    std::string  message;
+    const double                   largest = stiffness_diagonal.linfty_norm();
+    std::string                    message;
+    const NodeFamilies<dim> *const families = zone_bonds ? zone_bonds->coupling().node_families() :
+                                                           nullptr;
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size() && message.empty(); ++i)
       {
         const std::string fault =
-          zone_bonds && i % dim == 0 ? zone_bonds->coupling().fault_of(i / dim) : "";
+          families != nullptr && i % dim == 0 ? families->fault_of(i / dim) : "";
         if (!fault.empty())
           message =
             "The node at " + this->place_of(i) + fault +

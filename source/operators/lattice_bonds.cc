@@ -15,24 +15,32 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  LatticeBonds<dim>::LatticeBonds(Nodes<dim>       &nodes,
-                                  const Scene<dim> &scene,
-                                  const Zone<dim>  &zone,
-                                  const Stiffness  &stiffness,
-                                  const bool        whole_way)
+  LatticeBonds<dim>::LatticeBonds(Nodes<dim>               &nodes,
+                                  const Scene<dim>         &scene,
+                                  const Zone<dim>          &zone,
+                                  const CellStiffness<dim> &stiffness,
+                                  const bool                whole_way)
     : families(nodes, scene, HaloAround::cells)
     , zone(zone)
     , last(scene.cracks.end_time)
   {
-    uniform = !stiffness && scene.material.uniform_conductivity();
+    uniform = stiffness.uniform;
     plain   = uniform && scene.domain.shape == Shape::box && !nodes.is_graded();
     if (uniform && nodes.n_local() > 0)
-      uniform_stiffness = scene.material.conductivity.value(
-        nodes.position(0),
-        scene.initial_and_source.initial_value.value(nodes.position(0)));
+      uniform_stiffness = stiffness.at(nodes.position(0));
     find_offsets();
     find_sites(scene, whole_way);
     find_cells(scene, stiffness);
+  }
+
+
+  template <int dim>
+  Tensor<1, dim> LatticeBonds<dim>::vector_of(const Offset &offset) const
+  {
+    Tensor<1, dim> xi = families.nodes().lattice()->spacing;
+    for (unsigned int d = 0; d < dim; ++d)
+      xi[d] *= offset.site[d];
+    return xi;
   }
 
 
@@ -133,7 +141,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeBonds<dim>::find_cells(const Scene<dim> &scene, const Stiffness &stiffness)
+  void LatticeBonds<dim>::find_cells(const Scene<dim> &scene, const CellStiffness<dim> &stiffness)
   {
     if (sites.empty())
       return;
@@ -167,7 +175,7 @@ namespace PeriDeal
           Point<dim> p = low;
           for (unsigned int d = 0; d < dim; ++d)
             p[d] += q[d] * lattice.spacing[d];
-          const double value = stiffness ? stiffness(p) : scene.material.conductivity.value(p);
+          const double value = stiffness.at(p);
           data.lowest        = std::min(data.lowest, value);
           data.highest       = std::max(data.highest, value);
         }

@@ -44,19 +44,22 @@ namespace PeriDeal
   } // namespace
 
 
-  template <int dim>
-  MeshExchange<dim>::MeshExchange(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone)
+  template <int dim, typename Law>
+  MeshExchange<dim, Law>::MeshExchange(Nodes<dim>       &nodes,
+                                       const Scene<dim> &scene,
+                                       const Zone<dim>  &zone)
     : own_families(
         nodes,
         scene,
         HaloAround::cells,
         [at_end = zone_at_end(zone, scene)](const Point<dim> &p) { return at_end.contains(p); })
-    , bonds(own_families, scene)
+    , law(own_families, scene)
     , zone(zone)
   {
-    const CrackHistory<dim> &history = bonds.cracks().history();
+    const CrackHistory<dim> &history = own_families.cracks().history();
     const Zone<dim>          at_end  = zone_at_end(zone, scene);
-    this->zone.set_cracks(history.pieces(history.representative(0.)));
+    this->zone.set_cracks(
+      history.pieces(Law::zone_of_whole_way ? scene.cracks.end_time : history.representative(0.)));
     const std::vector<bool> hanging   = hanging_nodes(nodes);
     double                  n_in_zone = 0.;
     joined.resize(nodes.n_local());
@@ -83,14 +86,14 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  MeshExchange<dim>::~MeshExchange() = default;
+  template <int dim, typename Law>
+  MeshExchange<dim, Law>::~MeshExchange() = default;
 
 
-  template <int dim>
-  void MeshExchange<dim>::find_paths(const std::vector<bool> &hanging)
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::find_paths(const std::vector<bool> &hanging)
   {
-    const Nodes<dim>       &nodes = bonds.nodes();
+    const Nodes<dim>       &nodes = own_families.nodes();
     std::vector<Point<dim>> ends; // all that may ever join
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       if (may_join[i])
@@ -102,15 +105,17 @@ namespace PeriDeal
           0 :
           1,
         nodes.communicator()) > 0;
-    paths =
-      std::make_unique<CellPaths<dim>>(cells, ends, bonds.weights().reach() * (1. + 1e-6), regular);
+    paths = std::make_unique<CellPaths<dim>>(cells,
+                                             ends,
+                                             own_families.weights().reach() * (1. + 1e-6),
+                                             regular);
   }
 
 
-  template <int dim>
-  bool MeshExchange<dim>::follow(const ZoneBond &bond, std::vector<PathPiece<dim>> &way)
+  template <int dim, typename Law>
+  bool MeshExchange<dim, Law>::follow(const ZoneBond &bond, std::vector<PathPiece<dim>> &way)
   {
-    const Nodes<dim> &nodes = bonds.nodes();
+    const Nodes<dim> &nodes = own_families.nodes();
     const auto        end   = [&](const unsigned int i) {
       return PathEnd<dim>{nodes.partitioner()->local_to_global(i),
                           nodes.position(i),
@@ -120,10 +125,19 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  bool MeshExchange<dim>::starts_at(const unsigned int one, const unsigned int other) const
+  template <int dim, typename Law>
+  Tensor<1, dim> MeshExchange<dim, Law>::vector_of(const ZoneBond &bond) const
   {
-    const Point<dim> &p = bonds.nodes().position(one), &q = bonds.nodes().position(other);
+    return own_families.nodes().position(bond.nodes[1]) -
+           own_families.nodes().position(bond.nodes[0]);
+  }
+
+
+  template <int dim, typename Law>
+  bool MeshExchange<dim, Law>::starts_at(const unsigned int one, const unsigned int other) const
+  {
+    const Point<dim> &p = own_families.nodes().position(one),
+                     &q = own_families.nodes().position(other);
     for (unsigned int d = dim; d-- > 0;)
       if (p[d] != q[d])
         return p[d] < q[d];
@@ -131,12 +145,12 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  void MeshExchange<dim>::find_bonds()
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::find_bonds()
   {
-    const Nodes<dim>           &nodes = bonds.nodes();
-    std::vector<Bond>           family;
-    std::vector<PathPiece<dim>> way;
+    const Nodes<dim>                           &nodes = own_families.nodes();
+    std::vector<typename Families<dim>::Member> family;
+    std::vector<PathPiece<dim>>                 way;
     zone_bonds.clear();
     for (auto &matrix : taken)
       matrix.clear();
@@ -147,13 +161,13 @@ namespace PeriDeal
       {
         if (!joined[i])
           continue;
-        bonds.known_bonds_of(i, family);
-        for (const Bond &bond : family)
+        own_families.members_of(i, family);
+        for (const auto &bond : family)
           {
             if (!joined[bond.neighbor] || !starts_at(i, bond.neighbor) ||
                 own_families.is_parted(i, bond.neighbor))
               continue;
-            ZoneBond zone_bond{{i, bond.neighbor}, bond.intact};
+            ZoneBond zone_bond{{i, bond.neighbor}, bond.weight};
             if (!follow(zone_bond, way))
               continue;
             double lowest = std::numeric_limits<double>::max(), highest = 0.;
@@ -164,9 +178,9 @@ namespace PeriDeal
               }
             if (highest > largest_contrast * lowest)
               continue;
-            zone_bond.intact *= lowest / bonds.conductivities().of_bond(i, bond.neighbor);
+            zone_bond.intact *= lowest * Law::scale_of(vector_of(zone_bond));
             const unsigned int number = zone_bonds.size();
-            take(zone_bond.intact, way);
+            take(zone_bond, zone_bond.intact, way);
             for (const PathPiece<dim> &piece : way)
               way_cells.push_back(piece.cell);
             way_ends.push_back(way_cells.size());
@@ -182,9 +196,9 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  void MeshExchange<dim>::scale_bonds(const std::vector<unsigned int> &way_cells,
-                                      const std::vector<std::size_t>  &way_ends)
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::scale_bonds(const std::vector<unsigned int> &way_cells,
+                                           const std::vector<std::size_t>  &way_ends)
   {
     std::vector<PathPiece<dim>> way;
     for (std::size_t k = 0, w = 0; k < zone_bonds.size(); ++k)
@@ -195,58 +209,59 @@ namespace PeriDeal
             bond.scale = std::min(bond.scale, part_to_take / strain);
         // Following it again is cheaper than the memory for all ways.
         if (bond.scale < 1. && follow(bond, way))
-          take((bond.scale - 1.) * bond.intact, way);
+          take(bond, (bond.scale - 1.) * bond.intact, way);
       }
   }
 
 
-  template <int dim>
-  void MeshExchange<dim>::take(const double weight, const std::vector<PathPiece<dim>> &way)
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::take(const ZoneBond                    &bond,
+                                    const double                       weight,
+                                    const std::vector<PathPiece<dim>> &way)
   {
+    const auto direction = Law::direction(vector_of(bond));
     for (const PathPiece<dim> &piece : way)
       {
         if (piece.cell >= taken.size())
           continue; // of another process
-        taken[piece.cell].resize(n_corners * n_corners, 0.);
-        const auto    change = piece.change;
+        taken[piece.cell].resize(n_values * n_values, 0.);
+        const auto    change = corner_values<Law::n_components>(piece.change, direction);
         double *const matrix = taken[piece.cell].data();
-        for (unsigned int a = 0; a < n_corners; ++a)
+        for (unsigned int a = 0; a < n_values; ++a)
           {
             const double factor = weight * change[a];
-            for (unsigned int b = 0; b < n_corners; ++b)
-              matrix[a * n_corners + b] += factor * change[b];
+            for (unsigned int b = 0; b < n_values; ++b)
+              matrix[a * n_values + b] += factor * change[b];
           }
       }
   }
 
 
-  template <int dim>
-  void MeshExchange<dim>::find_strains()
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::find_strains()
   {
+    static const std::vector<Tensor<2, dim>> fields = Law::unit_fields();
+    Eigen::MatrixXd                          values(n_values, fields.size());
     for (unsigned int c = 0; c < taken.size(); ++c)
       {
         states[c].strain = 0.;
         if (taken[c].empty())
           continue;
-        // sum W L on the linear fields x_a; K_c is kappa times the volume there.
-        Eigen::Matrix<double, dim, dim> linear = Eigen::Matrix<double, dim, dim>::Zero();
-        for (unsigned int a = 0; a < n_corners; ++a)
-          for (unsigned int b = 0; b < n_corners; ++b)
-            for (unsigned int d = 0; d < dim; ++d)
-              for (unsigned int e = 0; e < dim; ++e)
-                linear(d, e) +=
-                  cells[c].corners[a][d] * taken[c][a * n_corners + b] * cells[c].corners[b][e];
-        const double largest =
-          Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>>(linear)
-            .eigenvalues()
-            .maxCoeff();
+        for (unsigned int k = 0; k < fields.size(); ++k)
+          for (unsigned int a = 0; a < n_values; ++a)
+            values(a, k) =
+              fields[k][a % Law::n_components] * cells[c].corners[a / Law::n_components];
+        const Eigen::Map<const Eigen::MatrixXd> bonds(taken[c].data(), n_values, n_values);
+        const Eigen::MatrixXd                   linear = values.transpose() * bonds * values;
+        const double                            largest =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(linear).eigenvalues().maxCoeff();
         states[c].strain = largest / (states[c].lowest * volume_of(cells[c].corners));
       }
   }
 
 
-  template <int dim>
-  void MeshExchange<dim>::bonds_of(const unsigned int node, std::vector<Bond> &list) const
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::bonds_of(const unsigned int node, std::vector<Bond> &list) const
   {
     list.clear();
     for (const unsigned int number : bonds_of_node[node])
@@ -255,15 +270,15 @@ namespace PeriDeal
         Bond            bond;
         bond.neighbor = zone_bond.nodes[zone_bond.nodes[0] == node ? 1 : 0];
         bond.intact   = zone_bond.intact * zone_bond.scale;
-        bond.weight   = bond.intact * bonds.kept_fraction(node, bond.neighbor, bond.cut);
+        bond.weight   = bond.intact * law.kept_fraction(node, bond.neighbor, bond.cut);
         list.push_back(bond);
       }
   }
 
 
-  template <int dim>
-  void MeshExchange<dim>::possible_neighbors_of(const unsigned int         node,
-                                                std::vector<unsigned int> &neighbors) const
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::possible_neighbors_of(const unsigned int         node,
+                                                     std::vector<unsigned int> &neighbors) const
   {
     neighbors.clear();
     if (!may_join[node])
@@ -275,46 +290,49 @@ namespace PeriDeal
             zone_bonds[number].nodes[zone_bonds[number].nodes[0] == node ? 1 : 0]);
         return;
       }
-    std::vector<Bond> family;
-    bonds.known_bonds_of(node, family);
-    for (const Bond &bond : family)
+    std::vector<typename Families<dim>::Member> family;
+    own_families.members_of(node, family);
+    for (const auto &bond : family)
       if (may_join[bond.neighbor])
         neighbors.push_back(bond.neighbor);
   }
 
 
-  template <int dim>
-  bool MeshExchange<dim>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
+  template <int dim, typename Law>
+  bool MeshExchange<dim, Law>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
   {
     const unsigned int c = cell_of_index[cell->active_cell_index()];
     if (c >= taken.size() || taken[c].empty())
       return false;
-    using Matrix = Eigen::MatrixXd;
-    Matrix rest(n_corners, n_corners), fields(n_corners, n_corners);
-    for (unsigned int a = 0; a < n_corners; ++a)
-      for (unsigned int b = 0; b < n_corners; ++b)
-        rest(a, b) = stiffness(a, b) - taken[c][a * n_corners + b];
+    using Matrix                    = Eigen::MatrixXd;
+    constexpr unsigned int n_fields = dim + 1; // of each component: constant and linear
+    constexpr unsigned int n_linear = Law::n_components * dim;
+    constexpr unsigned int n_smooth = Law::n_components * n_fields;
+    Matrix                 rest(n_values, n_values);
+    for (unsigned int a = 0; a < n_values; ++a)
+      for (unsigned int b = 0; b < n_values; ++b)
+        rest(a, b) = stiffness(a, b) - taken[c][a * n_values + b];
     // Columns: constant, linear fields, and anything else to complete an orthonormal basis.
-    const Matrix start = [&] {
-      Matrix columns(n_corners, dim + 1);
-      for (unsigned int a = 0; a < n_corners; ++a)
+    Matrix start = Matrix::Zero(n_values, n_smooth);
+    for (unsigned int a = 0; a < n_corners; ++a)
+      for (unsigned int k = 0; k < Law::n_components; ++k)
         {
-          columns(a, 0) = 1.;
+          const unsigned int row = Law::n_components * a + k;
+          start(row, k)          = 1.;
           for (unsigned int d = 0; d < dim; ++d)
-            columns(a, d + 1) = (cells[c].corners[a] - cells[c].corners[0])[d];
+            start(row, Law::n_components + k * dim + d) =
+              (cells[c].corners[a] - cells[c].corners[0])[d];
         }
-      return columns;
-    }();
-    fields =
-      Eigen::HouseholderQR<Matrix>(start).householderQ() * Matrix::Identity(n_corners, n_corners);
-    const auto   X = fields.middleCols(1, dim);
-    const auto   H = fields.rightCols(n_corners - dim - 1);
+    const Matrix fields =
+      Eigen::HouseholderQR<Matrix>(start).householderQ() * Matrix::Identity(n_values, n_values);
+    const auto   X = fields.middleCols(Law::n_components, n_linear);
+    const auto   H = fields.rightCols(n_values - n_smooth);
     const Matrix A = X.transpose() * rest * X, B = X.transpose() * rest * H,
                  C = H.transpose() * rest * H;
     const Eigen::SelfAdjointEigenSolver<Matrix> linear(A);
-    Matrix                                      inverse = Matrix::Zero(dim, dim);
+    Matrix                                      inverse = Matrix::Zero(n_linear, n_linear);
     const double                                size    = rest.cwiseAbs().maxCoeff();
-    for (unsigned int d = 0; d < dim; ++d)
+    for (unsigned int d = 0; d < n_linear; ++d) // a solid's rotations have none
       if (linear.eigenvalues()[d] > 1e-12 * size)
         inverse += linear.eigenvectors().col(d) * linear.eigenvectors().col(d).transpose() /
                    linear.eigenvalues()[d];
@@ -322,58 +340,58 @@ namespace PeriDeal
     const Matrix E = lack.eigenvectors() * lack.eigenvalues().cwiseMax(0.).asDiagonal() *
                      lack.eigenvectors().transpose();
     rest += H * E * H.transpose();
-    for (unsigned int a = 0; a < n_corners; ++a)
-      for (unsigned int b = 0; b < n_corners; ++b)
+    for (unsigned int a = 0; a < n_values; ++a)
+      for (unsigned int b = 0; b < n_values; ++b)
         stiffness(a, b) = 0.5 * (rest(a, b) + rest(b, a));
     return true;
   }
 
 
-  template <int dim>
-  bool MeshExchange<dim>::symmetric() const
+  template <int dim, typename Law>
+  bool MeshExchange<dim, Law>::symmetric() const
   {
     return true;
   }
 
 
-  template <int dim>
-  std::vector<BoundingBox<dim>> MeshExchange<dim>::joining_by(const double time) const
+  template <int dim, typename Law>
+  std::vector<BoundingBox<dim>> MeshExchange<dim, Law>::joining_by(const double time) const
   {
     std::vector<BoundingBox<dim>> boxes;
     if (!zone.follows_cracks())
       return boxes;
     Zone<dim> then = zone;
-    then.set_cracks(bonds.cracks().history().pieces(time));
+    then.set_cracks(own_families.cracks().history().pieces(time));
     for (unsigned int i = 0; i < joined.size(); ++i)
-      if (may_join[i] && !joined[i] && then.contains(bonds.nodes().position(i)))
+      if (may_join[i] && !joined[i] && then.contains(own_families.nodes().position(i)))
         {
           // New bonds may change the scaling of all that pass the cells on their way.
-          boxes.push_back({{bonds.nodes().position(i), bonds.nodes().position(i)}});
-          boxes.back().extend(2. * bonds.weights().reach());
+          boxes.push_back({{own_families.nodes().position(i), own_families.nodes().position(i)}});
+          boxes.back().extend(2. * own_families.weights().reach());
         }
     return boxes;
   }
 
 
-  template <int dim>
-  void MeshExchange<dim>::set_cracks_of(const double time)
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::set_cracks_of(const double time)
   {
     bool any = false;
-    bonds.cracks().set_time(time);
-    zone.set_cracks(bonds.cracks().history().pieces(time));
+    own_families.cracks().set_time(time);
+    zone.set_cracks(own_families.cracks().history().pieces(time));
     for (unsigned int i = 0; i < joined.size() && zone.follows_cracks(); ++i)
-      if (may_join[i] && !joined[i] && zone.contains(bonds.nodes().position(i)))
+      if (may_join[i] && !joined[i] && zone.contains(own_families.nodes().position(i)))
         {
           joined[i] = true;
           any       = true;
         }
-    if (Utilities::MPI::max(any ? 1 : 0, bonds.nodes().communicator()) > 0)
+    if (Utilities::MPI::max(any ? 1 : 0, own_families.nodes().communicator()) > 0)
       find_bonds();
   }
 
 
-  template <int dim>
-  double MeshExchange<dim>::kept_share() const
+  template <int dim, typename Law>
+  double MeshExchange<dim, Law>::kept_share() const
   {
     double all  = 0.,
            kept = 0.; // each bond once at each of its ends, by the process that has the end
@@ -383,29 +401,29 @@ namespace PeriDeal
           all += zone_bonds[number].intact;
           kept += zone_bonds[number].intact * zone_bonds[number].scale;
         }
-    all  = Utilities::MPI::sum(all, bonds.nodes().communicator());
-    kept = Utilities::MPI::sum(kept, bonds.nodes().communicator());
+    all  = Utilities::MPI::sum(all, own_families.nodes().communicator());
+    kept = Utilities::MPI::sum(kept, own_families.nodes().communicator());
     return all > 0. ? kept / all : 1.;
   }
 
 
-  template <int dim>
-  bool MeshExchange<dim>::in_zone(const unsigned int node) const
+  template <int dim, typename Law>
+  bool MeshExchange<dim, Law>::in_zone(const unsigned int node) const
   {
     return joined[node];
   }
 
-  template <int dim>
-  const Families<dim> &MeshExchange<dim>::families() const
+  template <int dim, typename Law>
+  const Families<dim> &MeshExchange<dim, Law>::families() const
   {
     return own_families;
   }
 
-  template <int dim>
-  std::size_t MeshExchange<dim>::memory_consumption() const
+  template <int dim, typename Law>
+  std::size_t MeshExchange<dim, Law>::memory_consumption() const
   {
     std::size_t memory =
-      own_families.memory_consumption() + bonds.memory_consumption() + paths->memory_consumption() +
+      own_families.memory_consumption() + law.memory_consumption() + paths->memory_consumption() +
       cells.capacity() * (sizeof(PathCell<dim>) + sizeof(CellState)) +
       zone_bonds.capacity() * sizeof(ZoneBond) + taken.capacity() * sizeof(taken[0]) +
       bonds_of_node.capacity() * sizeof(bonds_of_node[0]) +
@@ -421,7 +439,11 @@ namespace PeriDeal
   }
 
 
-  template class MeshExchange<1>;
-  template class MeshExchange<2>;
-  template class MeshExchange<3>;
+#define PERIDEAL_INSTANTIATE(dim)                         \
+  template class MeshExchange<dim, ConductingBonds<dim>>; \
+  template class MeshExchange<dim, ElasticBonds<dim>>;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

@@ -17,32 +17,24 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  template <int dim>
-  void MeshExchange<dim>::find_cells(const Scene<dim> &scene)
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::find_cells(const Scene<dim> &scene)
   {
-    const DoFHandler<dim> &dofs = bonds.nodes().dof_handler();
-    FEValues<dim>          values(dofs.get_fe(), QGauss<dim>(2), update_quadrature_points);
-    const double           constant = scene.material.conductivity.is_constant() ?
-                                        scene.material.conductivity.value(Point<dim>()) :
-                                        0.;
+    const DoFHandler<dim>   &dofs = own_families.nodes().dof_handler();
+    FEValues<dim>            values(dofs.get_fe(), QGauss<dim>(2), update_quadrature_points);
+    const CellStiffness<dim> stiffness = Law::stiffness(scene);
     cell_of_index.assign(dofs.get_triangulation().n_active_cells(), numbers::invalid_unsigned_int);
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
           PathCell<dim> shape;
-          CellState     near;
-          near.lowest = near.highest = constant;
-          if (!scene.material.conductivity.is_constant())
+          CellState     near{std::numeric_limits<double>::max(), 0.};
+          values.reinit(cell);
+          for (const Point<dim> &q : values.get_quadrature_points())
             {
-              near.lowest  = std::numeric_limits<double>::max();
-              near.highest = 0.;
-              values.reinit(cell);
-              for (const Point<dim> &q : values.get_quadrature_points())
-                {
-                  const double kappa = scene.material.conductivity.value(q);
-                  near.lowest        = std::min(near.lowest, kappa);
-                  near.highest       = std::max(near.highest, kappa);
-                }
+              const double k = stiffness.at(q);
+              near.lowest    = std::min(near.lowest, k);
+              near.highest   = std::max(near.highest, k);
             }
           for (unsigned int v = 0; v < n_corners; ++v)
             {
@@ -57,10 +49,10 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  void MeshExchange<dim>::send_cells()
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::send_cells()
   {
-    const Nodes<dim>  &nodes        = bonds.nodes();
+    const Nodes<dim>  &nodes        = own_families.nodes();
     const MPI_Comm     communicator = nodes.communicator();
     const unsigned int me           = Utilities::MPI::this_mpi_process(communicator);
     if (Utilities::MPI::n_mpi_processes(communicator) == 1)
@@ -75,7 +67,8 @@ namespace PeriDeal
           size = std::max(size, cell.corners[v].distance(cell.corners[0]));
       }
     const ProcessBoxes<dim> boxes(own_corners, communicator);
-    const double distance = bonds.weights().reach() + Utilities::MPI::max(size, communicator);
+    const double            distance =
+      own_families.weights().reach() + Utilities::MPI::max(size, communicator);
     std::map<unsigned int, std::vector<double>> to_send;
     for (unsigned int rank = 0; rank < boxes.n_processes(); ++rank)
       for (unsigned int c = 0; c < cells.size() && rank != me; ++c)
@@ -115,10 +108,10 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  void MeshExchange<dim>::share_strains()
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::share_strains()
   {
-    const MPI_Comm communicator = bonds.nodes().communicator();
+    const MPI_Comm communicator = own_families.nodes().communicator();
     if (Utilities::MPI::n_mpi_processes(communicator) == 1)
       return;
     std::map<unsigned int, std::vector<double>> to_send;
@@ -131,12 +124,15 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                  \
-  template void MeshExchange<dim>::find_cells(const Scene<dim> &); \
-  template void MeshExchange<dim>::send_cells();                   \
-  template void MeshExchange<dim>::share_strains();
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
+#define PERIDEAL_INSTANTIATE(dim, Law)                                       \
+  template void MeshExchange<dim, Law<dim>>::find_cells(const Scene<dim> &); \
+  template void MeshExchange<dim, Law<dim>>::send_cells();                   \
+  template void MeshExchange<dim, Law<dim>>::share_strains();
+  PERIDEAL_INSTANTIATE(1, ConductingBonds)
+  PERIDEAL_INSTANTIATE(2, ConductingBonds)
+  PERIDEAL_INSTANTIATE(3, ConductingBonds)
+  PERIDEAL_INSTANTIATE(1, ElasticBonds)
+  PERIDEAL_INSTANTIATE(2, ElasticBonds)
+  PERIDEAL_INSTANTIATE(3, ElasticBonds)
 #undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

@@ -8,16 +8,25 @@
 #include <perideal/operators/solid_bonds_beside_elements.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace PeriDeal
 {
   using namespace dealii;
 
   template <int dim>
-  SolidBondsBesideElements<dim>::SolidBondsBesideElements(
-    std::unique_ptr<ElasticCoupling<dim>> coupling)
+  SolidBondsBesideElements<dim>::SolidBondsBesideElements(std::unique_ptr<Coupling<dim>> coupling)
     : coupled(std::move(coupling))
   {}
+
+
+  template <int dim>
+  Tensor<2, dim> SolidBondsBesideElements<dim>::block_of(const unsigned int node,
+                                                         const Bond        &bond) const
+  {
+    const Tensor<1, dim> xi = coupled->families().neighbors().bond_vector(node, bond.neighbor);
+    return outer_product(xi, xi);
+  }
 
 
   template <int dim>
@@ -36,24 +45,25 @@ namespace PeriDeal
   void SolidBondsBesideElements<dim>::add_pattern(TrilinosWrappers::SparsityPattern &pattern) const
   {
     const Utilities::MPI::Partitioner   &layout = *nodes().partitioner();
-    std::vector<Bond>                    bonds;
+    std::vector<unsigned int>            neighbors;
     std::vector<types::global_dof_index> columns;
     for (unsigned int i = 0; i < layout.locally_owned_size(); ++i)
       {
-        coupled->bonds_of(i, bonds);
-        if (bonds.empty())
+        coupled->possible_neighbors_of(i, neighbors);
+        if (neighbors.empty())
           continue;
         columns.clear();
-        for (const Bond &bond : bonds)
+        for (const unsigned int j : neighbors)
           for (unsigned int d = 0; d < dim; ++d)
-            columns.push_back(dim * layout.local_to_global(bond.neighbor) + d);
+            columns.push_back(dim * layout.local_to_global(j) + d);
         for (unsigned int d = 0; d < dim; ++d)
           columns.push_back(dim * layout.local_to_global(i) + d);
         for (unsigned int d = 0; d < dim; ++d)
           pattern.add_entries(dim * layout.local_to_global(i) + d, columns.begin(), columns.end());
       }
-    for (unsigned int i = 0; i < layout.locally_owned_size(); ++i)
-      coupled->visit_nodes_of_family(i, [&](const Family &family) {
+    const NodeFamilies<dim> *const families = coupled->node_families();
+    for (unsigned int i = 0; i < layout.locally_owned_size() && families != nullptr; ++i)
+      families->visit_nodes_of_family(i, [&](const Family &family) {
         unknowns_of(family, columns);
         for (unsigned int a = 0; a < columns.size(); ++a)
           if (family.has_row[a / dim])
@@ -96,14 +106,16 @@ namespace PeriDeal
           continue;
         n += 0.5 * multiple;
         const double factor =
-          multiple * (factors == nullptr ? 1. : factors->of_bond(node, bond.neighbor));
+          multiple *
+          (factors == nullptr ? bond.intact : bond.weight * factors->of_bond(node, bond.neighbor));
+        const Tensor<2, dim> block = block_of(node, bond);
         for (unsigned int e = 0; e < dim; ++e)
           rows.columns.push_back(dim * layout.local_to_global(bond.neighbor) + e);
         for (unsigned int c = 0; c < dim; ++c)
           for (unsigned int e = 0; e < dim; ++e)
             {
-              rows.values[c].push_back(-factor * bond.block[c][e]);
-              rows.values[c][e] += factor * bond.block[c][e];
+              rows.values[c].push_back(-factor * block[c][e]);
+              rows.values[c][e] += factor * block[c][e];
             }
       }
     for (unsigned int c = 0; c < dim; ++c)
@@ -120,7 +132,9 @@ namespace PeriDeal
                                                    Rows                           &rows) const
   {
     double n = 0.;
-    coupled->visit_family(node, intact, {}, [&](const Family &family) {
+    if (coupled->node_families() == nullptr)
+      return n;
+    coupled->node_families()->visit_family(node, intact, {}, [&](const Family &family) {
       unknowns_of(family, rows.columns);
       n += multiple * family.n_bonds;
       rows.values[0].resize(rows.columns.size());
@@ -203,14 +217,15 @@ namespace PeriDeal
             const Tensor<1, dim> xi   = nodes().position(bond.neighbor) - nodes().position(i);
             const double         mean = 0.5 * (strain(i) + strain(bond.neighbor));
             const Tensor<1, dim> force =
-              factors.of_bond(i, bond.neighbor) * mean * (bond.block * xi);
+              (factors.of_bond(i, bond.neighbor) * mean * bond.weight * xi.norm_square()) * xi;
             for (unsigned int d = 0; d < dim; ++d)
               loads.local_element(dim * i + d) -= force[d];
             energy += 0.25 * mean * (force * xi); // each bond is seen from both of its ends
           }
       }
-    for (unsigned int i = 0; i < nodes().n_owned(); ++i)
-      coupled->visit_family(i, false, strain, [&](const Family &family) {
+    const NodeFamilies<dim> *const families = coupled->node_families();
+    for (unsigned int i = 0; i < nodes().n_owned() && families != nullptr; ++i)
+      families->visit_family(i, false, strain, [&](const Family &family) {
         unknowns_of(family, indices);
         for (unsigned int a = 0; a < indices.size(); ++a)
           loads(indices[a]) += family.thermal(a);
@@ -232,8 +247,8 @@ namespace PeriDeal
             sums.marked.local_element(i) = 1.;
           else
             sums.trace.local_element(i) +=
-              0.5 * trace(bond.block) *
-              (nodes().position(bond.neighbor) - nodes().position(i)).norm_square();
+              0.5 * bond.weight *
+              std::pow((nodes().position(bond.neighbor) - nodes().position(i)).norm_square(), 2);
       }
   }
 

@@ -12,21 +12,17 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  StateCoupling<dim>::StateCoupling(Nodes<dim>       &nodes,
-                                    const Scene<dim> &scene,
-                                    const Zone<dim>  &given_zone)
-    : bonds(nodes, scene, HaloAround::cells)
-    , node_weights(nodes, given_zone, scene.coupling.overlap * bonds.weights().horizon())
+  StateCoupling<dim>::StateCoupling(Nodes<dim>                      &nodes,
+                                    const Scene<dim>                &scene,
+                                    const Zone<dim>                 &zone,
+                                    std::unique_ptr<const Weighting> weighting)
+    : WeightedCoupling<dim>(nodes, scene, zone, std::move(weighting), true)
   {
-    Zone<dim> zone = given_zone;
-    zone.set_cracks(bonds.cracks().history().pieces(scene.cracks.end_time)); // their whole way
-    node_weights.set(zone);
-    throw_if_zone_empty(node_weights.n_owned_in_zone(), nodes.communicator());
     if (scene.peridynamics.completes_families())
       {
         symmetry_sides = scene.boundary_conditions.symmetry;
-        throw_if_narrow(bonds);
-        extension.emplace(bonds, beyond_sides(scene));
+        throw_if_narrow(own_families);
+        extension.emplace(own_families, beyond_sides(scene));
       }
     find_nodes_that_act();
     laws.resize(nodes.n_owned());
@@ -40,20 +36,21 @@ namespace PeriDeal
   void StateCoupling<dim>::find_nodes_that_act()
   {
     // A family reaches the zone if its node is in one of the zone's families.
-    const Nodes<dim> &nodes = bonds.nodes();
+    const Nodes<dim> &nodes = own_families.nodes();
     acts.assign(nodes.n_owned(), false);
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
-      if (node_weights[i] > 0.)
+      if (weights_now[i] > 0.)
         {
           if (i < nodes.n_owned())
             acts[i] = true;
           const auto center = site_of(i);
-          for (const FamilyMember<dim> &member : bonds.weights().members())
+          for (const FamilyMember<dim> &member : own_families.weights().members())
             {
               auto site = center;
               for (unsigned int d = 0; d < dim; ++d)
                 site[d] += member.offset[d];
-              if (const unsigned int j = bonds.neighbors().node_at(site); j < nodes.n_owned())
+              if (const unsigned int j = own_families.neighbors().node_at(site);
+                  j < nodes.n_owned())
                 acts[j] = true;
             }
         }
@@ -61,9 +58,34 @@ namespace PeriDeal
 
 
   template <int dim>
+  const NodeFamilies<dim> *StateCoupling<dim>::node_families() const
+  {
+    return this;
+  }
+
+  template <int dim>
   void StateCoupling<dim>::bonds_of(const unsigned int, std::vector<Bond> &list) const
   {
     list.clear();
+  }
+
+  template <int dim>
+  void StateCoupling<dim>::possible_neighbors_of(const unsigned int,
+                                                 std::vector<unsigned int> &neighbors) const
+  {
+    neighbors.clear();
+  }
+
+  template <int dim>
+  double StateCoupling<dim>::family_weight(const unsigned int node) const
+  {
+    return this->weighting->of_family(weights_now[node]);
+  }
+
+  template <int dim>
+  double StateCoupling<dim>::row_weight(const unsigned int node) const
+  {
+    return this->weighting->of_row(weights_now[node]);
   }
 
 
@@ -79,7 +101,7 @@ namespace PeriDeal
       return;
     double q = 0.;
     for (const BondOfFamily &bond : list)
-      q += bond.square / bonds.nodes().volume(node);
+      q += bond.square / own_families.nodes().volume(node);
     const double spring = family_weight(node) * laws[node].extension / q;
     if (dim == 1) // no dilatation: rows of single bonds reach one horizon, not two
       {
@@ -103,7 +125,7 @@ namespace PeriDeal
       add_bond(bond, spring, family);
     add_dilatation(list,
                    family_weight(node) * laws[node].volumetric * laws[node].dilatation /
-                     (bonds.nodes().volume(node) * q * q),
+                     (own_families.nodes().volume(node) * q * q),
                    family);
     scale_rows(family);
     visit(family);
@@ -158,7 +180,7 @@ namespace PeriDeal
   template <int dim>
   std::string StateCoupling<dim>::fault_of(const unsigned int node) const
   {
-    if (dim == 1 || node_weights[node] < 1.)
+    if (dim == 1 || weights_now[node] < 1.)
       return {};
     std::vector<BondOfFamily> list;
     std::vector<unsigned int> nodes{node};
@@ -183,23 +205,24 @@ namespace PeriDeal
     const unsigned int                          own        = nodes[0];
     const double                                own_strain = strain ? strain(own) : 0.;
     std::vector<typename Families<dim>::Member> members;
-    bonds.members_of(own, members);
+    own_families.members_of(own, members);
     typename FictitiousExtension<dim>::Site site;
     for (const auto &member : members)
       {
         const unsigned int j = member.neighbor;
         if (member.weight == 0. || (member.cut && !intact))
           continue;
-        const Tensor<1, dim> xi = bonds.neighbors().bond_vector(own, j);
+        const Tensor<1, dim> xi = own_families.neighbors().bond_vector(own, j);
         double               w  = member.weight;
         if (extension && !extension->is_inside(site_of(j)) && extension->find(site_of(j), site))
-          w *= site.volume / bonds.nodes().volume(j); // with what is missing of a node on a side
+          w *= site.volume /
+               own_families.nodes().volume(j); // with what is missing of a node on a side
         list.push_back({{{0, -w * xi}, {static_cast<unsigned int>(nodes.size()), w * xi}},
                         w * xi.norm_square(),
                         strain ? 0.5 * (own_strain + strain(j)) : 0.,
-                        node_weights[own] == 0. ? 0. :
-                        node_weights[j] == 0.   ? 1. :
-                                                  0.5});
+                        weights_now[own] == 0. ? 0. :
+                        weights_now[j] == 0.   ? 1. :
+                                                 0.5});
         nodes.push_back(j);
       }
   }
@@ -213,9 +236,9 @@ namespace PeriDeal
     const unsigned int                      own        = nodes[0];
     const double                            own_strain = strain ? strain(own) : 0.;
     const auto                              center     = site_of(own);
-    const Lattice<dim>                     &lattice    = *bonds.nodes().lattice();
+    const Lattice<dim>                     &lattice    = *own_families.nodes().lattice();
     typename FictitiousExtension<dim>::Site site;
-    for (const FamilyMember<dim> &member : bonds.weights().members())
+    for (const FamilyMember<dim> &member : own_families.weights().members())
       {
         auto index   = center;
         bool outside = false;
@@ -226,7 +249,7 @@ namespace PeriDeal
           }
         if (!outside || !extension->find(index, site))
           continue;
-        const double   w = bonds.nodes().volume(own) * site.volume * member.weight;
+        const double   w = own_families.nodes().volume(own) * site.volume * member.weight;
         Tensor<1, dim> xi;
         for (unsigned int d = 0; d < dim; ++d)
           xi[d] = member.offset[d] * lattice.spacing[d];
@@ -251,16 +274,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateCoupling<dim>::set_cracks_of(const double time)
-  {
-    bonds.cracks().set_time(time);
-  }
-
-
-  template <int dim>
   typename Lattice<dim>::Index StateCoupling<dim>::site_of(const unsigned int node) const
   {
-    return bonds.nodes().lattice()->index(bonds.nodes().position(node));
+    return own_families.nodes().lattice()->index(own_families.nodes().position(node));
   }
 
 
@@ -349,100 +365,14 @@ namespace PeriDeal
   }
 
   template <int dim>
-  const NodeWeights<dim> &StateCoupling<dim>::weights() const
-  {
-    return node_weights;
-  }
-
-  template <int dim>
-  bool StateCoupling<dim>::in_zone(const unsigned int node) const
-  {
-    return node_weights[node] > 0.;
-  }
-
-  template <int dim>
-  const Families<dim> &StateCoupling<dim>::families() const
-  {
-    return bonds;
-  }
-
-  template <int dim>
   std::size_t StateCoupling<dim>::memory_consumption() const
   {
-    return bonds.memory_consumption() + node_weights.memory_consumption() +
-           laws.capacity() * sizeof(StateLaw) + acts.capacity() / 8;
+    return WeightedCoupling<dim>::memory_consumption() + laws.capacity() * sizeof(StateLaw) +
+           acts.capacity() / 8;
   }
 
 
-  template <int dim>
-  bool StateBlending<dim>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
-  {
-    const double mean = this->weights().mean(cell);
-    if (mean == 0.)
-      return false;
-    stiffness *= std::max(0., 1. - mean);
-    return true;
-  }
-
-  template <int dim>
-  double StateBlending<dim>::family_weight(const unsigned int node) const
-  {
-    return this->weights()[node];
-  }
-
-  template <int dim>
-  double StateBlending<dim>::row_weight(const unsigned int) const
-  {
-    return 1.;
-  }
-
-  template <int dim>
-  bool StateBlending<dim>::symmetric() const
-  {
-    return true;
-  }
-
-
-  template <int dim>
-  bool StateSplice<dim>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
-  {
-    bool changed = false;
-    for (const unsigned int v : cell->vertex_indices())
-      if (const double taken = this->weights().at(cell, v); taken > 0.)
-        {
-          changed = true;
-          for (unsigned int d = 0; d < dim; ++d)
-            for (unsigned int b = 0; b < stiffness.n(); ++b)
-              stiffness(dim * v + d, b) *= 1. - taken;
-        }
-    return changed;
-  }
-
-  template <int dim>
-  double StateSplice<dim>::family_weight(const unsigned int) const
-  {
-    return 1.;
-  }
-
-  template <int dim>
-  double StateSplice<dim>::row_weight(const unsigned int node) const
-  {
-    return this->weights()[node];
-  }
-
-  template <int dim>
-  bool StateSplice<dim>::symmetric() const
-  {
-    return false;
-  }
-
-
-#define PERIDEAL_INSTANTIATE(dim)    \
-  template class StateCoupling<dim>; \
-  template class StateBlending<dim>; \
-  template class StateSplice<dim>;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  template class StateCoupling<1>;
+  template class StateCoupling<2>;
+  template class StateCoupling<3>;
 } // namespace PeriDeal

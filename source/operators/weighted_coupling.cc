@@ -11,54 +11,133 @@ namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    class Blending : public Weighting
+    {
+    public:
+      double of_family(const double beta) const override
+      {
+        return beta;
+      }
+
+      double of_row(const double) const override
+      {
+        return 1.;
+      }
+
+      double of_cell(const double mean) const override
+      {
+        return std::max(0., 1. - mean);
+      }
+
+      double of_cell_row(const double) const override
+      {
+        return 1.;
+      }
+
+      bool symmetric() const override
+      {
+        return true;
+      }
+    };
+
+
+    class Splice : public Weighting
+    {
+    public:
+      double of_family(const double) const override
+      {
+        return 1.;
+      }
+
+      double of_row(const double beta) const override
+      {
+        return beta;
+      }
+
+      double of_cell(const double) const override
+      {
+        return 1.;
+      }
+
+      double of_cell_row(const double beta) const override
+      {
+        return 1. - beta;
+      }
+
+      bool symmetric() const override
+      {
+        return false;
+      }
+    };
+  } // namespace
+
+
+  std::unique_ptr<const Weighting> make_weighting(const CouplingScheme scheme)
+  {
+    if (scheme == CouplingScheme::splice)
+      return std::make_unique<Splice>();
+    return std::make_unique<Blending>();
+  }
+
+
   template <int dim>
-  WeightedCoupling<dim>::WeightedCoupling(Nodes<dim>       &nodes,
-                                          const Scene<dim> &scene,
-                                          const Zone<dim>  &zone)
+  WeightedCoupling<dim>::WeightedCoupling(Nodes<dim>                      &nodes,
+                                          const Scene<dim>                &scene,
+                                          const Zone<dim>                 &zone,
+                                          std::unique_ptr<const Weighting> weighting,
+                                          const bool                       whole_way)
     : own_families(nodes, scene, HaloAround::cells)
-    , bonds(own_families, scene)
-    , zone(zone)
-    , overlap(scene.coupling.overlap * bonds.weights().horizon())
+    , overlap(scene.coupling.overlap * own_families.weights().horizon())
+    , weighting(std::move(weighting))
     , weights_now(nodes, zone, overlap)
     , weights_at_end(weights_now)
+    , zone(zone)
+    , follows(zone.follows_cracks() && !whole_way)
   {
-    const CrackHistory<dim> &history = bonds.cracks().history();
+    const CrackHistory<dim> &history = own_families.cracks().history();
     Zone<dim>                at_end  = zone;
     at_end.set_cracks(history.pieces(scene.cracks.end_time));
-    this->zone.set_cracks(history.pieces(history.representative(0.)));
-    weights_now.set(this->zone);
     weights_at_end.set(at_end);
+    this->zone.set_cracks(history.pieces(history.representative(0.)));
+    weights_now.set(follows ? this->zone : at_end);
     throw_if_zone_empty(weights_at_end.n_owned_in_zone(), nodes.communicator());
   }
 
 
   template <int dim>
-  void WeightedCoupling<dim>::bonds_of(const unsigned int node, std::vector<Bond> &list) const
+  bool WeightedCoupling<dim>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
   {
-    bonds.bonds_of(node, list);
-    unsigned int n_kept = 0;
-    for (Bond &bond : list)
-      {
-        const double weight = bond_weight(weights_now[node], weights_now[bond.neighbor]);
-        bond.weight *= weight;
-        bond.intact *= weight;
-        if (weight > 0.)
-          list[n_kept++] = bond;
-      }
-    list.resize(n_kept);
+    const double kept = weighting->of_cell(weights_now.mean(cell));
+    if (kept == 1.)
+      return false;
+    stiffness *= kept;
+    return true;
   }
 
 
   template <int dim>
-  void WeightedCoupling<dim>::possible_neighbors_of(const unsigned int         node,
-                                                    std::vector<unsigned int> &neighbors) const
+  bool WeightedCoupling<dim>::finish_cell(const Cell &cell, FullMatrix<double> &stiffness) const
   {
-    std::vector<Bond> list;
-    neighbors.clear();
-    bonds.bonds_of(node, list);
-    for (const Bond &bond : list)
-      if (bond_weight(weights_at_end[node], weights_at_end[bond.neighbor]) > 0.)
-        neighbors.push_back(bond.neighbor);
+    const unsigned int n_components = stiffness.m() / cell->n_vertices();
+    bool               changed      = false;
+    for (unsigned int a = 0; a < stiffness.m(); ++a)
+      if (const double kept = weighting->of_cell_row(weights_now.at(cell, a / n_components));
+          kept != 1.)
+        {
+          changed = true;
+          for (unsigned int b = 0; b < stiffness.n(); ++b)
+            stiffness(a, b) *= kept;
+        }
+    return changed;
+  }
+
+
+  template <int dim>
+  bool WeightedCoupling<dim>::symmetric() const
+  {
+    return weighting->symmetric();
   }
 
 
@@ -66,16 +145,16 @@ namespace PeriDeal
   std::vector<BoundingBox<dim>> WeightedCoupling<dim>::joining_by(const double time) const
   {
     std::vector<BoundingBox<dim>> boxes;
-    if (!zone.follows_cracks())
+    if (!follows)
       return boxes;
     Zone<dim> then = zone;
-    then.set_cracks(bonds.cracks().history().pieces(time));
-    auto changes = bonds.cracks().history().changes(bonds.cracks().now(), time);
+    then.set_cracks(own_families.cracks().history().pieces(time));
+    auto changes = own_families.cracks().history().changes(own_families.cracks().now(), time);
     for (BoundingBox<dim> &box : changes)
-      box.extend(zone.width() + overlap + bonds.nodes().smallest_spacing());
-    for (unsigned int i = 0; i < bonds.nodes().n_local(); ++i)
+      box.extend(zone.width() + overlap + own_families.nodes().smallest_spacing());
+    for (unsigned int i = 0; i < own_families.nodes().n_local(); ++i)
       {
-        const Point<dim> &p = bonds.nodes().position(i);
+        const Point<dim> &p = own_families.nodes().position(i);
         if (std::any_of(changes.begin(),
                         changes.end(),
                         [&](const auto &box) { return box.point_inside(p); }) &&
@@ -89,18 +168,12 @@ namespace PeriDeal
   template <int dim>
   void WeightedCoupling<dim>::set_cracks_of(const double time)
   {
-    bonds.cracks().set_time(time);
-    zone.set_cracks(bonds.cracks().history().pieces(time));
-    if (zone.follows_cracks())
+    own_families.cracks().set_time(time);
+    zone.set_cracks(own_families.cracks().history().pieces(time));
+    if (follows)
       weights_now.set(zone);
   }
 
-
-  template <int dim>
-  const NodeWeights<dim> &WeightedCoupling<dim>::weights() const
-  {
-    return weights_now;
-  }
 
   template <int dim>
   bool WeightedCoupling<dim>::in_zone(const unsigned int node) const
@@ -117,70 +190,12 @@ namespace PeriDeal
   template <int dim>
   std::size_t WeightedCoupling<dim>::memory_consumption() const
   {
-    return own_families.memory_consumption() + bonds.memory_consumption() +
-           weights_now.memory_consumption() + weights_at_end.memory_consumption();
+    return own_families.memory_consumption() + weights_now.memory_consumption() +
+           weights_at_end.memory_consumption();
   }
 
 
-  template <int dim>
-  bool Blending<dim>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
-  {
-    const double mean = this->weights().mean(cell);
-    if (mean == 0.)
-      return false;
-    stiffness *= std::max(0., 1. - mean);
-    return true;
-  }
-
-  template <int dim>
-  double Blending<dim>::bond_weight(const double own, const double neighbor) const
-  {
-    return 0.5 * (own + neighbor);
-  }
-
-  template <int dim>
-  bool Blending<dim>::symmetric() const
-  {
-    return true;
-  }
-
-
-  template <int dim>
-  bool Splice<dim>::change_cell(const Cell &, FullMatrix<double> &) const
-  {
-    return false;
-  }
-
-  template <int dim>
-  void Splice<dim>::finish_cell(const Cell &cell, FullMatrix<double> &stiffness) const
-  {
-    for (const unsigned int v : cell->vertex_indices())
-      {
-        const double weight = 1. - this->weights().at(cell, v);
-        for (unsigned int b = 0; b < stiffness.n(); ++b)
-          stiffness(v, b) *= weight;
-      }
-  }
-
-  template <int dim>
-  double Splice<dim>::bond_weight(const double own, const double) const
-  {
-    return own;
-  }
-
-  template <int dim>
-  bool Splice<dim>::symmetric() const
-  {
-    return false;
-  }
-
-
-#define PERIDEAL_INSTANTIATE(dim)       \
-  template class WeightedCoupling<dim>; \
-  template class Blending<dim>;         \
-  template class Splice<dim>;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  template class WeightedCoupling<1>;
+  template class WeightedCoupling<2>;
+  template class WeightedCoupling<3>;
 } // namespace PeriDeal

@@ -43,22 +43,22 @@ namespace PeriDeal
             number_along_lattice(handler, scene.domain);
         }
         {
-          Timings::Scope                        scope(this->timings, "operator");
-          std::unique_ptr<ElasticCoupling<dim>> coupling;
+          Timings::Scope                 scope(this->timings, "operator");
+          std::unique_ptr<Coupling<dim>> coupling;
           if (model != ModelKind::finite_elements)
             {
               node_set = std::make_unique<Nodes<dim>>(handler,
                                                       scene.domain,
                                                       scene.cracks,
                                                       NodalVolume::partial);
-              coupling = model == ModelKind::coupled ? make_elastic_coupling(*node_set, scene) :
+              coupling = model == ModelKind::coupled ? make_solid_coupling(*node_set, scene) :
                                                        make_families_everywhere(*node_set, scene);
             }
           elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
         }
         // Its fields would have to be mirrored, too.
         if (model == ModelKind::coupled && scene.coupling.certificate &&
-            elements->bonds().mirrors().empty())
+            elements->mirrors().empty())
           examine();
       }
 

@@ -196,24 +196,24 @@ namespace PeriDeal
     {
       if (!runs(scene, ModelKind::coupled))
         return;
-      if (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty())
-        entry_error(
-          scene.cracks.where("Mesh"),
-          "'faces' is not for 'Models = coupled' with 'Physics = elasticity', whose bonds know one node at each place. Use 'removed'.");
       if (scene.coupling.zone == ZoneKind::adaptive)
         entry_error(
           scene.coupling.where("Zone"),
           "'adaptive' is for what diffuses; with 'Physics = elasticity' use 'cracks: 1' or a formula.");
-      if (!scene.domain.has_lattice())
-        entry_error(
-          scene.domain.where("Shape"),
-          "'mesh file' is not for 'Models = coupled' with 'Physics = elasticity', whose bonds lie on a lattice. Use 'box' or 'plate with hole'.");
       if (scene.elasticity.kinematics == Kinematics::full)
         entry_error(
           scene.elasticity.where("Kinematics"),
           "'full' is not for 'Models = coupled', whose coefficients are those of the undeformed body.");
       if (scene.coupling.scheme == CouplingScheme::exchange)
         return;
+      if (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty())
+        entry_error(
+          scene.cracks.where("Mesh"),
+          "'faces' is for 'Scheme = exchange' in section 'Coupling': the families of others know one node at each place. Use 'removed'.");
+      if (!scene.domain.has_lattice())
+        entry_error(
+          scene.domain.where("Shape"),
+          "'mesh file' is for 'Scheme = exchange' in section 'Coupling': the families of others lie on a lattice. Use 'box' or 'plate with hole'.");
       const std::string scheme =
         "'Scheme = " + scene.coupling.scheme_text() + "' in section 'Coupling'";
       if (scene.peridynamics.surface_correction != SurfaceCorrection::none &&

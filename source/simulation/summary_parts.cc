@@ -222,8 +222,8 @@ namespace PeriDeal
     if (std::isfinite(c.lowest_remainder))
       entry["lowest eigenvalue of a cell"] = c.lowest_remainder;
     entry["share of the body"] = c.zone_share;
-    if (c.kept_share)
-      entry["share of the conductance kept"] = *c.kept_share;
+    entry[c.unbalanced ? "share of the stiffness kept" : "share of the conductance kept"] =
+      c.kept_share;
     entry["full peridynamics"] = {{"bonds", c.n_bonds_of_full}};
     if (c.n_nonzeros_of_full > 0)
       entry["full peridynamics"]["nonzeros"] = c.n_nonzeros_of_full;

@@ -19,7 +19,7 @@ namespace PeriDeal
       if (model != ModelKind::peridynamics)
         {
           handler.distribute_dofs(dealii::FE_Q<dim>(scene.finite_elements.degree));
-          std::unique_ptr<ElasticCoupling<dim>> coupling;
+          std::unique_ptr<Coupling<dim>> coupling;
           if (model == ModelKind::coupled)
             {
               number_along_lattice(handler, scene.domain);
@@ -27,7 +27,7 @@ namespace PeriDeal
                                                    scene.domain,
                                                    scene.cracks,
                                                    NodalVolume::partial);
-              coupling = make_elastic_coupling(*nodes, scene);
+              coupling = make_solid_coupling(*nodes, scene);
             }
           elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
         }

@@ -143,7 +143,8 @@ TEST(Exchange, linear_patch_with_bonds_across_levels)
                      problem.scene.domain,
                      problem.scene.cracks,
                      NodalVolume::partial);
-      auto       bonds = std::make_unique<MeshExchange<2>>(nodes, problem.scene, Zone<2>());
+      auto       bonds =
+        std::make_unique<MeshExchange<2, ConductingBonds<2>>>(nodes, problem.scene, Zone<2>());
       problem.fem =
         std::make_unique<FEMOperator<2>>(problem.handler, problem.scene, std::move(bonds));
       EXPECT_LT(patch_error(problem), 1e-13) << m;

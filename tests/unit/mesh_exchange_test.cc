@@ -15,6 +15,7 @@
 #include <map>
 #include <random>
 
+#include "distorted_mesh.h"
 #include "growth_test_tools.h"
 
 using namespace PeriDeal;
@@ -22,63 +23,6 @@ using namespace PeriDeal::OperatorTests;
 
 namespace
 {
-  /**
-   * A Gmsh file of n^dim quadrilaterals or hexahedra on the unit square or cube, whose inner
-   * vertices are moved by up to a part of the spacing. Each process writes its own, all the same.
-   * @param power above 1 the cells are the smaller the nearer they are to the middle
-   */
-  template <int dim>
-  std::string distorted_mesh(const unsigned int n, const double part, const double power = 1.)
-  {
-    const std::string name =
-      (std::filesystem::temp_directory_path() /
-       ("perideal_" + std::to_string(getpid()) + "_" + std::to_string(dim) + ".msh"))
-        .string();
-    std::ofstream file(name);
-    file.precision(17);
-    unsigned int n_nodes = 1, n_cells = 1;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        n_nodes *= n + 1;
-        n_cells *= n;
-      }
-    std::mt19937                           random(7);
-    std::uniform_real_distribution<double> shift(-part / n, part / n);
-    file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << n_nodes << '\n';
-    for (unsigned int k = 0; k < n_nodes; ++k)
-      {
-        std::array<unsigned int, 3> at{k % (n + 1), k / (n + 1) % (n + 1), k / (n + 1) / (n + 1)};
-        bool                        inside = true;
-        for (unsigned int d = 0; d < dim; ++d)
-          inside = inside && at[d] > 0 && at[d] < n;
-        file << k + 1;
-        for (unsigned int d = 0; d < 3; ++d)
-          {
-            const double moved = shift(random);
-            const double t     = 2. * (at[d] / double(n) + (inside ? moved : 0.)) - 1.;
-            const double x     = 0.5 + 0.5 * std::copysign(std::pow(std::abs(t), power), t);
-            file << ' ' << (d < dim ? x : 0.);
-          }
-        file << '\n';
-      }
-    file << "$EndNodes\n$Elements\n" << n_cells << '\n';
-    const auto node = [&](const unsigned int i, const unsigned int j, const unsigned int k) {
-      return 1 + i + (n + 1) * (j + (dim == 3 ? (n + 1) * k : 0));
-    };
-    for (unsigned int c = 0; c < n_cells; ++c)
-      {
-        const unsigned int i = c % n, j = c / n % n, k = c / n / n;
-        file << c + 1 << (dim == 3 ? " 5 2 1 1" : " 3 2 1 1");
-        for (unsigned int level = 0; level < (dim == 3 ? 2u : 1u); ++level)
-          file << ' ' << node(i, j, k + level) << ' ' << node(i + 1, j, k + level) << ' '
-               << node(i + 1, j + 1, k + level) << ' ' << node(i, j + 1, k + level);
-        file << '\n';
-      }
-    file << "$EndElements\n";
-    return name;
-  }
-
-
   template <int dim>
   Settings on(const std::string &mesh, const std::string &horizon, const std::string &zone)
   {
@@ -100,7 +44,8 @@ namespace
         const Problem<dim>        problem(on<dim>(mesh, horizon, zone), ModelKind::coupled);
         const CouplingCertificate found = examine_coupling(*problem.fem, true);
         const double              kept =
-          dynamic_cast<const MeshExchange<dim> &>(problem.fem->bonds()).kept_share();
+          dynamic_cast<const MeshExchange<dim, ConductingBonds<dim>> &>(problem.fem->bonds())
+            .kept_share();
         EXPECT_LT(found.linear, 1e-12) << zone;
         EXPECT_LT(found.asymmetry, 1e-13) << zone;
         EXPECT_GT(found.lowest_remainder, -1e-13) << zone;
@@ -320,7 +265,8 @@ namespace
     EXPECT_LT(difference(all, a, alone, b), 1e-13 * alone.op().diagonal().linfty_norm());
     EXPECT_EQ(all.op().size().bonds, alone.op().size().bonds);
     const auto kept = [](const Problem<2> &problem) {
-      return dynamic_cast<const MeshExchange<2> &>(problem.fem->bonds()).kept_share();
+      return dynamic_cast<const MeshExchange<2, ConductingBonds<2>> &>(problem.fem->bonds())
+        .kept_share();
     };
     EXPECT_NEAR(kept(all), kept(alone), 1e-13);
   }

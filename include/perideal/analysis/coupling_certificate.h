@@ -29,8 +29,7 @@ namespace PeriDeal
     // if all cells are whole.
     double lowest_remainder = 0.;
     double zone_share       = 0.; // of the body's volume
-    std::optional<double>
-      kept_share; // of the bonds' conductance that distorted cells leave; not of elastic bodies
+    double kept_share       = 1.; // of the bonds' strength that distorted cells leave
     // Of elastic bodies: the largest |m . K x|/(max |m| sum |K x|) for the rigid motions m and a
     // field x of noise.
     std::optional<double> unbalanced;

@@ -15,12 +15,20 @@
 
 namespace PeriDeal
 {
+  template <int dim>
+  class NodeFamilies;
+
+
   /**
    * How peridynamic bonds in a zone and finite elements Q1 share one body: which bonds there are,
-   * with which conductance, and what is left of each cell's matrix. Both act on the same unknowns,
-   * the nodes on the vertices of the mesh; FEMOperator adds up
+   * how strong they are, and what is left of each cell's matrix. Both act on the same nodes, the
+   * vertices of the mesh, with one unknown each where something diffuses, dim in a solid (rows and
+   * columns interleaved). The operators of the elements add up
    *
-   *   K = sum of bonds W_ij (e_i - e_j)(e_i - e_j)^T + sum of cells R_c.
+   *   K u = sum of bonds W_ij v (v . (u_i - u_j)) + sum of families K_f u + sum of cells R_c u,
+   *
+   * v = 1 for what diffuses, the bond's vector xi in a solid. Where a dilatation joins all bonds of
+   * a node, they are a family (NodeFamilies).
    *
    * Every process asks for the bonds of its own nodes and for its own cells only. Not collective
    * unless stated.
@@ -35,10 +43,16 @@ namespace PeriDeal
     virtual ~Coupling() = default;
 
     /**
-     * What the row of an owned node has of bonds, in a fixed order: `weight` and `intact` as in
-     * Families, broken bonds included.
+     * What the row of an owned node has of bonds, in a fixed order: `weight` W_ij, and `intact` as
+     * if no crack were there, broken bonds included. @p bonds is overwritten.
      */
     virtual void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const = 0;
+
+    /** What acts as families of nodes; null where bonds act one by one. */
+    virtual const NodeFamilies<dim> *node_families() const
+    {
+      return nullptr;
+    }
 
     /**
      * Nodes that an owned node may ever have a bond to, however the zone moves. @p neighbors is
@@ -53,8 +67,11 @@ namespace PeriDeal
      */
     virtual bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const = 0;
 
-    /** Last change of a cell's matrix, after cracks have cut it. */
-    virtual void finish_cell(const Cell &, dealii::FullMatrix<double> &) const {}
+    /** Last change of a cell's matrix, after cracks have cut it. Returns as change_cell(). */
+    virtual bool finish_cell(const Cell &, dealii::FullMatrix<double> &) const
+    {
+      return false;
+    }
 
     /** Whether change_cell() leaves nothing at all of a cell, now and whatever cracks do. */
     virtual bool leaves_nothing(const Cell &) const
@@ -79,7 +96,7 @@ namespace PeriDeal
     /** Factors of owned nodes and ghosts, by whose mean the form multiplies bonds. */
     virtual void set_form_factors(std::vector<double>) {}
 
-    /** K is symmetric and R_c positive semidefinite. */
+    /** K is symmetric. */
     virtual bool symmetric() const = 0;
 
     /**
@@ -89,13 +106,13 @@ namespace PeriDeal
     virtual std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const = 0;
 
     /**
-     * Move on to the cracks of that representative time, and the zone with them. A bond's
-     * conductance follows from the cracks as they are then, their whole way included: bonds that
+     * Move on to the cracks of that representative time (CrackHistory), and the zone with them. A
+     * bond's strength follows from the cracks as they are then, their whole way included: bonds that
      * join find themselves broken where a crack has passed before.
      */
     virtual void set_cracks_of(const double time) = 0;
 
-    /** Part of the bonds' conductance that distorted cells leave them. Collective. */
+    /** Part of the bonds' strength that distorted cells leave them. Collective. */
     virtual double kept_share() const
     {
       return 1.;
@@ -122,10 +139,22 @@ namespace PeriDeal
   void throw_if_zone_empty(const double n_nodes, const MPI_Comm communicator);
 
 
-  /** The coupling of a scheme. Adds the halo to the nodes. Collective. Throws UserError. */
+  /** The coupling of what diffuses. Adds the halo to the nodes. Collective. Throws UserError. */
   template <int dim>
   std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>          &nodes,
                                                const Scene<dim>    &scene,
                                                const Zone<dim>     &zone,
                                                const CouplingScheme scheme);
+
+  /** The coupling of a solid. Otherwise the same. */
+  template <int dim>
+  std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim> &nodes, const Scene<dim> &scene);
+
+  /**
+   * Families of a solid everywhere, with nothing left to the elements: peridynamics alone.
+   * Otherwise the same.
+   */
+  template <int dim>
+  std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim>       &nodes,
+                                                          const Scene<dim> &scene);
 } // namespace PeriDeal

@@ -36,7 +36,7 @@ namespace PeriDeal
    * of unknowns that are not free.
    *
    * With a coupling its bonds and families are added, with their thermal loads
-   * (SolidBondsBesideElements), and the cells changed (ElasticCoupling); K is as symmetric as the
+   * (SolidBondsBesideElements), and the cells changed (Coupling); K is as symmetric as the
    * coupling. Cells that a crack cuts carry nothing (`Mesh = removed`), so that in a zone the bonds
    * around the crack alone hold what they do; unless the crack is cut into the mesh.
    *
@@ -49,9 +49,9 @@ namespace PeriDeal
   {
   public:
     /** @param dof_handler FE_Q(p) with dofs distributed. Collective. Throws UserError. */
-    ElasticElements(const dealii::DoFHandler<dim>        &dof_handler,
-                    const Scene<dim>                     &scene,
-                    std::unique_ptr<ElasticCoupling<dim>> coupling = nullptr);
+    ElasticElements(const dealii::DoFHandler<dim> &dof_handler,
+                    const Scene<dim>              &scene,
+                    std::unique_ptr<Coupling<dim>> coupling = nullptr);
     ~ElasticElements() override;
 
     Spectrum spectrum() const override;
@@ -105,9 +105,15 @@ namespace PeriDeal
     }
 
     /** Only in the model `coupled`. */
-    const ElasticCoupling<dim> &bonds() const
+    const Coupling<dim> &bonds() const
     {
       return zone_bonds->coupling();
+    }
+
+    /** NodeFamilies::mirrors(), if the coupling has families. */
+    std::vector<dealii::types::boundary_id> mirrors() const
+    {
+      return zone_bonds ? zone_bonds->mirrors() : std::vector<dealii::types::boundary_id>();
     }
 
     /** Cells of this process that a crack cuts, by active cell index. */

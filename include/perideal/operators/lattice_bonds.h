@@ -16,6 +16,15 @@
 
 namespace PeriDeal
 {
+  /** What carries bonds: the stiffness at a place in the body, the conductivity where heat flows. */
+  template <int dim>
+  struct CellStiffness
+  {
+    std::function<double(const dealii::Point<dim> &)> at;
+    bool                                              uniform; // the same everywhere
+  };
+
+
   /**
    * The active bonds of an exchange on a lattice of equal cells, and the cells that they pass: what
    * diffusion and elasticity have in common.
@@ -30,9 +39,6 @@ namespace PeriDeal
   {
   public:
     using Site = typename Lattice<dim>::Index;
-
-    /** The stiffness (conductivity) at a place in the body. */
-    using Stiffness = std::function<double(const dealii::Point<dim> &)>;
 
     /** What the lattice has at a site and in the cell whose lowest corner that is. */
     struct SiteData
@@ -62,14 +68,16 @@ namespace PeriDeal
 
     /**
      * Adds the halo to the nodes. Collective. Throws UserError for a zone without nodes.
-     * @param stiffness if empty the conductivity
      * @param whole_way the zone around cracks that grow is that of their whole way from the start
      */
-    LatticeBonds(Nodes<dim>       &nodes,
-                 const Scene<dim> &scene,
-                 const Zone<dim>  &zone,
-                 const Stiffness  &stiffness = {},
-                 const bool        whole_way = false);
+    LatticeBonds(Nodes<dim>               &nodes,
+                 const Scene<dim>         &scene,
+                 const Zone<dim>          &zone,
+                 const CellStiffness<dim> &stiffness,
+                 const bool                whole_way);
+
+    /** xi. */
+    dealii::Tensor<1, dim> vector_of(const Offset &offset) const;
 
     /**
      * Visit (neighbour, offset, strength) for the active bonds of an owned node, broken ones
@@ -114,7 +122,7 @@ namespace PeriDeal
     void            find_offsets();
     void            find_sites(const Scene<dim> &scene, const bool whole_way);
     void            set_table_around(const std::vector<bool> &candidates);
-    void            find_cells(const Scene<dim> &scene, const Stiffness &stiffness);
+    void            find_cells(const Scene<dim> &scene, const CellStiffness<dim> &stiffness);
     const SiteData *at(const Site &site) const;
     SiteData       &own(const Site &site);
     Site            site_of(const unsigned int node) const;

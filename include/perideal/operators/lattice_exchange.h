@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/operators/coupling.h>
+#include <perideal/operators/exchange_laws.h>
 #include <perideal/operators/lattice_bonds.h>
 #include <perideal/scene/scene.h>
 
@@ -13,27 +14,24 @@ namespace PeriDeal
 {
   /**
    * Bondwise exchange on a lattice of equal cells (doc/coupling.md): each active bond is added, and
-   * what the finite elements conduct along that very bond is taken away from the cells that it
+   * what the finite elements carry along that very bond is taken away from the cells that it
    * passes,
    *
-   *   R_c = K_c + kappa_c (M - Q[A]) - sum of active bonds W_b share L_b,
+   *   R_c = K_c + k_c S - sum of active bonds W_b share L_b (x) v v^T.
    *
-   * M = sum over the full family of w V^2 share L, A = (1/2) sum w V xi xi^T over the full family,
-   * Q[A] the cell matrix of the conductivity A; M = Q[A] on linear fields. So a linear field
-   * conducts the same with and without bonds, for any set of them, and R_c is positive
-   * semidefinite.
-   *
-   * W_b = w(xi) V_i V_j kappa, kappa the smallest conductivity of the cells on the bond's way.
-   * Which bonds are active: LatticeBonds.
+   * S is zero on linear fields, so that these conduct or have forces alike with and without bonds,
+   * for any set of them; R_c is positive semidefinite. Bonds of a solid keep the matrix symmetric,
+   * and momentum is conserved. S, v and the stiffness k are those of the law, ConductingBonds or
+   * ElasticBonds; which bonds are active: LatticeBonds.
    */
-  template <int dim>
+  template <int dim, typename Law>
   class LatticeExchange : public Coupling<dim>
   {
   public:
     using typename Coupling<dim>::Bond;
     using typename Coupling<dim>::Cell;
 
-    /** Collective. Throws UserError for a zone without nodes. */
+    /** Collective. Throws UserError for a zone without nodes, and as Law::calibrate(). */
     LatticeExchange(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone);
 
     void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
@@ -55,12 +53,8 @@ namespace PeriDeal
   private:
     using Site = typename Lattice<dim>::Index;
 
-    void find_full_matrix();
-
-    LatticeBonds<dim>          bonds;
-    DiffusionBonds<dim>        of_families;
-    OperatorForm               form       = OperatorForm::automatic;
-    bool                       calibrated = true; // A is the unit matrix
-    dealii::FullMatrix<double> surplus;           // M - Q[A], for unit conductivity
+    LatticeBonds<dim> bonds;
+    Law               law;
+    CellSurplus       surplus;
   };
 } // namespace PeriDeal

@@ -5,6 +5,7 @@
 
 #include <perideal/mesh/cell_paths.h>
 #include <perideal/operators/coupling.h>
+#include <perideal/operators/exchange_laws.h>
 #include <perideal/scene/scene.h>
 
 #include <map>
@@ -17,15 +18,17 @@ namespace PeriDeal
    * Bondwise exchange on any mesh of quadrilaterals or hexahedra (doc/coupling.md): each bond is
    * followed through the cells on its way, and cells may be distorted. What the bonds of a zone
    * would take from a distorted cell can be more than it has: with lambda_c the largest eigenvalue
-   * of sum W_b L_b against K_c on linear fields each bond is scaled by
+   * of sum W_b L_b (x) v v^T against what bonds can carry there (of a solid k_c (dd + dd + dd), else
+   * K_c) on linear fields each bond is scaled by
    *
    *   s_b = min(1, 0.9 min over its way of 1/lambda_c),
    *
-   * and R_c = K_c + H E H^T - sum s_b W_b L_b, H orthonormal and orthogonal to linear fields, E the
-   * smallest that makes R_c positive semidefinite: the positive part of B^T A^+ B - C, with A, B, C
-   * the linear, mixed and hourglass blocks of K_c - sum s_b W_b L_b.
+   * and R_c = K_c + H E H^T - sum s_b W_b L_b (x) v v^T, H orthonormal and orthogonal to linear
+   * fields, E the smallest that makes R_c positive semidefinite: the positive part of
+   * B^T A^+ B - C, with A, B, C the linear, mixed and hourglass blocks of the rest of R_c. The law,
+   * ConductingBonds or ElasticBonds, gives v and k.
    */
-  template <int dim>
+  template <int dim, typename Law>
   class MeshExchange : public Coupling<dim>
   {
   public:
@@ -55,11 +58,12 @@ namespace PeriDeal
 
   private:
     static constexpr unsigned int n_corners = dealii::GeometryInfo<dim>::vertices_per_cell;
+    static constexpr unsigned int n_values  = Law::n_components * n_corners;
 
     /** Of a cell of this process, or of a copy of one of another. */
     struct CellState
     {
-      double lowest, highest; // conductivity
+      double lowest, highest; // k
       double strain = 0.;     // lambda_c
     };
 
@@ -71,13 +75,15 @@ namespace PeriDeal
       double       scale = 1.;
     };
 
-    void find_cells(const Scene<dim> &scene);
-    void send_cells();
-    void share_strains();
-    void find_paths(const std::vector<bool> &hanging);
-    void find_bonds();
-    void scale_bonds(const std::vector<unsigned int> &way_cells,
-                     const std::vector<std::size_t>  &way_ends);
+    void                   find_cells(const Scene<dim> &scene);
+    void                   send_cells();
+    void                   share_strains();
+    void                   find_paths(const std::vector<bool> &hanging);
+    void                   find_bonds();
+    void                   scale_bonds(const std::vector<unsigned int> &way_cells,
+                                       const std::vector<std::size_t>  &way_ends);
+    dealii::Tensor<1, dim> vector_of(const ZoneBond &bond) const; // xi
+
     bool follow(const ZoneBond &bond, std::vector<PathPiece<dim>> &way);
 
     /**
@@ -86,11 +92,11 @@ namespace PeriDeal
      */
     bool starts_at(const unsigned int one, const unsigned int other) const;
 
-    void take(const double weight, const std::vector<PathPiece<dim>> &way);
+    void take(const ZoneBond &bond, const double weight, const std::vector<PathPiece<dim>> &way);
     void find_strains();
 
     Families<dim>                                     own_families;
-    DiffusionBonds<dim>                               bonds;
+    Law                                               law;
     Zone<dim>                                         zone;
     std::vector<bool>                                 joined, may_join; // by local number of nodes
     bool                                              stays = false;    // all have joined
@@ -101,6 +107,6 @@ namespace PeriDeal
     std::unique_ptr<CellPaths<dim>>                   paths;
     std::vector<ZoneBond>                             zone_bonds;
     std::vector<std::vector<unsigned int>>            bonds_of_node; // owned
-    std::vector<std::vector<double>> taken; // of own cells, sum s W L; empty: no bond
+    std::vector<std::vector<double>>                  taken;         // of own cells; empty: no bond
   };
 } // namespace PeriDeal

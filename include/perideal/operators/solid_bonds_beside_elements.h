@@ -3,8 +3,9 @@
 
 #pragma once
 
+#include <perideal/operators/coupling.h>
 #include <perideal/operators/crack_side_factors.h>
-#include <perideal/operators/elastic_coupling.h>
+#include <perideal/operators/node_families.h>
 
 #include <memory>
 #include <vector>
@@ -28,11 +29,11 @@ namespace PeriDeal
   class SolidBondsBesideElements
   {
   public:
-    using ThermalStrain = typename ElasticCoupling<dim>::ThermalStrain;
+    using ThermalStrain = typename NodeFamilies<dim>::ThermalStrain;
 
-    explicit SolidBondsBesideElements(std::unique_ptr<ElasticCoupling<dim>> coupling);
+    explicit SolidBondsBesideElements(std::unique_ptr<Coupling<dim>> coupling);
 
-    const ElasticCoupling<dim> &coupling() const
+    const Coupling<dim> &coupling() const
     {
       return *coupled;
     }
@@ -45,6 +46,24 @@ namespace PeriDeal
     void set_cracks_of(const double time)
     {
       coupled->set_cracks_of(time);
+    }
+
+    /** NodeFamilies::mirrors(), if the coupling has families. */
+    std::vector<dealii::types::boundary_id> mirrors() const
+    {
+      return coupled->node_families() != nullptr ? coupled->node_families()->mirrors() :
+                                                   std::vector<dealii::types::boundary_id>();
+    }
+
+    /**
+     * Turn the matrix of an intact cell into what the coupling leaves of it. Returns whether
+     * anything has changed.
+     */
+    bool leave_remainder(const typename Coupling<dim>::Cell &cell,
+                         dealii::FullMatrix<double>         &stiffness) const
+    {
+      const bool changed = coupled->change_cell(cell, stiffness);
+      return coupled->finish_cell(cell, stiffness) || changed;
     }
 
     /** Owned nodes whose bonds or families may change with the cracks, in ascending order. */
@@ -83,8 +102,8 @@ namespace PeriDeal
     void add_to(CrackSideFactors::Sums &sums) const;
 
   private:
-    using Bond   = typename ElasticCoupling<dim>::Bond;
-    using Family = typename ElasticCoupling<dim>::Family;
+    using Bond   = typename Coupling<dim>::Bond;
+    using Family = typename NodeFamilies<dim>::Family;
 
     /** Memory of the functions that add. */
     struct Rows
@@ -107,9 +126,11 @@ namespace PeriDeal
                       Rows                                   &rows) const;
     double add_all(dealii::TrilinosWrappers::SparseMatrix &matrix,
                    const CrackSideFactors                 *factors) const;
-    void   unknowns_of(const Family                                 &family,
-                       std::vector<dealii::types::global_dof_index> &indices) const;
+    /** xi xi^T, of which a bond's weight is the factor. */
+    dealii::Tensor<2, dim> block_of(const unsigned int node, const Bond &bond) const;
+    void                   unknowns_of(const Family                                 &family,
+                                       std::vector<dealii::types::global_dof_index> &indices) const;
 
-    std::unique_ptr<ElasticCoupling<dim>> coupled;
+    std::unique_ptr<Coupling<dim>> coupled;
   };
 } // namespace PeriDeal

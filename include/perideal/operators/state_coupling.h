@@ -5,8 +5,8 @@
 
 #include <perideal/bonds/fictitious_extension.h>
 #include <perideal/laws/elasticity.h>
-#include <perideal/operators/elastic_coupling.h>
-#include <perideal/operators/node_weights.h>
+#include <perideal/operators/node_families.h>
+#include <perideal/operators/weighted_coupling.h>
 #include <perideal/scene/scene.h>
 
 #include <optional>
@@ -15,9 +15,7 @@
 namespace PeriDeal
 {
   /**
-   * What splice and blending of state-based peridynamics with finite elements share. Each node has
-   * a weight beta_i of peridynamics, 1 in the zone, falling linearly to 0 over the overlap outside
-   * of it. The strain energy of the family of node i is u . K_i u/2 with
+   * Splice and blending of state-based peridynamics with finite elements. The strain energy of the family of node i is u . K_i u/2 with
    *
    *   K_i = c d/(V_i q_i^2) g_i g_i^T + b/q_i sum_j W_ij M_ij M_ij^T,
    *   g_i . u = sum_j W_ij xi . (u_j - u_i),   M_ij . u = xi/x . (u_j - u_i),
@@ -32,20 +30,29 @@ namespace PeriDeal
    *
    * In one dimension there is no dilatation, and the bonds of a family are visited one by one, so
    * that rows reach one horizon and not two.
+   *
+   * With blending, since no K_i strains a rigid motion, forces and moments balance. With splice
+   * linear fields are exact where the zone with its overlap stays more than two horizons clear of
+   * the surface. The zone is that of the whole way of cracks that grow.
    */
   template <int dim>
-  class StateCoupling : public ElasticCoupling<dim>
+  class StateCoupling : public WeightedCoupling<dim>, public NodeFamilies<dim>
   {
   public:
-    using typename ElasticCoupling<dim>::Bond;
-    using typename ElasticCoupling<dim>::Cell;
-    using typename ElasticCoupling<dim>::Family;
-    using typename ElasticCoupling<dim>::ThermalStrain;
+    using typename Coupling<dim>::Bond;
+    using typename NodeFamilies<dim>::Family;
+    using typename NodeFamilies<dim>::ThermalStrain;
 
-    /** Collective. Throws UserError for a zone without nodes. */
-    StateCoupling(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone);
+    /** As WeightedCoupling. */
+    StateCoupling(Nodes<dim>                      &nodes,
+                  const Scene<dim>                &scene,
+                  const Zone<dim>                 &zone,
+                  std::unique_ptr<const Weighting> weighting);
 
-    void        bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
+    const NodeFamilies<dim> *node_families() const override;
+    void        bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override; // none
+    void        possible_neighbors_of(const unsigned int         node,
+                                      std::vector<unsigned int> &neighbors) const override; // none
     void        visit_family(const unsigned int                         node,
                              const bool                                 intact,
                              const ThermalStrain                       &strain,
@@ -54,22 +61,18 @@ namespace PeriDeal
                                       const std::function<void(const Family &)> &visit) const override;
     std::string fault_of(const unsigned int node) const override;
     std::vector<dealii::types::boundary_id> mirrors() const override;
-    bool                                    in_zone(const unsigned int node) const override;
-    const Families<dim>                    &families() const override;
-    void                                    set_cracks_of(const double time) override;
     std::size_t                             memory_consumption() const override;
 
-  protected:
+  private:
+    using WeightedCoupling<dim>::own_families;
+    using WeightedCoupling<dim>::weights_now;
+
     /** What the family of a node counts. */
-    virtual double family_weight(const unsigned int node) const = 0;
+    double family_weight(const unsigned int node) const;
 
     /** What is multiplied to the rows of a node. */
-    virtual double row_weight(const unsigned int node) const = 0;
+    double row_weight(const unsigned int node) const;
 
-    /** beta. */
-    const NodeWeights<dim> &weights() const;
-
-  private:
     struct Part
     {
       unsigned int           place = 0; // of a node in its family's list
@@ -117,55 +120,10 @@ namespace PeriDeal
                                Family                          &family);
     void        scale_rows(Family &family) const;
 
-    Families<dim>                           bonds;
-    NodeWeights<dim>                        node_weights;
     std::optional<FictitiousExtension<dim>> extension;
     std::vector<dealii::types::boundary_id> symmetry_sides; // with an extension
     std::vector<bool>                       acts; // of owned nodes: the family reaches the zone
     std::vector<StateLaw>                   laws; // of owned nodes that act
   };
 
-
-  /**
-   * Energy blending (as the Arlequin method and its kin): sum_i beta_i K_i plus (1 - mean of beta
-   * at the vertices) K_c for each cell. Symmetric and positive semidefinite, and since no K_i
-   * strains a rigid motion, forces and moments balance; but linear fields are not exact where beta
-   * changes.
-   */
-  template <int dim>
-  class StateBlending : public StateCoupling<dim>
-  {
-  public:
-    using StateCoupling<dim>::StateCoupling;
-    using typename ElasticCoupling<dim>::Cell;
-
-    bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
-    bool symmetric() const override;
-
-  protected:
-    double family_weight(const unsigned int node) const override;
-    double row_weight(const unsigned int node) const override;
-  };
-
-
-  /**
-   * Splice: the rows of each node are beta_i times those of peridynamics, plus 1 - beta_i times
-   * those of finite elements. Linear fields are exact where the zone with its overlap stays more
-   * than two horizons clear of the surface; but K is not symmetric, and forces do not balance where
-   * the zone ends.
-   */
-  template <int dim>
-  class StateSplice : public StateCoupling<dim>
-  {
-  public:
-    using StateCoupling<dim>::StateCoupling;
-    using typename ElasticCoupling<dim>::Cell;
-
-    bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
-    bool symmetric() const override;
-
-  protected:
-    double family_weight(const unsigned int node) const override;
-    double row_weight(const unsigned int node) const override;
-  };
 } // namespace PeriDeal

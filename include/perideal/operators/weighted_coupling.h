@@ -7,28 +7,75 @@
 #include <perideal/operators/node_weights.h>
 #include <perideal/scene/scene.h>
 
+#include <memory>
 #include <vector>
 
 namespace PeriDeal
 {
   /**
-   * What splice and blending share: each node has a weight b_i of peridynamics, 1 in the zone,
-   * falling linearly to 0 over the overlap outside of it. Nodes with b > 0 have whole families, cut
-   * off at the surface of the body.
+   * What splice and blending make of the weight beta of peridynamics at a node: a factor of the
+   * energy of its family, and one of its row. A bond belongs to the families of both of its ends in
+   * equal parts.
+   */
+  class Weighting
+  {
+  public:
+    virtual ~Weighting() = default;
+
+    virtual double of_family(const double beta) const = 0;
+    virtual double of_row(const double beta) const    = 0;
+
+    /** What finite elements keep of a cell with that mean of beta. */
+    virtual double of_cell(const double mean) const = 0;
+
+    /** What they keep of the row of a node. */
+    virtual double of_cell_row(const double beta) const = 0;
+
+    /** What comes of symmetric matrices is symmetric. */
+    virtual bool symmetric() const = 0;
+
+    /** Of a bond in the row of its first end. */
+    double of_bond(const double own, const double neighbor) const
+    {
+      return of_row(own) * 0.5 * (of_family(own) + of_family(neighbor));
+    }
+  };
+
+  /** Of `blending` or `splice`. */
+  std::unique_ptr<const Weighting> make_weighting(const CouplingScheme scheme);
+
+
+  /**
+   * What splice and blending share, whatever diffuses or deforms: each node has a weight beta_i of
+   * peridynamics, 1 in the zone, falling linearly to 0 over the overlap outside of it. Nodes with
+   * beta > 0 have whole families, cut off at the surface of the body.
+   *
+   * Energy blending (as the Arlequin method and its kin) weighs both energies: families by beta,
+   * cells by 1 - beta (mean of the vertices). K is symmetric and positive semidefinite, but linear
+   * fields are not exact where beta changes. Splice weighs rows: those of peridynamics by beta, of
+   * finite elements by 1 - beta. Linear fields are exact where families are whole (for what
+   * diffuses quadratic ones, too), but K is not symmetric, and heat is not conserved, forces do not
+   * balance, where beta changes.
    */
   template <int dim>
   class WeightedCoupling : public Coupling<dim>
   {
   public:
-    using typename Coupling<dim>::Bond;
     using typename Coupling<dim>::Cell;
 
-    /** Collective. Throws UserError for a zone without nodes. */
-    WeightedCoupling(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone);
+    /**
+     * Collective. Throws UserError for a zone without nodes.
+     * @param whole_way the zone around cracks that grow is that of their whole way from the start
+     */
+    WeightedCoupling(Nodes<dim>                      &nodes,
+                     const Scene<dim>                &scene,
+                     const Zone<dim>                 &zone,
+                     std::unique_ptr<const Weighting> weighting,
+                     const bool                       whole_way);
 
-    void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
-    void possible_neighbors_of(const unsigned int         node,
-                               std::vector<unsigned int> &neighbors) const override;
+    bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
+    bool finish_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
+    bool symmetric() const override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
     void                                  set_cracks_of(const double time) override;
     bool                                  in_zone(const unsigned int node) const override;
@@ -36,57 +83,13 @@ namespace PeriDeal
     std::size_t                           memory_consumption() const override;
 
   protected:
-    /** What a bond counts, for the row of a node. */
-    virtual double bond_weight(const double own, const double neighbor) const = 0;
-
-    const NodeWeights<dim> &weights() const;
+    Families<dim>                          own_families;
+    const double                           overlap; // a length
+    const std::unique_ptr<const Weighting> weighting;
+    NodeWeights<dim>                       weights_now, weights_at_end;
 
   private:
-    Families<dim>       own_families;
-    DiffusionBonds<dim> bonds;
-    Zone<dim>           zone;
-    double              overlap; // a length
-    NodeWeights<dim>    weights_now, weights_at_end;
-  };
-
-
-  /**
-   * Energy blending: both energies, weighted. W_ij (b_i + b_j)/2 for each bond, 1 - b (mean of the
-   * vertices) times K_c for each cell. Symmetric and positive semidefinite, but a linear field is
-   * not exact where b changes.
-   */
-  template <int dim>
-  class Blending : public WeightedCoupling<dim>
-  {
-  public:
-    using WeightedCoupling<dim>::WeightedCoupling;
-    using typename Coupling<dim>::Cell;
-
-    bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
-    bool symmetric() const override;
-
-  protected:
-    double bond_weight(const double own, const double neighbor) const override;
-  };
-
-
-  /**
-   * Splice: the row of each node is b_i times its row of peridynamics, plus 1 - b_i times that of
-   * finite elements. Linear and quadratic fields are exact, but K is not symmetric and heat is not
-   * conserved where b changes.
-   */
-  template <int dim>
-  class Splice : public WeightedCoupling<dim>
-  {
-  public:
-    using WeightedCoupling<dim>::WeightedCoupling;
-    using typename Coupling<dim>::Cell;
-
-    bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
-    void finish_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
-    bool symmetric() const override;
-
-  protected:
-    double bond_weight(const double own, const double neighbor) const override;
+    Zone<dim>  zone;
+    const bool follows; // cracks, as they grow
   };
 } // namespace PeriDeal
