@@ -107,12 +107,12 @@ namespace PeriDeal
 
     /**
      * Move on to the cracks of that representative time (CrackHistory), and the zone with them. A
-     * bond's strength follows from the cracks as they are then, their whole way included: bonds that
-     * join find themselves broken where a crack has passed before.
+     * bond's strength follows from the cracks as they are then, their whole way included: bonds
+     * that join find themselves broken where a crack has passed before.
      */
     virtual void set_cracks_of(const double time) = 0;
 
-    /** Part of the bonds' strength that distorted cells leave them. Collective. */
+    /** Part of the bonds' strength that distorted cells leave. Collective. */
     virtual double kept_share() const
     {
       return 1.;

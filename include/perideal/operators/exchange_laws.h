@@ -146,16 +146,16 @@ namespace PeriDeal
     static std::vector<dealii::Tensor<2, dim>> unit_fields();
 
     /**
-     * Calibrates the bonds of a lattice: w is the influence function kernel/r^n times the volume fraction over r^2, times sum_{a <= b}
-     * s_ab xi_a^2 xi_b^2/r^4 with the s for which the sum above holds. With M = sum over the full
-     * family of w V^2 share L (x) xi xi^T and Q the cell matrix of the stiffness dd + dd + dd, a
-     * cell gets M - Q in one and two dimensions, where M = Q on linear fields, and what is left of
-     * it is positive semidefinite. In three dimensions the pieces of a bond in one cell also push
-     * the corners in the mode x y z, which only the cells around a node together take back: M has a
-     * block B between linear fields and the others. Bonds then get the part eta = 0.95 of k, and a
-     * cell eta (M - Q) + eta^2/(1 - eta) B^T Q^+ B on the others, which again leaves it positive
-     * semidefinite (Schur complement). Throws UserError for families too small and for cells too
-     * long to calibrate.
+     * Calibrates the bonds of a lattice: w is the influence function kernel/r^n times the volume
+     * fraction over r^2, times sum_{a <= b} s_ab xi_a^2 xi_b^2/r^4 with the s for which the sum
+     * above holds. With M = sum over the full family of w V^2 share L (x) xi xi^T and Q the cell
+     * matrix of the stiffness dd + dd + dd, a cell gets M - Q in one and two dimensions, where M =
+     * Q on linear fields, and what is left of it is positive semidefinite. In three dimensions the
+     * pieces of a bond in one cell also push the corners in the mode x y z, which only the cells
+     * around a node together take back: M has a block B between linear fields and the others. Bonds
+     * then get the part eta = 0.95 of k, and a cell eta (M - Q) + eta^2/(1 - eta) B^T Q^+ B on the
+     * others, which again leaves it positive semidefinite (Schur complement). Throws UserError for
+     * families too small and for cells too long to calibrate.
      */
     static CellSurplus calibrate(LatticeBonds<dim> &bonds);
 

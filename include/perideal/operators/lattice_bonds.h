@@ -16,7 +16,7 @@
 
 namespace PeriDeal
 {
-  /** What carries bonds: the stiffness at a place in the body, the conductivity where heat flows. */
+  /** What bonds follow: the stiffness at a place in the body, or the conductivity. */
   template <int dim>
   struct CellStiffness
   {

@@ -18,8 +18,8 @@ namespace PeriDeal
    * Bondwise exchange on any mesh of quadrilaterals or hexahedra (doc/coupling.md): each bond is
    * followed through the cells on its way, and cells may be distorted. What the bonds of a zone
    * would take from a distorted cell can be more than it has: with lambda_c the largest eigenvalue
-   * of sum W_b L_b (x) v v^T against what bonds can carry there (of a solid k_c (dd + dd + dd), else
-   * K_c) on linear fields each bond is scaled by
+   * of sum W_b L_b (x) v v^T against what bonds can carry there (of a solid k_c (dd + dd + dd),
+   * else K_c) on linear fields each bond is scaled by
    *
    *   s_b = min(1, 0.9 min over its way of 1/lambda_c),
    *

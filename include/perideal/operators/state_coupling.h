@@ -15,7 +15,8 @@
 namespace PeriDeal
 {
   /**
-   * Splice and blending of state-based peridynamics with finite elements. The strain energy of the family of node i is u . K_i u/2 with
+   * Splice and blending of state-based peridynamics with finite elements. The strain energy of the
+   * family of node i is u . K_i u/2 with
    *
    *   K_i = c d/(V_i q_i^2) g_i g_i^T + b/q_i sum_j W_ij M_ij M_ij^T,
    *   g_i . u = sum_j W_ij xi . (u_j - u_i),   M_ij . u = xi/x . (u_j - u_i),
