@@ -76,18 +76,22 @@ namespace
   };
 
 
-  /** The square's material, a quarter of a body by symmetry, with families of three spacings. */
-  void describe_square(PeriDeal::Scene<2> &scene)
+  enum Side // deal.II's numbers
   {
-    scene.general.set("Physics", "elasticity");
-    scene.domain.set("Lower corner", "0, 0");
-    scene.domain.set("Upper corner", "1, 1");
-    scene.domain.set("Cells", "32, 32");
-    scene.material.set("Young modulus", std::to_string(young));
-    scene.material.set("Poisson ratio", std::to_string(poisson));
-    scene.elasticity.set("Plane", "stress");
-    scene.boundary_conditions.set("Symmetry", "left, bottom");
-    scene.peridynamics.set("Horizon ratio", "3");
+    left,
+    right,
+    bottom,
+    top
+  };
+
+
+  /** The square's material, with families of three spacings. */
+  void describe_square(PeriDeal::SolidParameters<2> &body)
+  {
+    body.set_box({0., 0.}, {1., 1.}, {{32, 32}});
+    body.material.set_moduli(PeriDeal::Modulus::young, young, PeriDeal::Modulus::poisson, poisson);
+    body.elasticity.plane           = PeriDeal::PlaneState::stress;
+    body.peridynamics.horizon_ratio = 3.;
   }
 
 
@@ -146,19 +150,16 @@ namespace
 
   void tension(Square &square, Checks &checks)
   {
-    PeriDeal::Scene<2> scene;
-    describe_square(scene);
-    scene.boundary_conditions.set("Traction", "right: " + std::to_string(pull) + ", 0");
-    scene.parse_and_validate();
+    PeriDeal::SolidParameters<2> body;
+    describe_square(body);
+    body.boundary_conditions.symmetry = {left, bottom}; // a quarter of a larger body
+    body.boundary_conditions.pull(right, {pull, 0.});
 
-    PeriDeal::Nodes<2>         nodes(square.dofs,
-                             scene.domain,
-                             scene.cracks,
-                             scene.peridynamics.nodal_volume);
-    PeriDeal::StateOperator<2> bonds(nodes, scene);
+    PeriDeal::Nodes<2>         nodes(square.dofs, body);
+    PeriDeal::StateOperator<2> bonds(nodes, body);
     // The default strengthens bonds at the surface; with three spacings a per cent is left.
     check_tension("peridynamics", bonds, 0.02, checks);
-    PeriDeal::ElasticElements<2> elements(square.dofs, scene);
+    PeriDeal::ElasticElements<2> elements(square.dofs, body);
     check_tension("finite elements", elements, 1e-9, checks);
   }
 
@@ -166,18 +167,12 @@ namespace
   /** A free body that swings keeps its energy; what it loses by a step is of round-off. */
   void motion(Square &square, Checks &checks)
   {
-    PeriDeal::Scene<2> scene;
-    describe_square(scene);
-    scene.boundary_conditions.set("Symmetry", "");
-    scene.elasticity.set("Solver", "dynamics");
-    scene.material.set("Density", "1.0");
-    scene.parse_and_validate();
+    PeriDeal::SolidParameters<2> body;
+    describe_square(body);
+    body.elasticity.solver = PeriDeal::ElasticSolver::dynamics; // its density is 1
 
-    PeriDeal::Nodes<2>         nodes(square.dofs,
-                             scene.domain,
-                             scene.cracks,
-                             scene.peridynamics.nodal_volume);
-    PeriDeal::StateOperator<2> bonds(nodes, scene);
+    PeriDeal::Nodes<2>         nodes(square.dofs, body);
+    PeriDeal::StateOperator<2> bonds(nodes, body);
     Vector                     u, v;
     bonds.initialize_vector(u);
     bonds.initialize_vector(v);
@@ -198,20 +193,20 @@ namespace
   /** A crack that grows sets energy free; in both models about the same. */
   void growth(Square &square, Checks &checks)
   {
-    PeriDeal::Scene<2> scene;
-    describe_square(scene);
-    scene.boundary_conditions.set("Symmetry", "");
-    scene.boundary_conditions.set("Displacement", "bottom: 0, -0.01 ; top: 0, 0.01");
-    scene.cracks.set("Segments", "-0.1,0.515625 ; 0.25,0.515625");
-    scene.cracks.set("Growth", "2: 0, 0.25,0");
-    scene.parse_and_validate();
+    PeriDeal::SolidParameters<2> body;
+    describe_square(body);
+    body.boundary_conditions.displace(bottom, {0., -0.01});
+    body.boundary_conditions.displace(top, {0., 0.01});
+    body.cracks.cracks = {{{-0.1, 0.515625}, {0.25, 0.515625}}};
+    body.cracks.let_grow(0,
+                         1,
+                         Tensor<1, 2>({0.25, 0.}),
+                         0.,
+                         1.); // its second end, to the right until t = 1
 
-    PeriDeal::Nodes<2>           nodes(square.dofs,
-                             scene.domain,
-                             scene.cracks,
-                             scene.peridynamics.nodal_volume);
-    PeriDeal::StateOperator<2>   bonds(nodes, scene);
-    PeriDeal::ElasticElements<2> elements(square.dofs, scene);
+    PeriDeal::Nodes<2>           nodes(square.dofs, body);
+    PeriDeal::StateOperator<2>   bonds(nodes, body);
+    PeriDeal::ElasticElements<2> elements(square.dofs, body);
     const auto                   lost = [&](PeriDeal::SolidOperator<2> &op) {
       const Vector before = equilibrium(op);
       const double energy = op.energy(before);
@@ -236,18 +231,18 @@ int main(int argc, char **argv)
   Checks                           checks(MPI_COMM_WORLD);
   try
     {
-      Square             square(MPI_COMM_WORLD);
-      PeriDeal::Scene<2> scene;
-      describe_square(scene);
-      scene.parse_and_validate();
+      Square square(MPI_COMM_WORLD);
       // Dofs in the order of the lattice make bonds fast; they are right in any order.
-      PeriDeal::number_along_lattice(square.dofs, scene.domain);
+      PeriDeal::SolidParameters<2> body;
+      describe_square(body);
+      PeriDeal::number_along_lattice(square.dofs, body.domain);
 
       tension(square, checks);
       motion(square, checks);
       growth(square, checks);
     }
-  catch (const PeriDeal::UserError &error) // something in a scene is wrong: a sentence for the user
+  catch (
+    const PeriDeal::UserError &error) // something of the body is wrong: a sentence for the user
     {
       checks.out << error.message() << std::endl;
       return 1;

@@ -77,15 +77,13 @@ namespace
   };
 
 
-  /** What PeriDeal has to know of the square; entries and values are those of a scene file. */
-  void describe_square(PeriDeal::Scene<2> &scene)
+  /** What PeriDeal has to know of the square. All else is as in a scene that does not tell. */
+  void describe_square(PeriDeal::HeatParameters<2> &body)
   {
-    scene.domain.set("Lower corner", "0, 0");
-    scene.domain.set("Upper corner", "1, 1");
-    scene.domain.set("Cells", std::to_string(n_cells) + ", " + std::to_string(n_cells));
-    scene.material.set("Conductivity", std::to_string(conductivity));
-    scene.material.set("Density", std::to_string(storage));
-    scene.peridynamics.set("Horizon ratio", "4");
+    body.set_box({0., 0.}, {1., 1.}, {{n_cells, n_cells}});
+    body.material.conductivity      = conductivity;
+    body.material.density           = storage; // the heat capacity is 1
+    body.peridynamics.horizon_ratio = 4.;
   }
 
 
@@ -112,15 +110,10 @@ namespace
   /** In the interior, K u = -kappa V Laplacian(u) holds exactly for a quadratic polynomial. */
   void apply_operator(Square &square, Checks &checks)
   {
-    PeriDeal::Scene<2> scene;
-    describe_square(scene);
-    scene.parse_and_validate();
-
-    PeriDeal::Nodes<2>        nodes(square.dofs,
-                             scene.domain,
-                             scene.cracks,
-                             scene.peridynamics.nodal_volume);
-    PeriDeal::BondOperator<2> bonds(nodes, scene);
+    PeriDeal::HeatParameters<2> body;
+    describe_square(body);
+    PeriDeal::Nodes<2>        nodes(square.dofs, body);
+    PeriDeal::BondOperator<2> bonds(nodes, body);
     checks.out << "Apply: " << bonds.size().unknowns << " dofs, " << bonds.size().bonds
                << " bonds, " << bonds.form_note() << std::endl;
 
@@ -163,17 +156,13 @@ namespace
    */
   void decay_of_a_harmonic(Square &square, Checks &checks)
   {
-    PeriDeal::Scene<2> scene;
-    describe_square(scene);
-    scene.boundary_conditions.set("Dirichlet", "left: 0; right: 0; bottom: 0; top: 0");
-    scene.peridynamics.set("Boundary treatment", "fictitious mirror");
-    scene.parse_and_validate();
-
-    PeriDeal::Nodes<2>        nodes(square.dofs,
-                             scene.domain,
-                             scene.cracks,
-                             scene.peridynamics.nodal_volume);
-    PeriDeal::BondOperator<2> bonds(nodes, scene);
+    PeriDeal::HeatParameters<2> body;
+    describe_square(body);
+    for (unsigned int side = 0; side < 4; ++side)
+      body.boundary_conditions.prescribe(side, 0.);
+    body.peridynamics.treatment = PeriDeal::BoundaryTreatment::fictitious_mirror;
+    PeriDeal::Nodes<2>        nodes(square.dofs, body);
+    PeriDeal::BondOperator<2> bonds(nodes, body);
     const auto terms = PeriDeal::lattice_terms<2>(bonds.diffusion_bonds().weights().members(),
                                                   nodes.lattice()->spacing,
                                                   conductivity);
@@ -220,17 +209,13 @@ namespace
   /** A linear field between a cold and a hot side is the exact steady state. */
   void steady_state(Square &square, Checks &checks)
   {
-    PeriDeal::Scene<2> scene;
-    describe_square(scene);
-    scene.boundary_conditions.set("Dirichlet", "left: 0; right: 10");
-    scene.peridynamics.set("Boundary treatment", "fictitious mirror");
-    scene.parse_and_validate();
-
-    PeriDeal::Nodes<2>        nodes(square.dofs,
-                             scene.domain,
-                             scene.cracks,
-                             scene.peridynamics.nodal_volume);
-    PeriDeal::BondOperator<2> bonds(nodes, scene);
+    PeriDeal::HeatParameters<2> body;
+    describe_square(body);
+    body.boundary_conditions.prescribe(0, 0.);
+    body.boundary_conditions.prescribe(1, 10.);
+    body.peridynamics.treatment = PeriDeal::BoundaryTreatment::fictitious_mirror;
+    PeriDeal::Nodes<2>        nodes(square.dofs, body);
+    PeriDeal::BondOperator<2> bonds(nodes, body);
     Vector                    u, expected;
     bonds.initialize_vector(u);
     bonds.initialize_vector(expected);
@@ -256,16 +241,17 @@ namespace
     const FE_Q<2> element(1);
     dofs.distribute_dofs(element);
 
-    PeriDeal::Scene<2> scene;
-    scene.domain.use_own_mesh();
-    scene.material.set("Conductivity", "1 + x^2");
-    scene.initial_and_source.set("Source", "5");
-    scene.boundary_conditions.set("Dirichlet", "0: x*y"); // by boundary id
-    scene.peridynamics.set("Horizon", "0.12");
-    scene.parse_and_validate();
+    const auto of_place = [](const std::function<double(const Point<3> &)> &f) {
+      return PeriDeal::Expression([f](const Point<3> &p, const double) { return f(p); }, false);
+    };
+    PeriDeal::HeatParameters<2> body;
+    body.set_own_mesh(0.12); // the horizon
+    body.material.conductivity     = of_place([](const Point<3> &p) { return 1. + p[0] * p[0]; });
+    body.initial_and_source.source = 5.;
+    body.boundary_conditions.prescribe(0, of_place([](const Point<3> &p) { return p[0] * p[1]; }));
 
-    PeriDeal::Nodes<2> nodes(dofs, scene.domain, scene.cracks, scene.peridynamics.nodal_volume);
-    PeriDeal::BondOperator<2> bonds(nodes, scene);
+    PeriDeal::Nodes<2>        nodes(dofs, body);
+    PeriDeal::BondOperator<2> bonds(nodes, body);
     Vector                    u;
     bonds.initialize_vector(u);
     PeriDeal::solve_steady(bonds, u, 0., 1e-12, 200);
@@ -286,17 +272,17 @@ int main(int argc, char **argv)
     {
       Square square(MPI_COMM_WORLD);
       // Dofs in the order of the lattice make the lattice form fast; it is right in any order.
-      PeriDeal::Scene<2> scene;
-      describe_square(scene);
-      scene.parse_and_validate();
-      PeriDeal::number_along_lattice(square.dofs, scene.domain);
+      PeriDeal::HeatParameters<2> body;
+      describe_square(body);
+      PeriDeal::number_along_lattice(square.dofs, body.domain);
 
       apply_operator(square, checks);
       decay_of_a_harmonic(square, checks);
       steady_state(square, checks);
       disc(MPI_COMM_WORLD, checks);
     }
-  catch (const PeriDeal::UserError &error) // something in a scene is wrong: a sentence for the user
+  catch (
+    const PeriDeal::UserError &error) // something of the body is wrong: a sentence for the user
     {
       checks.out << error.message() << std::endl;
       return 1;

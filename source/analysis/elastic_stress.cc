@@ -10,7 +10,7 @@ namespace PeriDeal
 
   template <int dim>
   SymmetricTensor<2, 3> full_stress(const SymmetricTensor<2, dim> &stress,
-                                    const Scene<dim>              &scene,
+                                    const BodyParameters<dim>     &body,
                                     const Point<dim>              &p,
                                     const double                   temperature_change)
   {
@@ -19,25 +19,25 @@ namespace PeriDeal
       for (unsigned int b = a; b < dim; ++b)
         full[a][b] = stress[a][b];
     if constexpr (dim == 2)
-      full[2][2] = stress_zz(scene.material.moduli(p),
-                             scene.elasticity.plane,
+      full[2][2] = stress_zz(body.material.moduli(p),
+                             body.elasticity.plane,
                              stress,
-                             scene.material.thermal_expansion.value(p) * temperature_change);
+                             body.material.thermal_expansion.value(p) * temperature_change);
     return full;
   }
 
 
   template <int dim>
   SymmetricTensor<2, 3> stress_of_strain(const SymmetricTensor<2, dim> &strain,
-                                         const Scene<dim>              &scene,
+                                         const BodyParameters<dim>     &body,
                                          const Point<dim>              &p,
                                          const double                   temperature_change)
   {
-    return full_stress(stress(scene.material.moduli(p),
-                              scene.elasticity.plane,
+    return full_stress(stress(body.material.moduli(p),
+                              body.elasticity.plane,
                               strain,
-                              scene.material.thermal_expansion.value(p) * temperature_change),
-                       scene,
+                              body.material.thermal_expansion.value(p) * temperature_change),
+                       body,
                        p,
                        temperature_change);
   }
@@ -45,11 +45,11 @@ namespace PeriDeal
 
 #define PERIDEAL_INSTANTIATE(dim)                                                  \
   template SymmetricTensor<2, 3> full_stress(const SymmetricTensor<2, dim> &,      \
-                                             const Scene<dim> &,                   \
+                                             const BodyParameters<dim> &,          \
                                              const Point<dim> &,                   \
                                              const double);                        \
   template SymmetricTensor<2, 3> stress_of_strain(const SymmetricTensor<2, dim> &, \
-                                                  const Scene<dim> &,              \
+                                                  const BodyParameters<dim> &,     \
                                                   const Point<dim> &,              \
                                                   const double);
   PERIDEAL_INSTANTIATE(1)

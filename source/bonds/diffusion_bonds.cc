@@ -8,12 +8,12 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  DiffusionBonds<dim>::DiffusionBonds(Families<dim> &families, const Scene<dim> &scene)
+  DiffusionBonds<dim>::DiffusionBonds(Families<dim> &families, const BodyParameters<dim> &body)
     : own_families(families)
     , topology(families.neighbors())
-    , material(topology, scene.material, scene.initial_and_source.initial_value)
+    , material(topology, body.material, body.initial_and_source.initial_value)
     , node_factors(topology)
-    , corrects_all(scene.peridynamics.surface_correction == SurfaceCorrection::energy)
+    , corrects_all(body.peridynamics.surface_correction == SurfaceCorrection::energy)
   {}
 
 

@@ -23,13 +23,12 @@ namespace PeriDeal
      * ones are cut there.
      */
     template <int dim>
-    bool cuts_at_tips(const Scene<dim> &scene, const HaloAround halo)
+    bool cuts_at_tips(const BodyParameters<dim> &body, const HaloAround halo)
     {
-      if (scene.general.physics == Physics::elasticity &&
-          scene.cracks.through_tips == ThroughTips::automatic)
-        return halo == HaloAround::nodes || scene.coupling.scheme != CouplingScheme::exchange ||
-               scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling;
-      return scene.cracks.cuts_bonds_at_tips(scene.peridynamics.surface_correction);
+      if (body.deforms && body.cracks.through_tips == ThroughTips::automatic)
+        return halo == HaloAround::nodes || body.coupling.scheme != CouplingScheme::exchange ||
+               body.peridynamics.surface_correction == SurfaceCorrection::crack_scaling;
+      return body.cracks.cuts_bonds_at_tips(body.peridynamics.surface_correction);
     }
 
 
@@ -49,51 +48,50 @@ namespace PeriDeal
 
 
     template <int dim>
-    double halo_reach(const Nodes<dim> &nodes, const Scene<dim> &scene, const double reach)
+    double halo_reach(const Nodes<dim> &nodes, const BodyParameters<dim> &body, const double reach)
     {
       // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away
       // than any bond.
-      const double layer = scene.peridynamics.flux_treatment == FluxTreatment::layer_extrapolation ?
-                             scene.horizon() + 0.5 * nodes.smallest_spacing() :
-                             0.;
-      const double images = completes_mesh(scene) ? halo_of_images(reach) : 0.;
+      const double layer  = body.peridynamics.flux_treatment == FluxTreatment::layer_extrapolation ?
+                              body.horizon() + 0.5 * nodes.smallest_spacing() :
+                              0.;
+      const double images = completes_mesh(body) ? halo_of_images(reach) : 0.;
       return std::max({reach, layer, images});
     }
   } // namespace
 
 
   template <int dim>
-  Families<dim>::Families(Nodes<dim>       &nodes,
-                          const Scene<dim> &scene,
-                          const HaloAround  halo,
-                          const HasBonds   &has_bonds)
-    : of_bonds(kernel_parameters(scene.peridynamics, scene.horizon()),
+  Families<dim>::Families(Nodes<dim>                &nodes,
+                          const BodyParameters<dim> &body,
+                          const HaloAround           halo,
+                          const HasBonds            &has_bonds)
+    : of_bonds(kernel_parameters(body.peridynamics, body.horizon()),
                lattice_spacing(nodes),
                nodes.smallest_spacing())
-    , topology(nodes, of_bonds, halo_reach(nodes, scene, of_bonds.reach()), halo)
+    , topology(nodes, of_bonds, halo_reach(nodes, body, of_bonds.reach()), halo)
     , crack_set(topology,
-                scene.crack_history(),
-                cuts_at_tips(scene, halo),
-                scene.cracks.contact_conductance,
-                scene.peridynamics.across_voids == BondsAcrossVoids::cut &&
-                    scene.domain.has_voids() ?
-                  &scene.domain :
+                body.crack_history(),
+                cuts_at_tips(body, halo),
+                body.cracks.contact_conductance,
+                body.peridynamics.across_voids == BondsAcrossVoids::cut && body.domain.has_voids() ?
+                  &body.domain :
                   nullptr)
   {
     const bool unique = topology.has_unique_sites();
     // A symmetry plane of an elastic body holds its nodes, and families end at it.
-    const bool mirrors = scene.general.physics != Physics::elasticity;
+    const bool mirrors = !body.deforms;
     AssertThrow(
-      unique || scene.boundary_conditions.symmetry.empty() || !mirrors,
+      unique || body.boundary_conditions.symmetry.empty() || !mirrors,
       UserError(
         "'Symmetry' in section 'Boundary conditions' needs the lattice of a box without doubled nodes."));
     std::vector<FictitiousNode<dim>> outside;
     // Beside finite elements a symmetry side is an insulated one, and that exactly.
     if (halo == HaloAround::nodes && mirrors)
       outside = make_fictitious_nodes(nodes,
-                                      scene.boundary_conditions,
-                                      scene.peridynamics.treatment,
-                                      scene.peridynamics.nodal_volume,
+                                      body.boundary_conditions,
+                                      body.peridynamics.treatment,
+                                      body.peridynamics.nodal_volume,
                                       of_bonds.reach_in_sites());
     // Some processes may have none.
     AssertThrow(

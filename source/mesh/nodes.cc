@@ -10,6 +10,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/mesh/nodes.h>
+#include <perideal/scene/body_parameters.h>
 #include <perideal/scene/crack_geometry.h>
 
 #include <algorithm>
@@ -97,6 +98,12 @@ namespace PeriDeal
       return p;
     }
   } // namespace
+
+
+  template <int dim>
+  Nodes<dim>::Nodes(const DoFHandler<dim> &dof_handler, const BodyParameters<dim> &body)
+    : Nodes(dof_handler, body.domain, body.cracks, body.peridynamics.nodal_volume)
+  {}
 
 
   template <int dim>

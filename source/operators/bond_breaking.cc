@@ -97,12 +97,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  BondBreaking<dim>::BondBreaking(SolidBonds<dim>       &bonds,
-                                  const SolidLoads<dim> &loads,
-                                  const Scene<dim>      &scene)
+  BondBreaking<dim>::BondBreaking(SolidBonds<dim>           &bonds,
+                                  const SolidLoads<dim>     &loads,
+                                  const BodyParameters<dim> &body)
     : bonds(bonds)
-    , scene(scene)
-    , breaks(scene.material.fracture_energy || scene.material.critical_stretch)
+    , body(body)
+    , breaks(body.material.fracture_energy || body.material.critical_stretch)
     , changes(breaks || bonds.families.cracks().history().changes_ever())
   {
     if (changes)
@@ -117,7 +117,7 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::find_critical_stretches()
   {
-    const Material    &material   = scene.material;
+    const Material    &material   = body.material;
     const Nodes<dim>  &nodes      = bonds.families.nodes();
     const bool         converts   = !material.critical_stretch;
     const CrossingSums of_lattice = converts && nodes.lattice() ? crossing_sums(bonds.families) :
@@ -201,7 +201,7 @@ namespace PeriDeal
       return;
     const bool        is_first = places.first.empty();
     const Nodes<dim> &nodes    = bonds.families.nodes();
-    const auto       &list     = scene.boundary_conditions.traction;
+    const auto       &list     = body.boundary_conditions.traction;
     // Ends of bonds beside each side, and of those elsewhere.
     std::vector<double>                        n_ends(list.size() + 1, 0.), all(n_ends);
     std::vector<std::pair<double, Point<dim>>> broken; // stretch over the critical one, middle

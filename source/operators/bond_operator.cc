@@ -17,20 +17,20 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  BondOperator<dim>::BondOperator(Nodes<dim> &nodes, const Scene<dim> &scene)
-    : DiffusionOperatorBase<dim>(scene,
+  BondOperator<dim>::BondOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body)
+    : DiffusionOperatorBase<dim>(body,
                                  0.,
                                  nullptr,
                                  [this](Vector &vector) {
                                    for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
                                      vector.local_element(i) = position_noise(position(i));
                                  })
-    , families(nodes.find_parts(scene.boundary_conditions), scene)
-    , bonds(families, scene)
-    , constraints(bonds, scene)
-    , loads(nodes, constraints, scene)
+    , families(nodes.find_parts(body.boundary_conditions), body)
+    , bonds(families, body)
+    , constraints(bonds, body)
+    , loads(nodes, constraints, body)
     , outside(bonds)
-    , factors(bonds, scene.peridynamics)
+    , factors(bonds, body.peridynamics)
   {
     this->set_layout(nodes.partitioner());
     if (constraints.any_slave())
@@ -38,7 +38,7 @@ namespace PeriDeal
     find_capacity(nullptr);
     if (factors.any())
       factors.find(factors.nodes());
-    choose_form(scene.peridynamics.form);
+    choose_form(body.peridynamics.form);
     find_diagonal();
   }
 
@@ -61,7 +61,7 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes = bonds.nodes();
     std::string       message;
-    if (scene.time.steady) // it only sets a scale then
+    if (body.steady) // it only sets a scale then
       {
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
           capacity.local_element(i) = nodes.volume(i);
@@ -71,8 +71,8 @@ namespace PeriDeal
       {
         const double T       = u != nullptr ?
                                  u->local_element(i) :
-                                 scene.initial_and_source.initial_value.value(nodes.position(i));
-        const double storage = scene.material.storage(nodes.position(i), T);
+                                 body.initial_and_source.initial_value.value(nodes.position(i));
+        const double storage = body.material.storage(nodes.position(i), T);
         if (!(storage > 0.) && message.empty())
           message =
             "'Density' times 'Heat capacity' in section 'Material' is " + std::to_string(storage) +
@@ -193,8 +193,8 @@ namespace PeriDeal
   template <int dim>
   bool BondOperator<dim>::has_steady_state() const
   {
-    return constraints.any_prescribed() || !scene.boundary_conditions.convection.empty() ||
-           !scene.boundary_conditions.dirichlet.empty();
+    return constraints.any_prescribed() || !body.boundary_conditions.convection.empty() ||
+           !body.boundary_conditions.dirichlet.empty();
   }
 
 
@@ -211,7 +211,7 @@ namespace PeriDeal
         factors.find(rows);
         rows = bonds.neighbors().nodes_near(change.cuts, 2. * bonds.weights().reach());
       }
-    constraints.update(bonds, scene);
+    constraints.update(bonds, body);
     form->update_rows(rows, stiffness_diagonal.begin());
     outside.update(rows);
     throw_if_isolated(rows);
@@ -233,7 +233,7 @@ namespace PeriDeal
     const Nodes<dim> &nodes = bonds.nodes();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       y.local_element(i) = this->capacity_depends_on_solution() ?
-                             nodes.volume(i) * heat_between_temperatures(scene.material,
+                             nodes.volume(i) * heat_between_temperatures(body.material,
                                                                          nodes.position(i),
                                                                          u.local_element(i),
                                                                          v.local_element(i)) :
@@ -247,7 +247,7 @@ namespace PeriDeal
     // What a contact conductance lets through depends on the bond's conductivity, and so does
     // crack-side scaling.
     const bool scaled = factors.any() && !bonds.corrects_every_bond();
-    if (scene.cracks.cracks.empty() || !(scaled || scene.cracks.contact_conductance > 0.))
+    if (body.cracks.cracks.empty() || !(scaled || body.cracks.contact_conductance > 0.))
       return;
     if (scaled)
       factors.find(factors.nodes());
@@ -266,7 +266,7 @@ namespace PeriDeal
       return;
     if (this->capacity_depends_on_solution())
       find_capacity(&u);
-    if (scene.material.conductivity.depends_on_temperature())
+    if (body.material.conductivity.depends_on_temperature())
       {
         u.update_ghost_values();
         bonds.conductivities().take_at(u);
@@ -274,7 +274,7 @@ namespace PeriDeal
         form->update_conductivities(stiffness_diagonal.begin());
         outside.update();
         update_crack_sides();
-        constraints.update(bonds, scene);
+        constraints.update(bonds, body);
         for (const auto &load : loads.convections())
           stiffness_diagonal.local_element(load.node) += load.factor;
       }
@@ -319,7 +319,7 @@ namespace PeriDeal
                                      const double  t) const
   {
     const Nodes<dim> &nodes      = bonds.nodes();
-    const auto       &conditions = scene.boundary_conditions;
+    const auto       &conditions = body.boundary_conditions;
     Vector            entering;
     this->initialize_vector(entering);
     u.update_ghost_values();
@@ -335,11 +335,11 @@ namespace PeriDeal
       balance.sides[entry.condition->name] += heat.local_element(entry.node);
     outside.add_to(balance, u, constraints, conditions);
     loads.add_to(balance, u, t);
-    if (scene.cracks.conduct())
+    if (body.cracks.conduct())
       add_crack_heat(u, balance);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       balance.content +=
-        nodes.volume(i) * heat_content(scene.material, nodes.position(i), u.local_element(i));
+        nodes.volume(i) * heat_content(body.material, nodes.position(i), u.local_element(i));
     u.set_ghost_state(false);
   }
 

@@ -79,7 +79,7 @@ namespace PeriDeal
             bonds.nearest_bonds_of(i, family);
             for (const auto &bond : family)
               if (const double c =
-                    neighbor_conductance(bonds, scene.material.interface_rule, i, bond);
+                    neighbor_conductance(bonds, body.material.interface_rule, i, bond);
                   c > 0.)
                 {
                   if (bond.neighbor >= nodes.n_local())

@@ -45,64 +45,66 @@ namespace PeriDeal
   namespace
   {
     template <typename Law, int dim>
-    std::unique_ptr<Coupling<dim>> make_exchange(Nodes<dim>       &nodes,
-                                                 const Scene<dim> &scene,
-                                                 const Zone<dim>  &zone)
+    std::unique_ptr<Coupling<dim>> make_exchange(Nodes<dim>                &nodes,
+                                                 const BodyParameters<dim> &body,
+                                                 const Zone<dim>           &zone)
     {
       if (nodes.lattice() && !nodes.has_doubled_nodes())
-        return std::make_unique<LatticeExchange<dim, Law>>(nodes, scene, zone);
-      return std::make_unique<MeshExchange<dim, Law>>(nodes, scene, zone);
+        return std::make_unique<LatticeExchange<dim, Law>>(nodes, body, zone);
+      return std::make_unique<MeshExchange<dim, Law>>(nodes, body, zone);
     }
   } // namespace
 
 
   template <int dim>
-  std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>          &nodes,
-                                               const Scene<dim>    &scene,
-                                               const Zone<dim>     &zone,
-                                               const CouplingScheme scheme)
+  std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>                &nodes,
+                                               const BodyParameters<dim> &body,
+                                               const Zone<dim>           &zone,
+                                               const CouplingScheme       scheme)
   {
     if (scheme != CouplingScheme::exchange)
-      return std::make_unique<WeightedBonds<dim>>(nodes, scene, zone, make_weighting(scheme));
-    return make_exchange<ConductingBonds<dim>>(nodes, scene, zone);
+      return std::make_unique<WeightedBonds<dim>>(nodes, body, zone, make_weighting(scheme));
+    return make_exchange<ConductingBonds<dim>>(nodes, body, zone);
   }
 
 
   template <int dim>
-  std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim> &nodes, const Scene<dim> &scene)
+  std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim>                &nodes,
+                                                     const BodyParameters<dim> &body)
   {
-    Zone<dim> zone(scene.coupling, scene.horizon());
-    zone.stay_in({{scene.domain.lower, scene.domain.upper}});
-    if (scene.coupling.scheme != CouplingScheme::exchange)
+    Zone<dim> zone(body.coupling, body.horizon());
+    zone.stay_in({{body.domain.lower, body.domain.upper}});
+    if (body.coupling.scheme != CouplingScheme::exchange)
       return std::make_unique<StateCoupling<dim>>(nodes,
-                                                  scene,
+                                                  body,
                                                   zone,
-                                                  make_weighting(scene.coupling.scheme));
-    return make_exchange<ElasticBonds<dim>>(nodes, scene, zone);
+                                                  make_weighting(body.coupling.scheme));
+    return make_exchange<ElasticBonds<dim>>(nodes, body, zone);
   }
 
 
   template <int dim>
-  std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim>       &nodes,
-                                                          const Scene<dim> &scene)
+  std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim>                &nodes,
+                                                          const BodyParameters<dim> &body)
   {
     return std::make_unique<StateCoupling<dim>>(nodes,
-                                                scene,
+                                                body,
                                                 Zone<dim>(),
                                                 make_weighting(CouplingScheme::blending));
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                \
-  template std::vector<bool>              hanging_nodes(const Nodes<dim> &);                     \
-  template double                         Coupling<dim>::zone_share() const;                     \
-  template std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim> &,                            \
-                                                        const Scene<dim> &,                      \
-                                                        const Zone<dim> &,                       \
-                                                        const CouplingScheme);                   \
-  template std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim> &, const Scene<dim> &); \
-  template std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim> &,                 \
-                                                                   const Scene<dim> &);
+#define PERIDEAL_INSTANTIATE(dim)                                                           \
+  template std::vector<bool>              hanging_nodes(const Nodes<dim> &);                \
+  template double                         Coupling<dim>::zone_share() const;                \
+  template std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim> &,                       \
+                                                        const BodyParameters<dim> &,        \
+                                                        const Zone<dim> &,                  \
+                                                        const CouplingScheme);              \
+  template std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim> &,                 \
+                                                              const BodyParameters<dim> &); \
+  template std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim> &,            \
+                                                                   const BodyParameters<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

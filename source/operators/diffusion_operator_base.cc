@@ -12,12 +12,12 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  DiffusionOperatorBase<dim>::DiffusionOperatorBase(const Scene<dim>                    &scene,
+  DiffusionOperatorBase<dim>::DiffusionOperatorBase(const BodyParameters<dim>           &body,
                                                     const double                         start,
                                                     const Layout                        &layout,
                                                     const std::function<void(Vector &)> &fill_noise)
-    : scene(scene)
-    , history(scene.crack_history())
+    : body(body)
+    , history(body.crack_history())
     , cracks_of(history.representative(start))
     , bounds(*this, fill_noise)
   {
@@ -60,12 +60,12 @@ namespace PeriDeal
                                               const bool    steady) const
   {
     const MPI_Comm communicator = layout->get_mpi_communicator();
-    const auto    &conditions   = scene.boundary_conditions;
+    const auto    &conditions   = body.boundary_conditions;
     Balance        balance;
     for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})
       for (const SideCondition &condition : *list)
         balance.sides[condition.name];
-    balance.cracks.assign(scene.cracks.cracks.size(), 0.);
+    balance.cracks.assign(body.cracks.cracks.size(), 0.);
     Vector heat(layout);
     find_flows(balance, heat, u, t);
     this->clear_constrained(heat);

@@ -21,10 +21,10 @@ namespace PeriDeal
     template <int dim>
     unsigned int normal_direction(const std::vector<NodeOnSide<dim>> &nodes,
                                   const types::boundary_id            side,
-                                  const Scene<dim>                   &scene,
+                                  const BodyParameters<dim>          &body,
                                   const MPI_Comm                      communicator)
     {
-      const bool box = scene.domain.has_lattice();
+      const bool box = body.domain.has_lattice();
       if (box)
         return side / 2;
       // Lowest coordinates and lowest negative ones.
@@ -46,7 +46,7 @@ namespace PeriDeal
           found = d;
       AssertThrow(found < dim,
                   UserError("'Symmetry' in section 'Boundary conditions': the side '" +
-                            scene.boundary_conditions.name_of(side) +
+                            body.boundary_conditions.name_of(side) +
                             "' is not normal to an axis."));
       return found;
     }
@@ -54,17 +54,17 @@ namespace PeriDeal
 
     /** Whether a place is within `Displacement layer` of a side of the box. */
     template <int dim>
-    bool is_in_layer(Point<dim> p, const types::boundary_id id, const Scene<dim> &scene)
+    bool is_in_layer(Point<dim> p, const types::boundary_id id, const BodyParameters<dim> &body)
     {
-      const Domain<dim> &domain   = scene.domain;
-      const auto         side     = scene.boundary_conditions.side_of(id);
+      const Domain<dim> &domain   = body.domain;
+      const auto         side     = body.boundary_conditions.side_of(id);
       const unsigned int axis     = side / 2;
       const double       width    = domain.upper[axis] - domain.lower[axis];
       const double       distance = side % 2 == 0 ? p[axis] - domain.lower[axis] :
                                                     domain.upper[axis] - p[axis];
       p[axis]                     = side % 2 == 0 ? domain.lower[axis] : domain.upper[axis];
-      return distance <= scene.boundary_conditions.displacement_layer + 1e-9 * width &&
-             scene.boundary_conditions.holds_at(id, p);
+      return distance <= body.boundary_conditions.displacement_layer + 1e-9 * width &&
+             body.boundary_conditions.holds_at(id, p);
     }
   } // namespace
 
@@ -72,12 +72,12 @@ namespace PeriDeal
   template <int dim>
   DisplacementConditions<dim>::DisplacementConditions(const std::vector<NodeOnSide<dim>> &nodes,
                                                       const std::vector<Point<dim>>      &positions,
-                                                      const Scene<dim>                   &scene,
+                                                      const BodyParameters<dim>          &body,
                                                       const bool     at_centers,
                                                       const MPI_Comm communicator)
   {
-    const auto                        &conditions = scene.boundary_conditions;
-    const auto                         beyond     = beyond_sides(scene);
+    const auto                        &conditions = body.boundary_conditions;
+    const auto                         beyond     = beyond_sides(body);
     std::map<unsigned int, Prescribed> found;
     std::vector<unsigned long long>    n_nodes(conditions.displacement.size(), 0), n_held(n_nodes);
     const auto require = [&](const types::boundary_id side, const std::string &entry) {
@@ -115,7 +115,7 @@ namespace PeriDeal
                   hold(node.node, node.position);
               for (unsigned int i = 0; i < positions.size() && conditions.displacement_layer > 0.;
                    ++i)
-                if (is_in_layer(positions[i], condition.id, scene))
+                if (is_in_layer(positions[i], condition.id, body))
                   hold(i, positions[i]);
             }
       }
@@ -130,7 +130,7 @@ namespace PeriDeal
         require(side, "Symmetry");
         if (at_centers && side < 2 * dim && beyond[side] == BeyondSide::mirrored)
           continue; // families go on beyond the side, on which no node lies
-        const unsigned int d = normal_direction(nodes, side, scene, communicator);
+        const unsigned int d = normal_direction(nodes, side, body, communicator);
         for (const NodeOnSide<dim> &node : nodes)
           if (node.side == side)
             found.try_emplace(dim * node.node + d,
@@ -143,14 +143,14 @@ namespace PeriDeal
 
   template <int dim>
   void DisplacementConditions<dim>::pin(const std::vector<Point<dim>> &positions,
-                                        const Scene<dim>              &scene,
+                                        const BodyParameters<dim>     &body,
                                         const bool                     at_centers)
   {
-    if (scene.domain.pins.empty())
+    if (body.domain.pins.empty())
       return;
-    const double slack = 1e-6 * scene.domain.spacing().norm();
+    const double slack = 1e-6 * body.domain.spacing().norm();
     for (unsigned int node = 0; node < positions.size(); ++node)
-      for (const Pin<dim> &pin : scene.domain.pins)
+      for (const Pin<dim> &pin : body.domain.pins)
         if (pin.at_center == at_centers && pin.position.distance(positions[node]) < slack)
           {
             const unsigned int unknown = dim * node + pin.component;
@@ -253,10 +253,10 @@ namespace PeriDeal
 
   template <int dim>
   ForceBalance gather_forces(const std::map<types::boundary_id, Tensor<1, dim>> &forces,
-                             const Scene<dim>                                   &scene,
+                             const BodyParameters<dim>                          &body,
                              const MPI_Comm                                      communicator)
   {
-    const auto                     &conditions = scene.boundary_conditions;
+    const auto                     &conditions = body.boundary_conditions;
     std::vector<types::boundary_id> sides      = conditions.symmetry;
     for (const auto *const list : {&conditions.displacement, &conditions.traction})
       for (const VectorCondition &condition : *list)
@@ -279,7 +279,7 @@ namespace PeriDeal
 #define PERIDEAL_INSTANTIATE(dim)                                                           \
   template class DisplacementConditions<dim>;                                               \
   template ForceBalance gather_forces(const std::map<types::boundary_id, Tensor<1, dim>> &, \
-                                      const Scene<dim> &,                                   \
+                                      const BodyParameters<dim> &,                          \
                                       const MPI_Comm);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -34,19 +34,19 @@ namespace PeriDeal
       {
         const Point<dim> &p      = data.values.quadrature_point(q);
         const double      JxW    = data.values.JxW(q);
-        const Moduli      moduli = scene.material.moduli(p);
+        const Moduli      moduli = body.material.moduli(p);
         // A bar has E alone.
-        const double lambda = dim == 1 ? 0. : lambda_of(moduli, dim, scene.elasticity.plane),
+        const double lambda = dim == 1 ? 0. : lambda_of(moduli, dim, body.elasticity.plane),
                      mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear;
         double change       = 0.; // of the temperature
         if (at_nodes.size() == 0)
-          change = scene.elasticity.temperature_change.value(p);
+          change = body.elasticity.temperature_change.value(p);
         else
           for (unsigned int a = 0; a < n; ++a)
             change += at_nodes(data.indices[a]) * data.values.shape_value(a, q);
         const double strain   = this->thermal_strain(p, change);
         const double pressure = (dim * lambda + 2. * mu) * strain;
-        const double density  = scene.elasticity.is_static() ? 1. : scene.material.density.value(p);
+        const double density  = body.elasticity.is_static() ? 1. : body.material.density.value(p);
         data.thermal_energy += 0.5 * dim * pressure * strain * JxW;
         for (unsigned int a = 0; a < n; ++a)
           {
@@ -80,7 +80,7 @@ namespace PeriDeal
         // The remainder carries a uniform thermal strain like the whole cell less its bonds.
         double change = 0.;
         if (this->temperature_change().size() == 0)
-          change = scene.elasticity.temperature_change.value(cell->center());
+          change = body.elasticity.temperature_change.value(cell->center());
         else
           for (const auto i : data.indices)
             change += this->temperature_change()(i) / data.indices.size();
@@ -136,9 +136,9 @@ namespace PeriDeal
     zone_bonds->add_to(sums);
     for_each_own_cell([&](const Cell &cell, CellData &data) {
       change_cell(cell, data);
-      const Moduli moduli = scene.material.moduli(cell->center());
+      const Moduli moduli = body.material.moduli(cell->center());
       const double mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear,
-                   lambda = dim == 1 ? 0. : lambda_of(moduli, dim, scene.elasticity.plane);
+                   lambda = dim == 1 ? 0. : lambda_of(moduli, dim, body.elasticity.plane);
       sums.add(cell, data.indices, data.stiffness, dim * lambda + dim * (dim + 1) * mu);
     });
     sums.compress();
@@ -188,8 +188,8 @@ namespace PeriDeal
   template <int dim>
   bool ElasticElements<dim>::scales_beside_cracks() const
   {
-    return scene.peridynamics.surface_correction == SurfaceCorrection::crack_scaling &&
-           zone_bonds && !scene.cracks.cracks.empty();
+    return body.peridynamics.surface_correction == SurfaceCorrection::crack_scaling && zone_bonds &&
+           !body.cracks.cracks.empty();
   }
 
 
@@ -262,7 +262,7 @@ namespace PeriDeal
   template <int dim>
   bool ElasticElements<dim>::any_thermal() const
   {
-    const Expression &change = scene.elasticity.temperature_change;
+    const Expression &change = body.elasticity.temperature_change;
     return this->temperature_change().size() > 0 || !change.is_constant() ||
            change.value(Point<dim>()) != 0.;
   }
@@ -322,7 +322,7 @@ namespace PeriDeal
   void ElasticElements<dim>::for_each_load(const double t, const Visit &visit) const
   {
     CellData   &data  = *cell_data;
-    const auto &force = scene.initial_and_source.body_force;
+    const auto &force = body.initial_and_source.body_force;
     const auto  add   = [&](const auto &values, const auto &formula, const auto side) {
       for (const unsigned int q : values.quadrature_point_indices())
         for (unsigned int d = 0; d < dim; ++d)
@@ -348,7 +348,7 @@ namespace PeriDeal
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary())
             condition_faces.for_each(
-              scene.boundary_conditions.traction,
+              body.boundary_conditions.traction,
               cell,
               f,
               data.face_values,
@@ -360,7 +360,7 @@ namespace PeriDeal
               });
       }
     for (const PartUnknown<dim> &unknown : part_unknowns)
-      for (const VectorCondition &condition : scene.boundary_conditions.traction)
+      for (const VectorCondition &condition : body.boundary_conditions.traction)
         for (unsigned int d = 0; condition.id == unknown.id && d < dim; ++d)
           visit(condition.id,
                 dim * nodes->local_to_global(unknown.node) + d,
@@ -400,7 +400,7 @@ namespace PeriDeal
     for_each_load(t, [&](const auto side, const auto, const unsigned int d, const double value) {
       sums[side][d] += value;
     });
-    return gather_forces(sums, scene, dofs.get_communicator());
+    return gather_forces(sums, body, dofs.get_communicator());
   }
 
 
@@ -436,7 +436,7 @@ namespace PeriDeal
         if (zone_bonds->leave_remainder(cell, data.stiffness))
           lowest = std::min(lowest,
                             lowest_eigenvalue(data.stiffness) /
-                              (scene.material.moduli(cell->center()).shear *
+                              (body.material.moduli(cell->center()).shear *
                                std::pow(cell->measure(), 1. - 2. / dim)));
       });
     return Utilities::MPI::min(lowest, dofs.get_communicator());

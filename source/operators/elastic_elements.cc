@@ -24,18 +24,18 @@ namespace PeriDeal
 
   template <int dim>
   ElasticElements<dim>::ElasticElements(const DoFHandler<dim>         &dof_handler,
-                                        const Scene<dim>              &scene,
+                                        const BodyParameters<dim>     &body,
                                         std::unique_ptr<Coupling<dim>> coupling)
-    : SolidOperator<dim>(scene, element_layout(dof_handler, coupling.get()))
+    : SolidOperator<dim>(body, element_layout(dof_handler, coupling.get()))
     , dofs(dof_handler)
     , zone_bonds(coupling ? std::make_unique<SolidBondsBesideElements<dim>>(std::move(coupling)) :
                             nullptr)
     , cut_by_cracks(dofs,
-                    {scene.cracks.mesh == CrackMesh::faces,
+                    {body.cracks.mesh == CrackMesh::faces,
                      true,
-                     scene.cracks.contact_conductance,
-                     [&scene] { return scene.horizon(); }})
-    , condition_faces(dofs, scene.boundary_conditions)
+                     body.cracks.contact_conductance,
+                     [&body] { return body.horizon(); }})
+    , condition_faces(dofs, body.boundary_conditions)
     , hanging(dofs, *nodes, dim)
   {
     find_positions();
@@ -115,13 +115,13 @@ namespace PeriDeal
                   const unsigned int       node = nodes->global_to_local(indices[i]);
                   if (seen.try_emplace({side, node}).second)
                     on_sides.push_back({node, side, positions[node]});
-                  for (const Part &part : scene.boundary_conditions.parts)
+                  for (const Part &part : body.boundary_conditions.parts)
                     if (part.side == side && part.holds(positions[node]) &&
                         seen.try_emplace({part.id, node}).second)
                       on_sides.push_back({node, part.id, positions[node]});
                 }
       }
-    part_unknowns = unknowns_of_parts(dofs, scene.boundary_conditions, [&](const auto node) {
+    part_unknowns = unknowns_of_parts(dofs, body.boundary_conditions, [&](const auto node) {
       return hanging.is_hanging(dim * node);
     });
     for (const PartUnknown<dim> &unknown : part_unknowns)
@@ -130,10 +130,10 @@ namespace PeriDeal
                                       positions.begin() + nodes->locally_owned_size());
     conditions = std::make_unique<DisplacementConditions<dim>>(on_sides,
                                                                own,
-                                                               scene,
+                                                               body,
                                                                false,
                                                                dofs.get_communicator());
-    conditions->pin(own, scene, false);
+    conditions->pin(own, body, false);
     conditions->let_follow(hanging.owned());
   }
 

@@ -41,17 +41,17 @@ namespace PeriDeal
 
 
   template <int dim>
-  ConductingBonds<dim>::ConductingBonds(Families<dim> &families, const Scene<dim> &scene)
-    : bonds(families, scene)
-    , form(scene.peridynamics.form)
+  ConductingBonds<dim>::ConductingBonds(Families<dim> &families, const BodyParameters<dim> &body)
+    : bonds(families, body)
+    , form(body.peridynamics.form)
   {}
 
 
   template <int dim>
-  CellStiffness<dim> ConductingBonds<dim>::stiffness(const Scene<dim> &scene)
+  CellStiffness<dim> ConductingBonds<dim>::stiffness(const BodyParameters<dim> &body)
   {
-    return {[&scene](const Point<dim> &p) { return scene.material.conductivity.value(p); },
-            scene.material.uniform_conductivity()};
+    return {[&body](const Point<dim> &p) { return body.material.conductivity.value(p); },
+            body.material.uniform_conductivity()};
   }
 
 
@@ -150,12 +150,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  CellStiffness<dim> ElasticBonds<dim>::stiffness(const Scene<dim> &scene)
+  CellStiffness<dim> ElasticBonds<dim>::stiffness(const BodyParameters<dim> &body)
   {
-    return {[&scene](const Point<dim> &p) {
-              return bond_part(scene.material.moduli(p), dim, scene.elasticity.plane);
+    return {[&body](const Point<dim> &p) {
+              return bond_part(body.material.moduli(p), dim, body.elasticity.plane);
             },
-            scene.material.uniform_moduli()};
+            body.material.uniform_moduli()};
   }
 
 

@@ -18,10 +18,10 @@ namespace PeriDeal
 
   template <int dim>
   FEMOperator<dim>::FEMOperator(const DoFHandler<dim>         &dof_handler,
-                                const Scene<dim>              &scene,
+                                const BodyParameters<dim>     &body,
                                 std::unique_ptr<Coupling<dim>> coupling,
                                 const double                   start)
-    : DiffusionOperatorBase<dim>(scene,
+    : DiffusionOperatorBase<dim>(body,
                                  start,
                                  element_layout(dof_handler, coupling.get()),
                                  [this](Vector &vector) { fill_noise(vector); })
@@ -30,17 +30,17 @@ namespace PeriDeal
                    std::make_unique<BondsBesideElements<dim>>(std::move(coupling), crack_factors) :
                    nullptr)
     , hanging(dofs, *layout)
-    , loads(dofs, layout, scene.boundary_conditions, scene.initial_and_source.source, hanging)
-    , cell_material(dofs, scene.material, scene.initial_and_source.initial_value, scene.time.steady)
-    , prescribed(dofs, *layout, scene.boundary_conditions, hanging, loads.part_unknowns())
+    , loads(dofs, layout, body.boundary_conditions, body.initial_and_source.source, hanging)
+    , cell_material(dofs, body.material, body.initial_and_source.initial_value, body.steady)
+    , prescribed(dofs, *layout, body.boundary_conditions, hanging, loads.part_unknowns())
     , cells(dofs,
             cell_material,
             zone_bonds.get(),
             crack_factors,
-            {scene.cracks.mesh == CrackMesh::faces,
-             scene.cracks.mesh == CrackMesh::removed,
-             scene.cracks.contact_conductance,
-             [&scene] { return scene.horizon(); }})
+            {body.cracks.mesh == CrackMesh::faces,
+             body.cracks.mesh == CrackMesh::removed,
+             body.cracks.contact_conductance,
+             [&body] { return body.horizon(); }})
   {
     if (zone_bonds && start > 0.)
       zone_bonds->set_cracks_of(this->cracks_of, {});
@@ -152,7 +152,7 @@ namespace PeriDeal
   template <int dim>
   bool FEMOperator<dim>::capacity_is_diagonal() const
   {
-    return zone_bonds || !scene.finite_elements.consistent_capacity; // bonds need it diagonal
+    return zone_bonds || !body.finite_elements.consistent_capacity; // bonds need it diagonal
   }
 
   template <int dim>
@@ -211,7 +211,7 @@ namespace PeriDeal
     heat -= loads.at(t);
     prescribed.add_to(balance.sides, heat);
     loads.add_to(balance, u, t);
-    if (scene.cracks.conduct())
+    if (body.cracks.conduct())
       {
         if (zone_bonds)
           zone_bonds->add_heat(u, balance);
@@ -286,7 +286,7 @@ namespace PeriDeal
   template <int dim>
   double FEMOperator<dim>::heat_of(const Vector &u) const
   {
-    if (this->capacity_depends_on_solution() || scene.time.steady)
+    if (this->capacity_depends_on_solution() || body.steady)
       return cell_material.content(u);
     double heat = 0.;
     for (unsigned int i = 0; i < capacity.locally_owned_size(); ++i)

@@ -15,22 +15,22 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  LatticeBonds<dim>::LatticeBonds(Nodes<dim>               &nodes,
-                                  const Scene<dim>         &scene,
-                                  const Zone<dim>          &zone,
-                                  const CellStiffness<dim> &stiffness,
-                                  const bool                whole_way)
-    : families(nodes, scene, HaloAround::cells)
+  LatticeBonds<dim>::LatticeBonds(Nodes<dim>                &nodes,
+                                  const BodyParameters<dim> &body,
+                                  const Zone<dim>           &zone,
+                                  const CellStiffness<dim>  &stiffness,
+                                  const bool                 whole_way)
+    : families(nodes, body, HaloAround::cells)
     , zone(zone)
-    , last(scene.cracks.end_time)
+    , last(body.cracks.end_time)
   {
     uniform = stiffness.uniform;
-    plain   = uniform && scene.domain.shape == Shape::box && !nodes.is_graded();
+    plain   = uniform && body.domain.shape == Shape::box && !nodes.is_graded();
     if (uniform && nodes.n_local() > 0)
       uniform_stiffness = stiffness.at(nodes.position(0));
     find_offsets();
-    find_sites(scene, whole_way);
-    find_cells(scene, stiffness);
+    find_sites(body, whole_way);
+    find_cells(body, stiffness);
   }
 
 
@@ -106,7 +106,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeBonds<dim>::find_sites(const Scene<dim> &scene, const bool whole_way)
+  void LatticeBonds<dim>::find_sites(const BodyParameters<dim> &body, const bool whole_way)
   {
     const Nodes<dim>        &nodes   = families.nodes();
     const Lattice<dim>      &lattice = *nodes.lattice();
@@ -125,7 +125,7 @@ namespace PeriDeal
         n_in_zone += i < nodes.n_owned() && candidates[i];
       }
     // A mesh that follows the cracks may have no fine cell before the first of them.
-    if (scene.coupling.zone != ZoneKind::adaptive)
+    if (body.coupling.zone != ZoneKind::adaptive)
       throw_if_zone_empty(n_in_zone, nodes.communicator());
     set_table_around(candidates);
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
@@ -141,7 +141,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeBonds<dim>::find_cells(const Scene<dim> &scene, const CellStiffness<dim> &stiffness)
+  void LatticeBonds<dim>::find_cells(const BodyParameters<dim> &body,
+                                     const CellStiffness<dim>  &stiffness)
   {
     if (sites.empty())
       return;
@@ -161,7 +162,7 @@ namespace PeriDeal
           data.cell = data.cell && at(other)->node != numbers::invalid_unsigned_int;
         }
       const Point<dim> low = lattice.position(site);
-      data.cell            = data.cell && scene.domain.has_cell_at(low + 0.5 * lattice.spacing);
+      data.cell            = data.cell && body.domain.has_cell_at(low + 0.5 * lattice.spacing);
       if (!data.cell)
         return;
       if (uniform)

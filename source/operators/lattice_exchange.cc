@@ -11,11 +11,11 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim, typename Law>
-  LatticeExchange<dim, Law>::LatticeExchange(Nodes<dim>       &nodes,
-                                             const Scene<dim> &scene,
-                                             const Zone<dim>  &zone)
-    : bonds(nodes, scene, zone, Law::stiffness(scene), Law::zone_of_whole_way)
-    , law(bonds.families, scene)
+  LatticeExchange<dim, Law>::LatticeExchange(Nodes<dim>                &nodes,
+                                             const BodyParameters<dim> &body,
+                                             const Zone<dim>           &zone)
+    : bonds(nodes, body, zone, Law::stiffness(body), Law::zone_of_whole_way)
+    , law(bonds.families, body)
   {
     law.check_form(bonds);
     surplus = Law::calibrate(bonds);

@@ -36,30 +36,30 @@ namespace PeriDeal
 
     /** The zone when all cracks have grown. */
     template <int dim>
-    Zone<dim> zone_at_end(Zone<dim> zone, const Scene<dim> &scene)
+    Zone<dim> zone_at_end(Zone<dim> zone, const BodyParameters<dim> &body)
     {
-      zone.set_cracks(scene.crack_history().pieces(scene.cracks.end_time));
+      zone.set_cracks(body.crack_history().pieces(body.cracks.end_time));
       return zone;
     }
   } // namespace
 
 
   template <int dim, typename Law>
-  MeshExchange<dim, Law>::MeshExchange(Nodes<dim>       &nodes,
-                                       const Scene<dim> &scene,
-                                       const Zone<dim>  &zone)
+  MeshExchange<dim, Law>::MeshExchange(Nodes<dim>                &nodes,
+                                       const BodyParameters<dim> &body,
+                                       const Zone<dim>           &zone)
     : own_families(
         nodes,
-        scene,
+        body,
         HaloAround::cells,
-        [at_end = zone_at_end(zone, scene)](const Point<dim> &p) { return at_end.contains(p); })
-    , law(own_families, scene)
+        [at_end = zone_at_end(zone, body)](const Point<dim> &p) { return at_end.contains(p); })
+    , law(own_families, body)
     , zone(zone)
   {
     const CrackHistory<dim> &history = own_families.cracks().history();
-    const Zone<dim>          at_end  = zone_at_end(zone, scene);
+    const Zone<dim>          at_end  = zone_at_end(zone, body);
     this->zone.set_cracks(
-      history.pieces(Law::zone_of_whole_way ? scene.cracks.end_time : history.representative(0.)));
+      history.pieces(Law::zone_of_whole_way ? body.cracks.end_time : history.representative(0.)));
     const std::vector<bool> hanging   = hanging_nodes(nodes);
     double                  n_in_zone = 0.;
     joined.resize(nodes.n_local());
@@ -72,7 +72,7 @@ namespace PeriDeal
       }
     stays = joined == may_join;
     throw_if_zone_empty(n_in_zone, nodes.communicator());
-    find_cells(scene);
+    find_cells(body);
     send_cells();
     find_paths(hanging);
     find_bonds();

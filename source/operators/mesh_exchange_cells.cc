@@ -18,11 +18,11 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim, typename Law>
-  void MeshExchange<dim, Law>::find_cells(const Scene<dim> &scene)
+  void MeshExchange<dim, Law>::find_cells(const BodyParameters<dim> &body)
   {
     const DoFHandler<dim>   &dofs = own_families.nodes().dof_handler();
     FEValues<dim>            values(dofs.get_fe(), QGauss<dim>(2), update_quadrature_points);
-    const CellStiffness<dim> stiffness = Law::stiffness(scene);
+    const CellStiffness<dim> stiffness = Law::stiffness(body);
     cell_of_index.assign(dofs.get_triangulation().n_active_cells(), numbers::invalid_unsigned_int);
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -124,9 +124,9 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim, Law)                                       \
-  template void MeshExchange<dim, Law<dim>>::find_cells(const Scene<dim> &); \
-  template void MeshExchange<dim, Law<dim>>::send_cells();                   \
+#define PERIDEAL_INSTANTIATE(dim, Law)                                                \
+  template void MeshExchange<dim, Law<dim>>::find_cells(const BodyParameters<dim> &); \
+  template void MeshExchange<dim, Law<dim>>::send_cells();                            \
   template void MeshExchange<dim, Law<dim>>::share_strains();
   PERIDEAL_INSTANTIATE(1, ConductingBonds)
   PERIDEAL_INSTANTIATE(2, ConductingBonds)

@@ -19,13 +19,14 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  NodeConstraints<dim>::NodeConstraints(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene)
+  NodeConstraints<dim>::NodeConstraints(const DiffusionBonds<dim> &bonds,
+                                        const BodyParameters<dim> &body)
     : nodes(bonds.nodes())
     , kinds(nodes.n_local(), free)
   {
-    find_prescribed(scene);
-    check_parts(bonds, scene);
-    find_slaves(bonds, scene);
+    find_prescribed(body);
+    check_parts(bonds, body);
+    find_slaves(bonds, body);
     prescribed_exist = Utilities::MPI::max(prescribed_list.empty() ? 0 : 1, nodes.communicator()) >
                        0;
     slaves_exist = Utilities::MPI::max(slaves.empty() ? 0 : 1, nodes.communicator()) > 0;
@@ -44,13 +45,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  void NodeConstraints<dim>::update(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene)
+  void NodeConstraints<dim>::update(const DiffusionBonds<dim> &bonds,
+                                    const BodyParameters<dim> &body)
   {
     if (!slaves_exist)
       return;
     std::replace(kinds.begin(), kinds.end(), slave, free);
     slaves.clear();
-    find_slaves(bonds, scene);
+    find_slaves(bonds, body);
     n_coupled = 0;
     couple_slaves(nodes);
   }
@@ -79,10 +81,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  void NodeConstraints<dim>::find_prescribed(const Scene<dim> &scene)
+  void NodeConstraints<dim>::find_prescribed(const BodyParameters<dim> &body)
   {
-    const BoundaryTreatment treatment  = scene.peridynamics.treatment;
-    const auto             &dirichlet  = scene.boundary_conditions.dirichlet;
+    const BoundaryTreatment treatment  = body.peridynamics.treatment;
+    const auto             &dirichlet  = body.boundary_conditions.dirichlet;
     const bool              fictitious = treatment == BoundaryTreatment::fictitious_mirror ||
                             treatment == BoundaryTreatment::fictitious_constant;
     if (treatment == BoundaryTreatment::layer)
@@ -95,7 +97,7 @@ namespace PeriDeal
         // Of a hole, which has no lattice rows, the nodes on it
         // and of parts that are no sides of the box
         std::set<std::pair<unsigned int, types::boundary_id>> own;
-        const auto &conditions = scene.boundary_conditions;
+        const auto                                           &conditions = body.boundary_conditions;
         for (const BoundaryShare &share : nodes.condition_shares())
           if (share.inside && conditions.side_of(share.id) >= 2 * dim)
             own.insert({share.node, share.id});
@@ -111,7 +113,7 @@ namespace PeriDeal
                 Point<dim> foot  = nodes.position(i);
                 if (on_side)
                   foot[d] = side % 2 == 0 ? lattice.lower[d] : lattice.upper[d];
-                if (on_side ? depth < static_cast<int>(scene.peridynamics.layer_rows) &&
+                if (on_side ? depth < static_cast<int>(body.peridynamics.layer_rows) &&
                                 conditions.holds_at(condition.id, foot) :
                               own.count({i, condition.id}) > 0)
                   {
@@ -126,7 +128,7 @@ namespace PeriDeal
       // values.
       for (const auto &[node, condition] : first_sides(nodes, dirichlet))
         if (!fictitious || !nodes.lattice() || !nodes.lattice()->at_centers ||
-            scene.boundary_conditions.side_of(condition->id) >= 2 * dim)
+            body.boundary_conditions.side_of(condition->id) >= 2 * dim)
           prescribed_list.push_back({node, condition});
     for (const Prescribed &entry : prescribed_list)
       kinds[entry.node] = prescribed;
@@ -135,9 +137,9 @@ namespace PeriDeal
 
   template <int dim>
   void NodeConstraints<dim>::check_parts(const DiffusionBonds<dim> &bonds,
-                                         const Scene<dim>          &scene) const
+                                         const BodyParameters<dim> &body) const
   {
-    const BoundaryConditions<dim>  &conditions = scene.boundary_conditions;
+    const BoundaryConditions<dim>  &conditions = body.boundary_conditions;
     const auto                     &dirichlet  = conditions.dirichlet;
     std::vector<unsigned long long> n_nodes(dirichlet.size(), 0), n_held(dirichlet.size(), 0);
     for (const BoundaryShare &share : nodes.condition_shares())
@@ -153,29 +155,30 @@ namespace PeriDeal
 
 
   template <int dim>
-  void NodeConstraints<dim>::find_slaves(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene)
+  void NodeConstraints<dim>::find_slaves(const DiffusionBonds<dim> &bonds,
+                                         const BodyParameters<dim> &body)
   {
-    if (scene.peridynamics.natural_fluxes())
+    if (body.peridynamics.natural_fluxes())
       return;
     AssertThrow(
-      scene.domain.shape == Shape::box && bonds.neighbors().has_unique_sites(),
+      body.domain.shape == Shape::box && bonds.neighbors().has_unique_sites(),
       UserError(
         "'Flux treatment' in section 'Peridynamics' must be 'natural' unless the body is a box "
         "without doubled nodes."));
     std::string message;
-    if (scene.peridynamics.flux_treatment == FluxTreatment::layer_extrapolation)
-      for (const SideCondition &condition : scene.boundary_conditions.flux)
-        message = extrapolate_layer(bonds, condition.id, scene);
+    if (body.peridynamics.flux_treatment == FluxTreatment::layer_extrapolation)
+      for (const SideCondition &condition : body.boundary_conditions.flux)
+        message = extrapolate_layer(bonds, condition.id, body);
     else
-      for (const auto &[node, condition] : first_sides(nodes, scene.boundary_conditions.flux, true))
+      for (const auto &[node, condition] : first_sides(nodes, body.boundary_conditions.flux, true))
         if (kinds[node] == free)
           {
-            const unsigned int side = scene.boundary_conditions.side_of(condition->id);
+            const unsigned int side = body.boundary_conditions.side_of(condition->id);
             Slave              slave;
             slave.node              = node;
             const std::string fault = extrapolate(bonds, side, condition->name, slave);
             message                 = message.empty() ? fault : message;
-            add_fluxes(scene.boundary_conditions, side, slave);
+            add_fluxes(body.boundary_conditions, side, slave);
             slaves.push_back(slave);
           }
     throw_on_all_if_any(nodes.communicator(), message);
@@ -244,12 +247,12 @@ namespace PeriDeal
   template <int dim>
   std::string NodeConstraints<dim>::extrapolate_layer(const DiffusionBonds<dim> &bonds,
                                                       const unsigned int         side,
-                                                      const Scene<dim>          &scene)
+                                                      const BodyParameters<dim> &body)
   {
     const Lattice<dim>  &lattice = *nodes.lattice();
-    const int            rows = static_cast<int>(std::lround(scene.horizon() / lattice.spacing[0]));
-    const SideCondition *flux = BoundaryConditions<dim>::find(scene.boundary_conditions.flux, side);
-    const int            layers = static_cast<int>(scene.boundary_conditions.flux.size());
+    const int            rows = static_cast<int>(std::lround(body.horizon() / lattice.spacing[0]));
+    const SideCondition *flux = BoundaryConditions<dim>::find(body.boundary_conditions.flux, side);
+    const int            layers = static_cast<int>(body.boundary_conditions.flux.size());
     if (lattice.n_sites[0] <= layers * rows)
       return "'Flux treatment = layer extrapolation' in section 'Peridynamics' takes a layer of one horizon at each end named in "
              "'Flux', and the bar has no node beyond. Choose a shorter 'Horizon', more 'Cells' or 'natural'.";

@@ -13,17 +13,17 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  NodeLaws<dim>::NodeLaws(const Nodes<dim> &nodes, const Scene<dim> &scene)
+  NodeLaws<dim>::NodeLaws(const Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : weighted(nodes.partitioner())
-    , volumetric(scene.elasticity.model == ElasticModel::state_based && dim > 1)
+    , volumetric(body.elasticity.model == ElasticModel::state_based && dim > 1)
     , nodes(nodes)
   {
-    const PlaneState plane   = scene.elasticity.plane;
+    const PlaneState plane   = body.elasticity.plane;
     double           largest = 0., smallest = 1e300;
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
-        const Moduli moduli = scene.material.moduli(nodes.position(i));
-        laws.push_back(scene.elasticity.model == ElasticModel::bond_based ?
+        const Moduli moduli = body.material.moduli(nodes.position(i));
+        laws.push_back(body.elasticity.model == ElasticModel::bond_based ?
                          bond_law(moduli, dim, plane) :
                          state_law(moduli, dim, plane));
         largest  = std::max(largest, laws[i].extension);

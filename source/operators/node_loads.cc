@@ -12,15 +12,15 @@ namespace PeriDeal
   template <int dim>
   NodeLoads<dim>::NodeLoads(const Nodes<dim>           &nodes,
                             const NodeConstraints<dim> &constraints,
-                            const Scene<dim>           &scene)
+                            const BodyParameters<dim>  &body)
     : nodes(nodes)
     , constraints(constraints)
-    , source(scene.initial_and_source.source)
-    , varies(source.depends_on_time() || scene.boundary_conditions.depends_on_time())
+    , source(body.initial_and_source.source)
+    , varies(source.depends_on_time() || body.boundary_conditions.depends_on_time())
   {
     using Constraints      = NodeConstraints<dim>;
-    const bool  natural    = scene.peridynamics.natural_fluxes();
-    const auto &conditions = scene.boundary_conditions;
+    const bool  natural    = body.peridynamics.natural_fluxes();
+    const auto &conditions = body.boundary_conditions;
     for (const BoundaryShare &share : nodes.condition_shares())
       {
         const bool  is_slave   = constraints.kind(share.node) == Constraints::slave;

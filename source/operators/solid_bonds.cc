@@ -16,26 +16,26 @@ namespace PeriDeal
   {
     /** Families that go on beyond the sides of the body: adds to q. Collective. */
     template <int dim>
-    std::unique_ptr<FictitiousBonds<dim>> complete_families(const Families<dim>  &families,
-                                                            const SolidRows<dim> &rows,
-                                                            const Scene<dim>     &scene,
-                                                            Vector               &weighted)
+    std::unique_ptr<FictitiousBonds<dim>> complete_families(const Families<dim>       &families,
+                                                            const SolidRows<dim>      &rows,
+                                                            const BodyParameters<dim> &body,
+                                                            Vector                    &weighted)
     {
-      if (completes_mesh(scene))
+      if (completes_mesh(body))
         {
           const auto goes_on = [&](const types::boundary_id side) {
-            return goes_on_beyond(scene, side);
+            return goes_on_beyond(body, side);
           };
           auto beyond = std::make_unique<FictitiousBonds<dim>>(
             families,
             boundary_images(families.nodes(),
-                            scene.boundary_conditions.symmetry,
+                            body.boundary_conditions.symmetry,
                             goes_on,
                             families.weights().reach()));
           beyond->add_weights(weighted);
           return beyond;
         }
-      const auto sides = beyond_sides(scene);
+      const auto sides = beyond_sides(body);
       if (!families.neighbors().has_unique_sites() ||
           std::all_of(sides.begin(), sides.end(), [](const auto side) {
             return side == BeyondSide::nothing;
@@ -54,18 +54,18 @@ namespace PeriDeal
 
 
   template <int dim>
-  SolidBonds<dim>::SolidBonds(Nodes<dim> &nodes, const Scene<dim> &scene)
-    : families(nodes.find_parts(scene.boundary_conditions), scene)
-    , laws(families.nodes(), scene)
-    , rows(families, laws, scene)
-    , kinematics(families, rows, thermal, scene.elasticity.kinematics == Kinematics::full)
-    , beyond(complete_families(families, rows, scene, laws.weighted))
-    , weights_follow(scene.elasticity.micromodulus != Micromodulus::constant)
+  SolidBonds<dim>::SolidBonds(Nodes<dim> &nodes, const BodyParameters<dim> &body)
+    : families(nodes.find_parts(body.boundary_conditions), body)
+    , laws(families.nodes(), body)
+    , rows(families, laws, body)
+    , kinematics(families, rows, thermal, body.elasticity.kinematics == Kinematics::full)
+    , beyond(complete_families(families, rows, body, laws.weighted))
+    , weights_follow(body.elasticity.micromodulus != Micromodulus::constant)
   {
-    if (scene.elasticity.micromodulus == Micromodulus::constant)
+    if (body.elasticity.micromodulus == Micromodulus::constant)
       laws.weighted = rows.complete_weighted();
     laws.weighted.update_ghost_values();
-    rows.find_springs(scene);
+    rows.find_springs(body);
     kinematics.keep_lengths();
     if (beyond)
       beyond->find_springs(laws, kinematics.is_full());

@@ -81,21 +81,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  SolidLoads<dim>::SolidLoads(const SolidBonds<dim> &bonds, const Scene<dim> &scene)
-    : scene(scene)
+  SolidLoads<dim>::SolidLoads(const SolidBonds<dim> &bonds, const BodyParameters<dim> &body)
+    : body(body)
     , nodes(bonds.families.nodes())
-    , tractions(traction_shares(nodes, scene.boundary_conditions))
+    , tractions(traction_shares(nodes, body.boundary_conditions))
   {
     if (bonds.beyond && nodes.lattice() && nodes.lattice()->at_centers &&
-        scene.boundary_conditions.traction_layer <= 0.)
-      draw_on_to_side(bonds.families, scene.boundary_conditions, beyond_sides(scene), tractions);
+        body.boundary_conditions.traction_layer <= 0.)
+      draw_on_to_side(bonds.families, body.boundary_conditions, beyond_sides(body), tractions);
   }
 
 
   template <int dim>
   std::vector<unsigned int> SolidLoads<dim>::sides_nearby(const Families<dim> &families) const
   {
-    const auto                                 &list = scene.boundary_conditions.traction;
+    const auto                                 &list = body.boundary_conditions.traction;
     std::vector<typename Families<dim>::Member> family;
     std::vector<unsigned int> nearby(nodes.n_local(), numbers::invalid_unsigned_int);
     for (unsigned int number = 0; number < list.size(); ++number)

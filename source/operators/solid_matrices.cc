@@ -164,7 +164,7 @@ namespace PeriDeal
   template <int dim>
   void assemble_surrogate(const SolidBonds<dim>          &bonds,
                           const BondState                &state,
-                          const Scene<dim>               &scene,
+                          const BodyParameters<dim>      &body,
                           const Vector                   &diagonal,
                           const Vector                   &held,
                           TrilinosWrappers::SparseMatrix &matrix)
@@ -236,8 +236,8 @@ namespace PeriDeal
     pattern.compress();
     matrix.reinit(pattern);
     const auto stiffness_of = [&](const unsigned int i) {
-      const Moduli moduli = scene.material.moduli(nodes.position(i));
-      return bond_law(moduli, dim, scene.elasticity.plane).extension;
+      const Moduli moduli = body.material.moduli(nodes.position(i));
+      return bond_law(moduli, dim, body.elasticity.plane).extension;
     };
     std::vector<double> extension(nodes.n_local());
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
@@ -294,7 +294,7 @@ namespace PeriDeal
                                 TrilinosWrappers::SparseMatrix &);   \
   template void assemble_surrogate(const SolidBonds<dim> &,          \
                                    const BondState &,                \
-                                   const Scene<dim> &,               \
+                                   const BodyParameters<dim> &,      \
                                    const Vector &,                   \
                                    const Vector &,                   \
                                    TrilinosWrappers::SparseMatrix &);

@@ -20,13 +20,13 @@ namespace PeriDeal
   namespace
   {
     template <int dim>
-    bool loads_depend_on_time(const Scene<dim> &scene)
+    bool loads_depend_on_time(const BodyParameters<dim> &body)
     {
-      const auto &force = scene.initial_and_source.body_force;
+      const auto &force = body.initial_and_source.body_force;
       bool        any   = std::any_of(force.begin(), force.end(), [](const Expression &e) {
         return e.depends_on_time();
       });
-      for (const VectorCondition &condition : scene.boundary_conditions.traction)
+      for (const VectorCondition &condition : body.boundary_conditions.traction)
         for (const auto &value : condition.values)
           any = any || (value && value->depends_on_time());
       return any;
@@ -35,11 +35,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  SolidOperator<dim>::SolidOperator(const Scene<dim> &scene, const Layout &of_nodes)
-    : scene(scene)
-    , history(scene.crack_history())
+  SolidOperator<dim>::SolidOperator(const BodyParameters<dim> &body, const Layout &of_nodes)
+    : body(body)
+    , history(body.crack_history())
     , cracks_of(history.representative(0.))
-    , loads_vary(loads_depend_on_time(scene))
+    , loads_vary(loads_depend_on_time(body))
   {
     if (of_nodes)
       set_layout(of_nodes);
@@ -171,7 +171,7 @@ namespace PeriDeal
   {
     const Vector &at_nodes = this->temperature_change();
     return at_nodes.size() > 0 ? at_nodes.local_element(node) :
-                                 scene.elasticity.temperature_change.value(position(node));
+                                 body.elasticity.temperature_change.value(position(node));
   }
 
 

@@ -42,33 +42,33 @@ namespace PeriDeal
 
 
     template <int dim>
-    bool may_leave_out_bonds(const Families<dim> &families, const Scene<dim> &scene)
+    bool may_leave_out_bonds(const Families<dim> &families, const BodyParameters<dim> &body)
     {
       std::string reason;
       if (!families.neighbors().has_unique_sites())
         reason = "the nodes are not on a lattice with one node per site";
-      else if (scene.elasticity.kinematics == Kinematics::full)
+      else if (body.elasticity.kinematics == Kinematics::full)
         reason = "with 'Kinematics = full' each bond has its own direction";
-      else if (scene.material.fracture_energy || scene.material.critical_stretch)
+      else if (body.material.fracture_energy || body.material.critical_stretch)
         reason = "bonds may break";
-      else if (scene.peridynamics.corrects_elastic_bonds())
+      else if (body.peridynamics.corrects_elastic_bonds())
         reason = "with 'Surface correction' bonds have factors of their own";
       // Bonds of bars take little, and differences of displacements round less than convolutions.
-      return takes_lattice_form(scene.peridynamics.form, reason, dim > 1);
+      return takes_lattice_form(body.peridynamics.form, reason, dim > 1);
     }
   } // namespace
 
 
   template <int dim>
-  SolidRows<dim>::SolidRows(const Families<dim> &families,
-                            NodeLaws<dim>       &laws,
-                            const Scene<dim>    &scene)
+  SolidRows<dim>::SolidRows(const Families<dim>       &families,
+                            NodeLaws<dim>             &laws,
+                            const BodyParameters<dim> &body)
     : families(families)
     , laws(laws)
-    , horizon(scene.horizon())
+    , horizon(body.horizon())
   {
     const Nodes<dim> &nodes     = families.nodes();
-    const bool        leave_out = may_leave_out_bonds(families, scene);
+    const bool        leave_out = may_leave_out_bonds(families, body);
     const double      q         = leave_out ? complete_weighted() : 0.;
     Family            family;
     std::string       message;
@@ -76,7 +76,7 @@ namespace PeriDeal
     if (leave_out)
       {
         list_lattice_bonds();
-        changing = find_changing(scene);
+        changing = find_changing(body);
       }
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
@@ -108,7 +108,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<bool> SolidRows<dim>::find_changing(const Scene<dim> &scene) const
+  std::vector<bool> SolidRows<dim>::find_changing(const BodyParameters<dim> &body) const
   {
     constexpr unsigned int   n_spans = 64; // boxes around parts of a crooked way take in less
     const CrackHistory<dim> &history = families.cracks().history();
@@ -117,7 +117,7 @@ namespace PeriDeal
       return changing;
     // q of a node whose bonds are cut changes the springs of its neighbours.
     const double distance = 2. * families.weights().reach();
-    const double end      = scene.cracks.end_time;
+    const double end      = body.cracks.end_time;
     for (unsigned int k = 0; k < n_spans; ++k)
       for (const unsigned int i : families.neighbors().nodes_near(
              history.changes(end * k / n_spans, end * (k + 1) / n_spans),
@@ -250,11 +250,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidRows<dim>::correct_surface(const Scene<dim> &scene)
+  void SolidRows<dim>::correct_surface(const BodyParameters<dim> &body)
   {
     // Springs still are W x^2.
     const SurfaceFactors factors =
-      surface_factors(families, scene.peridynamics, {starts, neighbors, springs});
+      surface_factors(families, body.peridynamics, {starts, neighbors, springs});
     std::string message;
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
       if (message.empty() && laws.volumetric &&
@@ -277,10 +277,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidRows<dim>::find_springs(const Scene<dim> &scene)
+  void SolidRows<dim>::find_springs(const BodyParameters<dim> &body)
   {
-    if (scene.peridynamics.corrects_elastic_bonds())
-      correct_surface(scene);
+    if (body.peridynamics.corrects_elastic_bonds())
+      correct_surface(body);
     for (const unsigned int i : stored_nodes)
       for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
         springs[k] = (laws.stiffness(i) + laws.stiffness(neighbors[k])) / springs[k]; // W x^2

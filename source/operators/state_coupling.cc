@@ -13,22 +13,22 @@ namespace PeriDeal
 
   template <int dim>
   StateCoupling<dim>::StateCoupling(Nodes<dim>                      &nodes,
-                                    const Scene<dim>                &scene,
+                                    const BodyParameters<dim>       &body,
                                     const Zone<dim>                 &zone,
                                     std::unique_ptr<const Weighting> weighting)
-    : WeightedCoupling<dim>(nodes, scene, zone, std::move(weighting), true)
+    : WeightedCoupling<dim>(nodes, body, zone, std::move(weighting), true)
   {
-    if (scene.peridynamics.completes_families())
+    if (body.peridynamics.completes_families())
       {
-        symmetry_sides = scene.boundary_conditions.symmetry;
+        symmetry_sides = body.boundary_conditions.symmetry;
         throw_if_narrow(own_families);
-        extension.emplace(own_families, beyond_sides(scene));
+        extension.emplace(own_families, beyond_sides(body));
       }
     find_nodes_that_act();
     laws.resize(nodes.n_owned());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       if (acts[i])
-        laws[i] = state_law(scene.material.moduli(nodes.position(i)), dim, scene.elasticity.plane);
+        laws[i] = state_law(body.material.moduli(nodes.position(i)), dim, body.elasticity.plane);
   }
 
 

@@ -17,11 +17,11 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  StateOperator<dim>::StateOperator(Nodes<dim> &nodes, const Scene<dim> &scene)
-    : SolidOperator<dim>(scene)
-    , solid(nodes, scene)
-    , loads(solid, scene)
-    , breakage(solid, loads, scene)
+  StateOperator<dim>::StateOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body)
+    : SolidOperator<dim>(body)
+    , solid(nodes, body)
+    , loads(solid, body)
+    , breakage(solid, loads, body)
   {
     this->set_layout(nodes.partitioner());
     tau.reinit(nodes.partitioner());
@@ -29,7 +29,7 @@ namespace PeriDeal
     for (unsigned int k = 0; k < mass.locally_owned_size(); ++k)
       mass.local_element(k) =
         nodes.volume(k / dim) *
-        (scene.elasticity.is_static() ? 1. : scene.material.density.value(position(k / dim)));
+        (body.elasticity.is_static() ? 1. : body.material.density.value(position(k / dim)));
     find_diagonal();
     find_thermal_strains();
   }
@@ -45,13 +45,13 @@ namespace PeriDeal
     std::vector<Point<dim>> positions;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       positions.push_back(nodes.position(i));
-    const bool at_centers = scene.domain.nodes == NodePlacement::cell_centers;
+    const bool at_centers = body.domain.nodes == NodePlacement::cell_centers;
     conditions            = std::make_unique<DisplacementConditions<dim>>(on_sides,
                                                                positions,
-                                                               scene,
+                                                               body,
                                                                at_centers,
                                                                nodes.communicator());
-    conditions->pin(positions, scene, at_centers);
+    conditions->pin(positions, body, at_centers);
   }
 
 
@@ -279,7 +279,7 @@ namespace PeriDeal
     loads.for_each(t, [&](const auto side, const unsigned int unknown, const double value) {
       sums[side][unknown % dim] += value;
     });
-    return gather_forces(sums, scene, solid.families.nodes().communicator());
+    return gather_forces(sums, body, solid.families.nodes().communicator());
   }
 
 
@@ -384,7 +384,7 @@ namespace PeriDeal
   {
     assemble_surrogate(solid,
                        breakage.broken_state(),
-                       scene,
+                       body,
                        stiffness_diagonal,
                        this->held_unknowns(),
                        matrix);

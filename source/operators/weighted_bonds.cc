@@ -7,11 +7,11 @@ namespace PeriDeal
 {
   template <int dim>
   WeightedBonds<dim>::WeightedBonds(Nodes<dim>                      &nodes,
-                                    const Scene<dim>                &scene,
+                                    const BodyParameters<dim>       &body,
                                     const Zone<dim>                 &zone,
                                     std::unique_ptr<const Weighting> weighting)
-    : WeightedCoupling<dim>(nodes, scene, zone, std::move(weighting), false)
-    , bonds(this->own_families, scene)
+    : WeightedCoupling<dim>(nodes, body, zone, std::move(weighting), false)
+    , bonds(this->own_families, body)
   {}
 
 

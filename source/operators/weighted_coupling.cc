@@ -84,12 +84,12 @@ namespace PeriDeal
 
   template <int dim>
   WeightedCoupling<dim>::WeightedCoupling(Nodes<dim>                      &nodes,
-                                          const Scene<dim>                &scene,
+                                          const BodyParameters<dim>       &body,
                                           const Zone<dim>                 &zone,
                                           std::unique_ptr<const Weighting> weighting,
                                           const bool                       whole_way)
-    : own_families(nodes, scene, HaloAround::cells)
-    , overlap(scene.coupling.overlap * own_families.weights().horizon())
+    : own_families(nodes, body, HaloAround::cells)
+    , overlap(body.coupling.overlap * own_families.weights().horizon())
     , weighting(std::move(weighting))
     , weights_now(nodes, zone, overlap)
     , weights_at_end(weights_now)
@@ -98,7 +98,7 @@ namespace PeriDeal
   {
     const CrackHistory<dim> &history = own_families.cracks().history();
     Zone<dim>                at_end  = zone;
-    at_end.set_cracks(history.pieces(scene.cracks.end_time));
+    at_end.set_cracks(history.pieces(body.cracks.end_time));
     weights_at_end.set(at_end);
     this->zone.set_cracks(history.pieces(history.representative(0.)));
     weights_now.set(follows ? this->zone : at_end);

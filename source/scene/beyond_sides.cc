@@ -22,11 +22,11 @@ namespace PeriDeal
 
 
     template <int dim>
-    std::string obstacle_on_mesh(const Scene<dim> &scene)
+    std::string obstacle_on_mesh(const BodyParameters<dim> &body)
     {
       if (dim == 1)
         return "in 1D";
-      return scene.domain.nodes == NodePlacement::cell_centers ? "with nodes at cell centres" : "";
+      return body.domain.nodes == NodePlacement::cell_centers ? "with nodes at cell centres" : "";
     }
 
 
@@ -35,28 +35,28 @@ namespace PeriDeal
      * others follow are stiff, so that explicit steps would be short.
      */
     template <int dim>
-    bool ends_at_free_sides(const Scene<dim> &scene)
+    bool ends_at_free_sides(const BodyParameters<dim> &body)
     {
-      return scene.material.fracture_energy || scene.material.critical_stretch ||
-             scene.elasticity.solver == ElasticSolver::dynamics;
+      return body.material.fracture_energy || body.material.critical_stretch ||
+             body.elasticity.solver == ElasticSolver::dynamics;
     }
 
 
     /** Why no families can go on beyond the sides; empty where they can. */
     template <int dim>
-    Hindrance find_hindrance(const Scene<dim> &scene)
+    Hindrance find_hindrance(const BodyParameters<dim> &body)
     {
-      if (!scene.domain.has_lattice())
-        if (const std::string obstacle = obstacle_on_mesh(scene); !obstacle.empty())
+      if (!body.domain.has_lattice())
+        if (const std::string obstacle = obstacle_on_mesh(body); !obstacle.empty())
           return {"on a mesh from a file families do not go on " + obstacle,
                   "They do with 'Nodes = vertices' (section 'Domain')."};
-      if (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty())
+      if (body.cracks.mesh == CrackMesh::faces && !body.cracks.cracks.empty())
         return {"cracks are cut into the mesh ('Mesh = faces')",
                 "Families go on with 'Mesh = removed' (section 'Cracks')."};
-      if (scene.peridynamics.nodal_volume != NodalVolume::partial)
+      if (body.peridynamics.nodal_volume != NodalVolume::partial)
         return {"nodes on sides have whole cells ('Nodal volume = full')",
                 "Families go on with 'Nodal volume = partial'."};
-      if (scene.elasticity.micromodulus == Micromodulus::constant)
+      if (body.elasticity.micromodulus == Micromodulus::constant)
         return {"bonds at sides are those inside ('Micromodulus = constant')",
                 "Families go on with 'Micromodulus = family' (section 'Elasticity')."};
       return {};
@@ -68,21 +68,21 @@ namespace PeriDeal
      * layer spreads.
      */
     template <int dim>
-    std::vector<std::string> single_rows(const Scene<dim>                   &scene,
+    std::vector<std::string> single_rows(const BodyParameters<dim>          &body,
                                          const std::vector<VectorCondition> &list,
                                          const double                        layer,
                                          bool                               &flat)
     {
-      const auto               beyond = beyond_sides(scene);
+      const auto               beyond = beyond_sides(body);
       std::vector<std::string> names;
       for (const VectorCondition &condition : list)
         {
-          const types::boundary_id side = scene.boundary_conditions.side_of(condition.id);
-          if (layer > 0. || side == numbers::invalid_boundary_id || completes_mesh(scene) ||
+          const types::boundary_id side = body.boundary_conditions.side_of(condition.id);
+          if (layer > 0. || side == numbers::invalid_boundary_id || completes_mesh(body) ||
               (side < 2 * dim && beyond[side] != BeyondSide::nothing))
             continue;
-          flat = flat && side < 2 * dim && scene.domain.has_lattice();
-          names.push_back("'" + scene.boundary_conditions.name_of(condition.id) + "'");
+          flat = flat && side < 2 * dim && body.domain.has_lattice();
+          names.push_back("'" + body.boundary_conditions.name_of(condition.id) + "'");
         }
       return names;
     }
@@ -90,30 +90,30 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::string hindrance_of_fictitious_nodes(const Scene<dim> &scene)
+  std::string hindrance_of_fictitious_nodes(const BodyParameters<dim> &body)
   {
-    return scene.peridynamics.surface_correction == SurfaceCorrection::automatic ?
-             find_hindrance(scene).reason :
+    return body.peridynamics.surface_correction == SurfaceCorrection::automatic ?
+             find_hindrance(body).reason :
              std::string();
   }
 
 
   template <int dim>
-  std::string note_on_cut_sides(const Scene<dim> &scene)
+  std::string note_on_cut_sides(const BodyParameters<dim> &body)
   {
-    const bool  automatic  = scene.peridynamics.surface_correction == SurfaceCorrection::automatic;
-    const auto &conditions = scene.boundary_conditions;
-    const Hindrance hindrance = find_hindrance(scene);
+    const bool  automatic  = body.peridynamics.surface_correction == SurfaceCorrection::automatic;
+    const auto &conditions = body.boundary_conditions;
+    const Hindrance hindrance = find_hindrance(body);
     if (!(automatic && !hindrance.reason.empty()) &&
-        scene.peridynamics.surface_correction != SurfaceCorrection::none)
+        body.peridynamics.surface_correction != SurfaceCorrection::none)
       return {};
     bool       flat = true;
     const auto held =
-      single_rows(scene, conditions.displacement, conditions.displacement_layer, flat);
-    const auto loaded = single_rows(scene, conditions.traction, conditions.traction_layer, flat);
+      single_rows(body, conditions.displacement, conditions.displacement_layer, flat);
+    const auto loaded = single_rows(body, conditions.traction, conditions.traction_layer, flat);
     // With a constant micromodulus surfaces are meant to be soft.
     if (held.empty() && loaded.empty() &&
-        (!automatic || scene.elasticity.micromodulus == Micromodulus::constant))
+        (!automatic || body.elasticity.micromodulus == Micromodulus::constant))
       return {};
     std::string              text  = automatic ?
                                        "Families of peridynamics end at the sides, because " + hindrance.reason :
@@ -144,18 +144,17 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene)
+  std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body)
   {
     std::array<BeyondSide, 2 * dim> beyond;
     beyond.fill(BeyondSide::nothing);
-    const bool automatic = scene.peridynamics.surface_correction == SurfaceCorrection::automatic;
-    if (!automatic && !scene.peridynamics.completes_families())
+    const bool automatic = body.peridynamics.surface_correction == SurfaceCorrection::automatic;
+    if (!automatic && !body.peridynamics.completes_families())
       return beyond;
-    if (automatic &&
-        (!scene.domain.has_lattice() || !hindrance_of_fictitious_nodes(scene).empty()))
+    if (automatic && (!body.domain.has_lattice() || !hindrance_of_fictitious_nodes(body).empty()))
       return beyond;
-    const auto &conditions = scene.boundary_conditions;
-    if (!automatic || !ends_at_free_sides(scene))
+    const auto &conditions = body.boundary_conditions;
+    if (!automatic || !ends_at_free_sides(body))
       beyond.fill(BeyondSide::continued);
     const auto set = [&](const types::boundary_id side, const BeyondSide value) {
       if (side < 2 * dim)
@@ -167,27 +166,27 @@ namespace PeriDeal
     for (const types::boundary_id side : conditions.symmetry)
       set(side, BeyondSide::mirrored);
     for (unsigned int side = 0; side < 2 * dim; ++side)
-      if (automatic && scene.domain.has_extra_layers() && scene.domain.extra_layers[side] > 0)
+      if (automatic && body.domain.has_extra_layers() && body.domain.extra_layers[side] > 0)
         beyond[side] = BeyondSide::nothing;
     return beyond;
   }
 
 
   template <int dim>
-  bool completes_mesh(const Scene<dim> &scene)
+  bool completes_mesh(const BodyParameters<dim> &body)
   {
-    return !scene.domain.has_lattice() && scene.general.physics == Physics::elasticity &&
-           scene.peridynamics.surface_correction == SurfaceCorrection::automatic &&
-           hindrance_of_fictitious_nodes(scene).empty();
+    return !body.domain.has_lattice() && body.deforms &&
+           body.peridynamics.surface_correction == SurfaceCorrection::automatic &&
+           hindrance_of_fictitious_nodes(body).empty();
   }
 
 
   template <int dim>
-  bool goes_on_beyond(const Scene<dim> &scene, const types::boundary_id side)
+  bool goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side)
   {
-    if (!ends_at_free_sides(scene))
+    if (!ends_at_free_sides(body))
       return true;
-    const auto &conditions = scene.boundary_conditions;
+    const auto &conditions = body.boundary_conditions;
     for (const auto *const list : {&conditions.displacement, &conditions.traction})
       for (const VectorCondition &condition : *list)
         if (conditions.side_of(condition.id) == side)
@@ -197,14 +196,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::string automatic_correction(const Scene<dim> &scene)
+  std::string automatic_correction(const BodyParameters<dim> &body)
   {
-    if (const std::string reason = hindrance_of_fictitious_nodes(scene); !reason.empty())
+    if (const std::string reason = hindrance_of_fictitious_nodes(body); !reason.empty())
       return "none, because " + reason;
-    if (completes_mesh(scene))
-      return ends_at_free_sides(scene) ? "fictitious nodes beyond sides with conditions" :
-                                         "fictitious nodes beyond the whole boundary";
-    const auto               beyond = beyond_sides(scene);
+    if (completes_mesh(body))
+      return ends_at_free_sides(body) ? "fictitious nodes beyond sides with conditions" :
+                                        "fictitious nodes beyond the whole boundary";
+    const auto               beyond = beyond_sides(body);
     std::vector<std::string> names;
     for (unsigned int side = 0; side < 2 * dim; ++side)
       if (beyond[side] != BeyondSide::nothing)
@@ -213,12 +212,12 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                              \
-  template std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene);              \
-  template bool                            completes_mesh(const Scene<dim> &scene);            \
-  template bool        goes_on_beyond(const Scene<dim> &scene, const types::boundary_id side); \
-  template std::string automatic_correction(const Scene<dim> &scene);                          \
-  template std::string note_on_cut_sides(const Scene<dim> &scene);
+#define PERIDEAL_INSTANTIATE(dim)                                                               \
+  template std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);       \
+  template bool                            completes_mesh(const BodyParameters<dim> &body);     \
+  template bool goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side); \
+  template std::string automatic_correction(const BodyParameters<dim> &body);                   \
+  template std::string note_on_cut_sides(const BodyParameters<dim> &body);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -143,6 +143,23 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Cracks<dim>::let_grow(const unsigned int    crack,
+                             const unsigned int    corner,
+                             const Tensor<1, dim> &velocity,
+                             const double          from,
+                             const double          to)
+  {
+    AssertIndexRange(crack, cracks.size());
+    AssertIndexRange(corner, cracks[crack].size());
+    const Point<dim> start = cracks[crack][corner];
+    CrackTip<dim>    tip{crack, corner, {{from, start}}, {}, false};
+    tip.path.emplace_back(to, start + (to - from) * velocity);
+    tips.push_back(tip);
+    end_time = std::max(end_time, to);
+  }
+
+
+  template <int dim>
   void Cracks<dim>::parse_paths()
   {
     for (const std::string &item : split_list(text("Paths"), ';'))
@@ -351,6 +368,11 @@ namespace PeriDeal
   template CrackTip<dim> Cracks<dim>::tip_of(const std::string &, const std::string &) const;      \
   template void          Cracks<dim>::parse_growth();                                              \
   template void          Cracks<dim>::parse_paths();                                               \
+  template void          Cracks<dim>::let_grow(const unsigned int,                                 \
+                                      const unsigned int,                                 \
+                                      const Tensor<1, dim> &,                             \
+                                      const double,                                       \
+                                      const double);                                      \
   template void          Cracks<dim>::tip_error(const CrackTip<dim> &, const std::string &) const; \
   template void          Cracks<dim>::check_tips() const;                                          \
   template void          Cracks<dim>::check_turns(const double) const;                             \

@@ -3,6 +3,7 @@
 
 // The two moduli of section `Material`.
 
+#include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/material.h>
 
@@ -111,6 +112,22 @@ namespace PeriDeal
                       ", phase '" + phases.all().names[region] + "'",
                     fault);
       }
+  }
+
+
+  void Material::set_moduli(const Modulus     a,
+                            const Expression &value_a,
+                            const Modulus     b,
+                            const Expression &value_b)
+  {
+    given_moduli          = {{a, b}};
+    modulus_properties    = {{value_a, value_b}};
+    may_be_incompressible = true; // the laws refuse it where they cannot have it
+    if (!uniform_moduli())
+      return;
+    const std::string fault =
+      fault_of_moduli(value_a.value(dealii::Point<1>()), value_b.value(dealii::Point<1>()));
+    AssertThrow(fault.empty(), UserError(name_of(b) + " of the material: " + fault));
   }
 
 

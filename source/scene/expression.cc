@@ -19,6 +19,13 @@ namespace PeriDeal
     mu::Parser parser;
     double     x = 0., y = 0., z = 0., t = 0., T = 0.;
     bool       uses_time = false, uses_position = false, uses_temperature = false;
+
+    std::function<double(const dealii::Point<3> &, const double)> function; // else the parser
+
+    double value() const
+    {
+      return function ? function({x, y, z}, t) : parser.Eval();
+    }
   };
 
 
@@ -210,6 +217,20 @@ namespace PeriDeal
   {}
 
 
+  Expression::Expression(
+    const std::function<double(const dealii::Point<3> &, const double)> &function,
+    const bool                                                           depends_on_time)
+    : compiled(std::make_shared<Compiled>())
+    , formula("of the program")
+    , where("a function")
+    , constant(0.)
+  {
+    compiled->function      = function;
+    compiled->uses_time     = depends_on_time;
+    compiled->uses_position = true;
+  }
+
+
   Expression::Expression(const std::string &text,
                          const std::string &where,
                          const bool         with_temperature)
@@ -274,7 +295,7 @@ namespace PeriDeal
     compiled->z        = dim > 2 ? p[dim > 2 ? 2 : 0] : 0.;
     compiled->t        = t;
     compiled->T        = temperature;
-    const double value = compiled->parser.Eval();
+    const double value = compiled->value();
     if (!std::isfinite(value) && (collector == nullptr || collector->message.empty()))
       not_finite(p, t, temperature);
     return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();

@@ -200,17 +200,89 @@ namespace PeriDeal
   template Point<2> Part::position() const;
   template Point<3> Part::position() const;
 
-#define PERIDEAL_INSTANTIATE(dim)                                                               \
-  template void               BoundaryConditions<dim>::parse_parts();                           \
-  template void               BoundaryConditions<dim>::check_parts() const;                     \
-  template const Part        *BoundaryConditions<dim>::part(const types::boundary_id) const;    \
-  template types::boundary_id BoundaryConditions<dim>::side_of(const types::boundary_id) const; \
-  template bool BoundaryConditions<dim>::holds_at(const types::boundary_id, const Point<dim> &) \
-    const;                                                                                      \
-  template const SideCondition *BoundaryConditions<dim>::first_at(                              \
-    const std::vector<SideCondition> &,                                                         \
-    const types::boundary_id,                                                                   \
-    const Point<dim> &) const;
+
+  // Conditions that a program gives.
+
+  template <int dim>
+  void BoundaryConditions<dim>::prescribe(const types::boundary_id id, const Expression &value)
+  {
+    dirichlet.push_back({name_of(id), id, value, {}});
+  }
+
+  template <int dim>
+  void BoundaryConditions<dim>::add_flux(const types::boundary_id id, const Expression &value)
+  {
+    flux.push_back({name_of(id), id, value, {}});
+  }
+
+  template <int dim>
+  void BoundaryConditions<dim>::add_convection(const types::boundary_id id,
+                                               const Expression        &coefficient,
+                                               const Expression        &ambient)
+  {
+    convection.push_back({name_of(id), id, ambient, coefficient});
+  }
+
+  template <int dim>
+  void BoundaryConditions<dim>::displace(const types::boundary_id                      id,
+                                         const std::vector<std::optional<Expression>> &values)
+  {
+    AssertDimension(values.size(), dim);
+    VectorCondition condition;
+    condition.name   = name_of(id);
+    condition.id     = id;
+    condition.values = values;
+    condition.held.assign(dim, {});
+    for (const auto &value : values)
+      condition.texts.push_back(value ? value->text() : "free");
+    displacement.push_back(condition);
+  }
+
+  template <int dim>
+  void BoundaryConditions<dim>::pull(const types::boundary_id       id,
+                                     const std::vector<Expression> &values)
+  {
+    AssertDimension(values.size(), dim);
+    VectorCondition condition;
+    condition.name = name_of(id);
+    condition.id   = id;
+    condition.held.assign(dim, {});
+    for (const Expression &value : values)
+      {
+        condition.values.emplace_back(value);
+        condition.texts.push_back(value.text());
+      }
+    traction.push_back(condition);
+  }
+
+  template <int dim>
+  void BoundaryConditions<dim>::name_sides_by_number()
+  {
+    box_sides = false;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template void               BoundaryConditions<dim>::parse_parts();                              \
+  template void               BoundaryConditions<dim>::check_parts() const;                        \
+  template const Part        *BoundaryConditions<dim>::part(const types::boundary_id) const;       \
+  template types::boundary_id BoundaryConditions<dim>::side_of(const types::boundary_id) const;    \
+  template bool BoundaryConditions<dim>::holds_at(const types::boundary_id, const Point<dim> &)    \
+    const;                                                                                         \
+  template const SideCondition *BoundaryConditions<dim>::first_at(                                 \
+    const std::vector<SideCondition> &,                                                            \
+    const types::boundary_id,                                                                      \
+    const Point<dim> &) const;                                                                     \
+  template void BoundaryConditions<dim>::prescribe(const types::boundary_id, const Expression &);  \
+  template void BoundaryConditions<dim>::add_flux(const types::boundary_id, const Expression &);   \
+  template void BoundaryConditions<dim>::add_convection(const types::boundary_id,                  \
+                                                        const Expression &,                        \
+                                                        const Expression &);                       \
+  template void BoundaryConditions<dim>::displace(const types::boundary_id,                        \
+                                                  const std::vector<std::optional<Expression>> &); \
+  template void BoundaryConditions<dim>::pull(const types::boundary_id,                            \
+                                              const std::vector<Expression> &);                    \
+  template void BoundaryConditions<dim>::name_sides_by_number();
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

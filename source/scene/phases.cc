@@ -204,6 +204,11 @@ namespace PeriDeal
   {}
 
 
+  MaterialProperty::MaterialProperty(const double everywhere)
+    : elsewhere(everywhere)
+  {}
+
+
   MaterialProperty::MaterialProperty(const Expression                             &elsewhere,
                                      const std::shared_ptr<const Regions>         &regions,
                                      const std::vector<std::optional<Expression>> &of_regions)

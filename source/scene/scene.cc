@@ -291,37 +291,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  double Scene<dim>::horizon() const
+  void Scene<dim>::take_times()
   {
-    if (peridynamics.horizon > 0.)
-      return peridynamics.horizon;
-    if (!domain.has_lattice())
-      entry_error(peridynamics.where("Horizon"), "is empty, but a mesh file needs it.");
-    const Tensor<1, dim> h        = domain.spacing();
-    double               smallest = h[0];
-    for (unsigned int d = 1; d < dim; ++d)
-      smallest = std::min(smallest, h[d]);
-    return peridynamics.horizon_ratio * smallest;
-  }
-
-
-  template <int dim>
-  CrackHistory<dim> Scene<dim>::crack_history() const
-  {
-    double step = cracks.growth_step;
-    if (step < 0. && !cracks.tips.empty())
-      {
-        if (!domain.has_lattice())
-          entry_error(cracks.where("Growth step"),
-                      "is empty, but a mesh file has no node spacing: give a length.");
-        const Tensor<1, dim> h = domain.spacing();
-        step                   = 0.25 * h[0];
-        for (unsigned int d = 1; d < dim; ++d)
-          step = std::min(step, 0.25 * h[d]);
-      }
-    // Bodies that deform change between any two steps; what diffuses stops at each event.
-    const double whole_steps = general.physics == Physics::elasticity ? -1. : time.time_step;
-    return CrackHistory<dim>(cracks, step, time.steady ? 1. : time.end_time, whole_steps);
+    this->deforms   = general.physics == Physics::elasticity;
+    this->steady    = time.steady;
+    this->time_step = time.time_step;
+    cracks.end_time = time.steady ? 0. : time.end_time;
   }
 
 
@@ -375,6 +350,7 @@ namespace PeriDeal
     domain.parse();
     elasticity.parse(general.physics, dim);
     time.parse();
+    take_times();
     material.parse(general.physics,
                    dim,
                    elasticity.plane,
@@ -402,6 +378,7 @@ namespace PeriDeal
     time.steady =
       (time.steady && !elasticity.computes_temperature) || !material.stores ||
       (general.physics == Physics::elasticity && elasticity.is_static() && !is_loaded_slowly());
+    take_times();
     solver.parse();
     output.parse(time.end_time, time.steady);
     checkpoint.parse(time.end_time, time.steady);
@@ -412,7 +389,6 @@ namespace PeriDeal
     reference.parse();
     units.parse();
 
-    cracks.end_time = time.steady ? 0. : time.end_time;
     if (domain.has_lattice())
       {
         cracks.set_box(domain.lower, domain.upper);
@@ -440,7 +416,7 @@ namespace PeriDeal
         "mesh(id) refers to the material ids of a mesh file, but 'Shape' in section 'Domain' is another.");
     check_combinations(*this);
     check_steady(*this);
-    crack_history(); // for its errors
+    this->crack_history(); // for its errors
     check_image(*this);
     check_points_of_output(*this);
     note_doubtful_entries(*this);

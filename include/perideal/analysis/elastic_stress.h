@@ -5,7 +5,7 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 
-#include <perideal/scene/scene.h>
+#include <perideal/scene/body_parameters.h>
 
 namespace PeriDeal
 {
@@ -17,7 +17,7 @@ namespace PeriDeal
    */
   template <int dim>
   dealii::SymmetricTensor<2, 3> full_stress(const dealii::SymmetricTensor<2, dim> &stress,
-                                            const Scene<dim>                      &scene,
+                                            const BodyParameters<dim>             &body,
                                             const dealii::Point<dim>              &p,
                                             const double temperature_change);
 
@@ -26,7 +26,7 @@ namespace PeriDeal
    */
   template <int dim>
   dealii::SymmetricTensor<2, 3> stress_of_strain(const dealii::SymmetricTensor<2, dim> &strain,
-                                                 const Scene<dim>                      &scene,
+                                                 const BodyParameters<dim>             &body,
                                                  const dealii::Point<dim>              &p,
                                                  const double temperature_change);
 } // namespace PeriDeal

@@ -41,7 +41,7 @@ namespace PeriDeal
      * Collective. Throws UserError for conductivities that are not positive. Families have to
      * outlive this object.
      */
-    DiffusionBonds(Families<dim> &families, const Scene<dim> &scene);
+    DiffusionBonds(Families<dim> &families, const BodyParameters<dim> &body);
 
     /**
      * The family of an owned node, in its fixed order. @p bonds is overwritten, its memory is

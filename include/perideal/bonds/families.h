@@ -6,7 +6,7 @@
 #include <perideal/bonds/crack_set.h>
 #include <perideal/bonds/kernel_weights.h>
 #include <perideal/bonds/neighbors.h>
-#include <perideal/scene/scene.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <functional>
 #include <vector>
@@ -38,10 +38,10 @@ namespace PeriDeal
      * @param has_bonds all nodes if empty. Off the lattice discrete calibration is the mean over
      *                  these, and no other has to have neighbours.
      */
-    Families(Nodes<dim>       &nodes,
-             const Scene<dim> &scene,
-             const HaloAround  halo      = HaloAround::nodes,
-             const HasBonds   &has_bonds = {});
+    Families(Nodes<dim>                &nodes,
+             const BodyParameters<dim> &body,
+             const HaloAround           halo      = HaloAround::nodes,
+             const HasBonds            &has_bonds = {});
 
     // Its parts refer to each other.
     Families(const Families &)            = delete;

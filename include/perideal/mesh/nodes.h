@@ -21,6 +21,9 @@
 
 namespace PeriDeal
 {
+  template <int dim>
+  struct BodyParameters;
+
   /** What another process needs to know of a node to build bonds to it. */
   template <int dim>
   struct NodeRecord
@@ -68,6 +71,9 @@ namespace PeriDeal
           const Domain<dim>             &domain,
           const Cracks<dim>             &cracks,
           const NodalVolume              nodal_volume);
+
+    /** The same, of the body's own parameters: those of peridynamics in the whole body. */
+    Nodes(const dealii::DoFHandler<dim> &dof_handler, const BodyParameters<dim> &body);
 
     unsigned int n_owned() const;
     /** Owned nodes and ghosts. */

@@ -29,7 +29,9 @@ namespace PeriDeal
   {
   public:
     /** Bonds and scene have to outlive this object. Collective. Throws UserError. */
-    BondBreaking(SolidBonds<dim> &bonds, const SolidLoads<dim> &loads, const Scene<dim> &scene);
+    BondBreaking(SolidBonds<dim>           &bonds,
+                 const SolidLoads<dim>     &loads,
+                 const BodyParameters<dim> &body);
 
     /**
      * Break what is stretched too far at u: of bonds inside the body and beyond its sides those
@@ -86,13 +88,13 @@ namespace PeriDeal
     void               keep_places(); // of what is overstretched
     unsigned long long break_overstretched(const double t);
 
-    SolidBonds<dim>          &bonds;
-    const Scene<dim>         &scene;
-    const bool                breaks, changes; // some bond may break, or be cut by a growing crack
-    std::vector<double>       critical;
-    BondState                 state;
-    BreakHistory              so_far;
-    std::vector<unsigned int> loaded_side;    // which in `Traction` is within a horizon of these
-    Overstretched             inside, beyond; // what is to break next, inside by stored bonds
+    SolidBonds<dim>           &bonds;
+    const BodyParameters<dim> &body;
+    const bool                 breaks, changes; // some bond may break, or be cut by a growing crack
+    std::vector<double>        critical;
+    BondState                  state;
+    BreakHistory               so_far;
+    std::vector<unsigned int>  loaded_side;    // which in `Traction` is within a horizon of these
+    Overstretched              inside, beyond; // what is to break next, inside by stored bonds
   };
 } // namespace PeriDeal

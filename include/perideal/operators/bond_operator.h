@@ -29,7 +29,7 @@ namespace PeriDeal
      * Collective. Throws UserError, among others for isolated nodes, a storage that is not
      * positive, a form that does not suit.
      */
-    BondOperator(Nodes<dim> &nodes, const Scene<dim> &scene);
+    BondOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body);
 
     void apply_then(Vector &y, const Vector &x, const RowsAction &finish) const override;
     void residual_then(Vector           &r,
@@ -99,7 +99,7 @@ namespace PeriDeal
     }
 
   private:
-    using DiffusionOperatorBase<dim>::scene;
+    using DiffusionOperatorBase<dim>::body;
     using DiffusionOperatorBase<dim>::capacity;
     using DiffusionOperatorBase<dim>::stiffness_diagonal;
     using DiffusionOperatorBase<dim>::bounds;

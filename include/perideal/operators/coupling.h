@@ -141,20 +141,21 @@ namespace PeriDeal
 
   /** The coupling of what diffuses. Adds the halo to the nodes. Collective. Throws UserError. */
   template <int dim>
-  std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>          &nodes,
-                                               const Scene<dim>    &scene,
-                                               const Zone<dim>     &zone,
-                                               const CouplingScheme scheme);
+  std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>                &nodes,
+                                               const BodyParameters<dim> &body,
+                                               const Zone<dim>           &zone,
+                                               const CouplingScheme       scheme);
 
   /** The coupling of a solid. Otherwise the same. */
   template <int dim>
-  std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim> &nodes, const Scene<dim> &scene);
+  std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim>                &nodes,
+                                                     const BodyParameters<dim> &body);
 
   /**
    * Families of a solid everywhere, with nothing left to the elements: peridynamics alone.
    * Otherwise the same.
    */
   template <int dim>
-  std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim>       &nodes,
-                                                          const Scene<dim> &scene);
+  std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim>                &nodes,
+                                                          const BodyParameters<dim> &body);
 } // namespace PeriDeal

@@ -6,7 +6,7 @@
 #include <deal.II/base/partitioner.h>
 
 #include <perideal/operators/spectrum.h>
-#include <perideal/scene/scene.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <memory>
 
@@ -64,12 +64,12 @@ namespace PeriDeal
     bool update(const double t) override;
     bool depends_on_solution() const override
     {
-      return scene.material.depends_on_temperature();
+      return body.material.depends_on_temperature();
     }
 
     bool capacity_depends_on_solution() const override
     {
-      return scene.material.storage_depends_on_temperature();
+      return body.material.storage_depends_on_temperature();
     }
 
     Balance      balance(const Vector &u, const double t, const bool steady) const override;
@@ -92,7 +92,7 @@ namespace PeriDeal
      * @param layout     of the vectors; if null, set_layout() has to be called
      * @param fill_noise as of SpectralBounds
      */
-    DiffusionOperatorBase(const Scene<dim>                    &scene,
+    DiffusionOperatorBase(const BodyParameters<dim>           &body,
                           const double                         start,
                           const Layout                        &layout,
                           const std::function<void(Vector &)> &fill_noise);
@@ -116,11 +116,11 @@ namespace PeriDeal
     /** Of an owned unknown, for messages. Not collective. */
     virtual dealii::Point<dim> position(const unsigned int local_index) const = 0;
 
-    const Scene<dim>       &scene;
-    Layout                  layout;
-    const CrackHistory<dim> history;
-    double                  cracks_of; // representative time of the cracks in K
-    Vector                  capacity, stiffness_diagonal;
-    SpectralBounds          bounds;
+    const BodyParameters<dim> &body;
+    Layout                     layout;
+    const CrackHistory<dim>    history;
+    double                     cracks_of; // representative time of the cracks in K
+    Vector                     capacity, stiffness_diagonal;
+    SpectralBounds             bounds;
   };
 } // namespace PeriDeal

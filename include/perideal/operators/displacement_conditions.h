@@ -5,7 +5,7 @@
 
 #include <perideal/base/types.h>
 #include <perideal/operators/elastic_operator.h>
-#include <perideal/scene/scene.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <map>
 #include <string>
@@ -43,7 +43,7 @@ namespace PeriDeal
      */
     DisplacementConditions(const std::vector<NodeOnSide<dim>>    &nodes,
                            const std::vector<dealii::Point<dim>> &positions,
-                           const Scene<dim>                      &scene,
+                           const BodyParameters<dim>             &body,
                            const bool                             at_centers,
                            const MPI_Comm                         communicator);
 
@@ -52,7 +52,7 @@ namespace PeriDeal
      * @param at_centers which pins are meant. Not collective.
      */
     void pin(const std::vector<dealii::Point<dim>> &positions,
-             const Scene<dim>                      &scene,
+             const BodyParameters<dim>             &body,
              const bool                             at_centers);
 
     /**
@@ -110,6 +110,6 @@ namespace PeriDeal
   template <int dim>
   ForceBalance gather_forces(
     const std::map<dealii::types::boundary_id, dealii::Tensor<1, dim>> &forces,
-    const Scene<dim>                                                   &scene,
+    const BodyParameters<dim>                                          &body,
     const MPI_Comm                                                      communicator);
 } // namespace PeriDeal

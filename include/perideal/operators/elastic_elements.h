@@ -50,7 +50,7 @@ namespace PeriDeal
   public:
     /** @param dof_handler FE_Q(p) with dofs distributed. Collective. Throws UserError. */
     ElasticElements(const dealii::DoFHandler<dim> &dof_handler,
-                    const Scene<dim>              &scene,
+                    const BodyParameters<dim>     &body,
                     std::unique_ptr<Coupling<dim>> coupling = nullptr);
     ~ElasticElements() override;
 
@@ -140,7 +140,7 @@ namespace PeriDeal
     void find_loads(Vector &loads, const double t) const override;
 
   private:
-    using SolidOperator<dim>::scene;
+    using SolidOperator<dim>::body;
     using SolidOperator<dim>::nodes;
     using SolidOperator<dim>::unknowns;
     using SolidOperator<dim>::conditions;

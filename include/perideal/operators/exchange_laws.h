@@ -62,7 +62,7 @@ namespace PeriDeal
       return {{1.}};
     }
 
-    static CellStiffness<dim> stiffness(const Scene<dim> &scene);
+    static CellStiffness<dim> stiffness(const BodyParameters<dim> &body);
 
     /** w over that of the families, off a lattice. */
     static double scale_of(const dealii::Tensor<1, dim> &)
@@ -82,7 +82,7 @@ namespace PeriDeal
      */
     static CellSurplus calibrate(LatticeBonds<dim> &bonds);
 
-    ConductingBonds(Families<dim> &families, const Scene<dim> &scene);
+    ConductingBonds(Families<dim> &families, const BodyParameters<dim> &body);
 
     /** What the cracks leave of a bond, and whether it crosses any. */
     double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const
@@ -134,7 +134,7 @@ namespace PeriDeal
       return xi;
     }
 
-    static CellStiffness<dim> stiffness(const Scene<dim> &scene);
+    static CellStiffness<dim> stiffness(const BodyParameters<dim> &body);
 
     /** The mean of cos^4 over all directions is 3/(dim (dim + 2)), that of cos^2 1/dim. */
     static double scale_of(const dealii::Tensor<1, dim> &xi)
@@ -159,7 +159,7 @@ namespace PeriDeal
      */
     static CellSurplus calibrate(LatticeBonds<dim> &bonds);
 
-    ElasticBonds(Families<dim> &families, const Scene<dim> &)
+    ElasticBonds(Families<dim> &families, const BodyParameters<dim> &)
       : families(families)
     {}
 

@@ -45,7 +45,7 @@ namespace PeriDeal
      * UserError for material values that are not positive and for nodes that `removed` isolates.
      */
     FEMOperator(const dealii::DoFHandler<dim> &dof_handler,
-                const Scene<dim>              &scene,
+                const BodyParameters<dim>     &body,
                 std::unique_ptr<Coupling<dim>> coupling = nullptr,
                 const double                   start    = 0.);
 
@@ -84,7 +84,7 @@ namespace PeriDeal
 
     bool has_steady_state() const override
     {
-      return prescribed.any() || !scene.boundary_conditions.convection.empty();
+      return prescribed.any() || !body.boundary_conditions.convection.empty();
     }
 
     void surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
@@ -104,7 +104,7 @@ namespace PeriDeal
 
     const Material &material() const
     {
-      return scene.material;
+      return body.material;
     }
 
     /** Cells of this process that a crack cuts, by active cell index. */
@@ -162,7 +162,7 @@ namespace PeriDeal
 
   private:
     using Cell = typename CellMatrices<dim>::Cell;
-    using DiffusionOperatorBase<dim>::scene;
+    using DiffusionOperatorBase<dim>::body;
     using DiffusionOperatorBase<dim>::layout;
     using DiffusionOperatorBase<dim>::history;
     using DiffusionOperatorBase<dim>::capacity;

@@ -7,7 +7,7 @@
 #include <perideal/bonds/families.h>
 #include <perideal/laws/interface.h>
 #include <perideal/mesh/lattice_sites.h>
-#include <perideal/scene/scene.h>
+#include <perideal/scene/body_parameters.h>
 #include <perideal/scene/zone.h>
 
 #include <functional>
@@ -70,11 +70,11 @@ namespace PeriDeal
      * Adds the halo to the nodes. Collective. Throws UserError for a zone without nodes.
      * @param whole_way the zone around cracks that grow is that of their whole way from the start
      */
-    LatticeBonds(Nodes<dim>               &nodes,
-                 const Scene<dim>         &scene,
-                 const Zone<dim>          &zone,
-                 const CellStiffness<dim> &stiffness,
-                 const bool                whole_way);
+    LatticeBonds(Nodes<dim>                &nodes,
+                 const BodyParameters<dim> &body,
+                 const Zone<dim>           &zone,
+                 const CellStiffness<dim>  &stiffness,
+                 const bool                 whole_way);
 
     /** xi. */
     dealii::Tensor<1, dim> vector_of(const Offset &offset) const;
@@ -119,10 +119,10 @@ namespace PeriDeal
     bool                 plain = true; // no void, one stiffness, one cell size
 
   private:
-    void            find_offsets();
-    void            find_sites(const Scene<dim> &scene, const bool whole_way);
-    void            set_table_around(const std::vector<bool> &candidates);
-    void            find_cells(const Scene<dim> &scene, const CellStiffness<dim> &stiffness);
+    void find_offsets();
+    void find_sites(const BodyParameters<dim> &body, const bool whole_way);
+    void set_table_around(const std::vector<bool> &candidates);
+    void find_cells(const BodyParameters<dim> &body, const CellStiffness<dim> &stiffness);
     const SiteData *at(const Site &site) const;
     SiteData       &own(const Site &site);
     Site            site_of(const unsigned int node) const;

@@ -6,7 +6,7 @@
 #include <perideal/operators/coupling.h>
 #include <perideal/operators/exchange_laws.h>
 #include <perideal/operators/lattice_bonds.h>
-#include <perideal/scene/scene.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <vector>
 
@@ -32,7 +32,7 @@ namespace PeriDeal
     using typename Coupling<dim>::Cell;
 
     /** Collective. Throws UserError for a zone without nodes, and as Law::calibrate(). */
-    LatticeExchange(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone);
+    LatticeExchange(Nodes<dim> &nodes, const BodyParameters<dim> &body, const Zone<dim> &zone);
 
     void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
     void possible_neighbors_of(const unsigned int         node,

@@ -6,7 +6,7 @@
 #include <perideal/mesh/cell_paths.h>
 #include <perideal/operators/coupling.h>
 #include <perideal/operators/exchange_laws.h>
-#include <perideal/scene/scene.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <map>
 #include <memory>
@@ -39,7 +39,7 @@ namespace PeriDeal
      * Collective. Throws UserError for a zone without nodes, and for cells so distorted that hardly
      * any bond is left.
      */
-    MeshExchange(Nodes<dim> &nodes, const Scene<dim> &scene, const Zone<dim> &zone);
+    MeshExchange(Nodes<dim> &nodes, const BodyParameters<dim> &body, const Zone<dim> &zone);
     ~MeshExchange() override;
 
     void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
@@ -75,7 +75,7 @@ namespace PeriDeal
       double       scale = 1.;
     };
 
-    void                   find_cells(const Scene<dim> &scene);
+    void                   find_cells(const BodyParameters<dim> &body);
     void                   send_cells();
     void                   share_strains();
     void                   find_paths(const std::vector<bool> &hanging);

@@ -39,7 +39,7 @@ namespace PeriDeal
     };
 
     /** Throws UserError for treatments that need a box. Collective. */
-    NodeConstraints(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene);
+    NodeConstraints(const DiffusionBonds<dim> &bonds, const BodyParameters<dim> &body);
 
     /** Of an owned node. */
     Kind kind(const unsigned int node) const;
@@ -65,7 +65,7 @@ namespace PeriDeal
      * Bonds have changed: slaves follow from them anew, but are the same nodes. Throws UserError
      * where nothing is left of which they follow. Collective if there are slaves.
      */
-    void update(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene);
+    void update(const DiffusionBonds<dim> &bonds, const BodyParameters<dim> &body);
 
   private:
     struct SlaveFlux
@@ -85,10 +85,10 @@ namespace PeriDeal
         masters; // local nodes that are not coupled slaves
     };
 
-    void find_prescribed(const Scene<dim> &scene);
-    void find_slaves(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene);
+    void find_prescribed(const BodyParameters<dim> &body);
+    void find_slaves(const DiffusionBonds<dim> &bonds, const BodyParameters<dim> &body);
 
-    void check_parts(const DiffusionBonds<dim> &bonds, const Scene<dim> &scene) const;
+    void check_parts(const DiffusionBonds<dim> &bonds, const BodyParameters<dim> &body) const;
 
     // These two return what is wrong, or nothing: only some processes may see it.
     std::string extrapolate(const DiffusionBonds<dim> &bonds,
@@ -102,7 +102,7 @@ namespace PeriDeal
                            Slave                         &slave) const;
     std::string extrapolate_layer(const DiffusionBonds<dim> &bonds,
                                   const unsigned int         side,
-                                  const Scene<dim>          &scene);
+                                  const BodyParameters<dim> &body);
     void        couple_slaves(const Nodes<dim> &nodes);
     void        set_slaves(Vector &u, const double t, const bool homogeneous) const;
 

@@ -6,7 +6,7 @@
 #include <perideal/base/types.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/mesh/nodes.h>
-#include <perideal/scene/scene.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <vector>
 
@@ -21,7 +21,7 @@ namespace PeriDeal
   {
   public:
     /** @param nodes with their halo. q is to be filled in. Collective. */
-    NodeLaws(const Nodes<dim> &nodes, const Scene<dim> &scene);
+    NodeLaws(const Nodes<dim> &nodes, const BodyParameters<dim> &body);
 
     const StateLaw &operator[](const unsigned int node) const
     {

@@ -37,7 +37,7 @@ namespace PeriDeal
 
     NodeLoads(const Nodes<dim>           &nodes,
               const NodeConstraints<dim> &constraints,
-              const Scene<dim>           &scene);
+              const BodyParameters<dim>  &body);
 
     /** Loads, or prescribed values of the conditions, change with time. */
     bool depends_on_time() const

@@ -18,7 +18,7 @@ namespace PeriDeal
   struct SolidBonds
   {
     /** Adds the halo to the nodes. Collective. Throws UserError, among others: isolated nodes. */
-    SolidBonds(Nodes<dim> &nodes, const Scene<dim> &scene);
+    SolidBonds(Nodes<dim> &nodes, const BodyParameters<dim> &body);
 
     SolidBonds(const SolidBonds &) = delete;
 

@@ -19,7 +19,7 @@ namespace PeriDeal
      * Where families go on beyond sides between which and the nodes there is half a cell, tractions
      * are drawn on to the side. Collective.
      */
-    SolidLoads(const SolidBonds<dim> &bonds, const Scene<dim> &scene);
+    SolidLoads(const SolidBonds<dim> &bonds, const BodyParameters<dim> &body);
 
     /**
      * Call visit(side, unknown, force) for all of time t on this process's unknowns; the side of
@@ -28,7 +28,7 @@ namespace PeriDeal
     template <typename Visit>
     void for_each(const double t, const Visit &visit) const
     {
-      const auto &force = scene.initial_and_source.body_force;
+      const auto &force = body.initial_and_source.body_force;
       for (unsigned int i = 0; i < nodes.n_owned() && !force.empty(); ++i)
         for (unsigned int d = 0; d < dim; ++d)
           visit(dealii::numbers::internal_face_boundary_id,
@@ -37,7 +37,7 @@ namespace PeriDeal
       for (const TractionShare<dim> &share : tractions)
         {
           const auto &values =
-            find_condition(scene.boundary_conditions.traction, share.side)->values;
+            find_condition(body.boundary_conditions.traction, share.side)->values;
           for (unsigned int d = 0; d < dim; ++d)
             visit(share.side, dim * share.node + d, share.area * values[d]->value(share.place, t));
         }
@@ -50,7 +50,7 @@ namespace PeriDeal
     std::vector<unsigned int> sides_nearby(const Families<dim> &families) const;
 
   private:
-    const Scene<dim>               &scene;
+    const BodyParameters<dim>      &body;
     const Nodes<dim>               &nodes;
     std::vector<TractionShare<dim>> tractions;
   };

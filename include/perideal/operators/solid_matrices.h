@@ -31,7 +31,7 @@ namespace PeriDeal
   template <int dim>
   void assemble_surrogate(const SolidBonds<dim>                  &bonds,
                           const BondState                        &state,
-                          const Scene<dim>                       &scene,
+                          const BodyParameters<dim>              &body,
                           const Vector                           &diagonal,
                           const Vector                           &held,
                           dealii::TrilinosWrappers::SparseMatrix &matrix);

@@ -101,7 +101,7 @@ namespace PeriDeal
     using Layout = std::shared_ptr<const dealii::Utilities::MPI::Partitioner>;
 
     /** @param of_nodes the layout; if null, set_layout() has to be called by constructors. */
-    explicit SolidOperator(const Scene<dim> &scene, const Layout &of_nodes = nullptr);
+    explicit SolidOperator(const BodyParameters<dim> &body, const Layout &of_nodes = nullptr);
 
     /** Sets the layouts and allocates all vectors, to zero. Collective. */
     void set_layout(const Layout &of_nodes);
@@ -136,8 +136,8 @@ namespace PeriDeal
     double temperature_change_at(const unsigned int node) const;
     double thermal_strain(const dealii::Point<dim> &p, const double temperature_change) const
     {
-      return thermal_strain_factor(scene.material.moduli(p), dim, scene.elasticity.plane) *
-             scene.material.thermal_expansion.value(p) * temperature_change;
+      return thermal_strain_factor(body.material.moduli(p), dim, body.elasticity.plane) *
+             body.material.thermal_expansion.value(p) * temperature_change;
     }
 
     double thermal_strain_at(const unsigned int node) const
@@ -145,7 +145,7 @@ namespace PeriDeal
       return thermal_strain(position(node), temperature_change_at(node));
     }
 
-    const Scene<dim>                            &scene;
+    const BodyParameters<dim>                   &body;
     const CrackHistory<dim>                      history;
     double                                       cracks_of; // representative time of those in K
     Layout                                       nodes, unknowns;

@@ -55,14 +55,14 @@ namespace PeriDeal
      * Sets q of the owned nodes to the sums over these bonds. Families and laws have to outlive
      * this object. Collective. Throws UserError: isolated nodes.
      */
-    SolidRows(const Families<dim> &families, NodeLaws<dim> &laws, const Scene<dim> &scene);
+    SolidRows(const Families<dim> &families, NodeLaws<dim> &laws, const BodyParameters<dim> &body);
     ~SolidRows();
 
     /**
      * To be called once q is final and up to date on ghosts, unless `Surface correction` changes it
      * here. Collective.
      */
-    void find_springs(const Scene<dim> &scene);
+    void find_springs(const BodyParameters<dim> &body);
 
     /** Visit the bonds of an owned node, broken or not, stored or not, in its family's order. */
     template <typename Visit>
@@ -182,10 +182,10 @@ namespace PeriDeal
 
     bool              has_complete_family(const unsigned int i) const; // cut or not
     void              list_lattice_bonds();
-    std::vector<bool> find_changing(const Scene<dim> &scene) const;
+    std::vector<bool> find_changing(const BodyParameters<dim> &body) const;
     void              store(const unsigned int i, const Family &family, std::string &message);
     double weight_of(const unsigned int i, const Family &family, std::string &message) const;
-    void   correct_surface(const Scene<dim> &scene);
+    void   correct_surface(const BodyParameters<dim> &body);
     void   make_lattice();
 
     const Families<dim>                &families;

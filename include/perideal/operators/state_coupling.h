@@ -7,7 +7,7 @@
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/node_families.h>
 #include <perideal/operators/weighted_coupling.h>
-#include <perideal/scene/scene.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <optional>
 #include <vector>
@@ -46,7 +46,7 @@ namespace PeriDeal
 
     /** As WeightedCoupling. */
     StateCoupling(Nodes<dim>                      &nodes,
-                  const Scene<dim>                &scene,
+                  const BodyParameters<dim>       &body,
                   const Zone<dim>                 &zone,
                   std::unique_ptr<const Weighting> weighting);
 

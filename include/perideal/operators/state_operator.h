@@ -38,7 +38,7 @@ namespace PeriDeal
   {
   public:
     /** Adds the halo to the nodes. Collective. Throws UserError, among others: isolated nodes. */
-    StateOperator(Nodes<dim> &nodes, const Scene<dim> &scene);
+    StateOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body);
 
     Spectrum spectrum() const override;
     void     surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
@@ -94,7 +94,7 @@ namespace PeriDeal
     void find_loads(Vector &loads, const double t) const override;
 
   private:
-    using SolidOperator<dim>::scene;
+    using SolidOperator<dim>::body;
     using SolidOperator<dim>::conditions;
     using SolidOperator<dim>::mass;
     using SolidOperator<dim>::stiffness_diagonal;

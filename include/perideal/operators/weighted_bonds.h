@@ -18,7 +18,7 @@ namespace PeriDeal
 
     /** As WeightedCoupling. */
     WeightedBonds(Nodes<dim>                      &nodes,
-                  const Scene<dim>                &scene,
+                  const BodyParameters<dim>       &body,
                   const Zone<dim>                 &zone,
                   std::unique_ptr<const Weighting> weighting);
 

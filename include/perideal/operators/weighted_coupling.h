@@ -5,7 +5,7 @@
 
 #include <perideal/operators/coupling.h>
 #include <perideal/operators/node_weights.h>
-#include <perideal/scene/scene.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <memory>
 #include <vector>
@@ -68,7 +68,7 @@ namespace PeriDeal
      * @param whole_way the zone around cracks that grow is that of their whole way from the start
      */
     WeightedCoupling(Nodes<dim>                      &nodes,
-                     const Scene<dim>                &scene,
+                     const BodyParameters<dim>       &body,
                      const Zone<dim>                 &zone,
                      std::unique_ptr<const Weighting> weighting,
                      const bool                       whole_way);

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/scene/scene.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <array>
 #include <string>
@@ -26,7 +26,7 @@ namespace PeriDeal
    * as those of their own families. Not collective.
    */
   template <int dim>
-  std::array<BeyondSide, 2 * dim> beyond_sides(const Scene<dim> &scene);
+  std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);
 
 
   /**
@@ -34,12 +34,12 @@ namespace PeriDeal
    * correction = auto`. Not collective.
    */
   template <int dim>
-  bool completes_mesh(const Scene<dim> &scene);
+  bool completes_mesh(const BodyParameters<dim> &body);
 
 
   /** Then: beyond this one, of those that are no planes of symmetry. Not collective. */
   template <int dim>
-  bool goes_on_beyond(const Scene<dim> &scene, const dealii::types::boundary_id side);
+  bool goes_on_beyond(const BodyParameters<dim> &body, const dealii::types::boundary_id side);
 
 
   /**
@@ -47,7 +47,7 @@ namespace PeriDeal
    * other corrections.
    */
   template <int dim>
-  std::string hindrance_of_fictitious_nodes(const Scene<dim> &scene);
+  std::string hindrance_of_fictitious_nodes(const BodyParameters<dim> &body);
 
 
   /**
@@ -56,7 +56,7 @@ namespace PeriDeal
    * where nothing is held or loaded so. Not collective.
    */
   template <int dim>
-  std::string note_on_cut_sides(const Scene<dim> &scene);
+  std::string note_on_cut_sides(const BodyParameters<dim> &body);
 
 
   /**
@@ -64,5 +64,5 @@ namespace PeriDeal
    * "none" and why.
    */
   template <int dim>
-  std::string automatic_correction(const Scene<dim> &scene);
+  std::string automatic_correction(const BodyParameters<dim> &body);
 } // namespace PeriDeal

@@ -12,6 +12,7 @@
 #include <perideal/scene/vector_conditions.h>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,23 @@ namespace PeriDeal
     std::vector<Part> parts;
     /** Names of a mesh file for its boundary ids. To be set before parse(). */
     std::map<std::string, dealii::types::boundary_id> physical_names;
+
+    /**
+     * For programs: a value, a flux into the body or a convection on the side with this boundary id
+     * of what diffuses; a displacement (components without a value are free) or a traction of a
+     * solid. Where two sides with values meet, the one given first holds.
+     */
+    void prescribe(const dealii::types::boundary_id id, const Expression &value);
+    void add_flux(const dealii::types::boundary_id id, const Expression &value);
+    void add_convection(const dealii::types::boundary_id id,
+                        const Expression                &coefficient,
+                        const Expression                &ambient);
+    void displace(const dealii::types::boundary_id              id,
+                  const std::vector<std::optional<Expression>> &values);
+    void pull(const dealii::types::boundary_id id, const std::vector<Expression> &values);
+
+    /** Sides have no names of a box. */
+    void name_sides_by_number();
 
     /** The condition of the given list on a side or part, by its own id, or nullptr. */
     static const SideCondition *find(const std::vector<SideCondition> &list,

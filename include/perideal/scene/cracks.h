@@ -64,7 +64,7 @@ namespace PeriDeal
     Expression                 transmission;              // of t alone
     double                     contact_conductance = -1.; // negative: not given
     double                     growth_step         = -1.; // length; negative: not given
-    double end_time = 0.; // of the run; from section `Time` by Scene::parse_and_validate()
+    double end_time = 0.; // of the run, 0 if it has no time; from section `Time`
 
     /**
      * Throws UserError: wrong points, no length or area, not planar, cracks of another dimension,
@@ -72,6 +72,16 @@ namespace PeriDeal
      * their plane.
      */
     void parse(const Physics physics = Physics::heat);
+
+    /**
+     * For programs: let an end (a corner in 3D) of a crack move with a velocity from one time to
+     * another, no sooner than which the run ends.
+     */
+    void let_grow(const unsigned int            crack,
+                  const unsigned int            corner,
+                  const dealii::Tensor<1, dim> &velocity,
+                  const double                  from,
+                  const double                  to);
 
     /** Cracks or their transmission change with time. */
     bool change() const;

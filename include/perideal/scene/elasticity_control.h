@@ -18,10 +18,10 @@ namespace PeriDeal
   public:
     ElasticityControl();
 
-    ElasticModel model      = ElasticModel::state_based;
+    ElasticModel model        = ElasticModel::state_based;
     Micromodulus micromodulus = Micromodulus::family; // bond-based only
-    PlaneState   plane      = PlaneState::stress; // two dimensions only
-    Kinematics   kinematics = Kinematics::linear;
+    PlaneState   plane        = PlaneState::stress;   // two dimensions only
+    Kinematics   kinematics   = Kinematics::linear;
     // Of x, y, z; what strains the body is this times `Thermal expansion`; 0 where it is computed.
     Expression    temperature_change;
     bool          computes_temperature  = false; // by the heat problem of the same scene

@@ -7,6 +7,7 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -23,7 +24,14 @@ namespace PeriDeal
     /** The constant zero. */
     Expression();
 
-    explicit Expression(const double constant);
+    Expression(const double constant); // a number is a formula, too
+
+    /**
+     * What a program computes itself, of a point (coordinates beyond dim are zero) and t.
+     * @param depends_on_time else it has the same value at all times
+     */
+    Expression(const std::function<double(const dealii::Point<3> &, const double)> &function,
+               const bool depends_on_time);
 
     /**
      * @param text  the formula

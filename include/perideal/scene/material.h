@@ -52,6 +52,12 @@ namespace PeriDeal
     template <int dim>
     Moduli moduli(const dealii::Point<dim> &p) const;
 
+    /** For programs: two moduli of a body without phases, numbers or functions of x, y, z. */
+    void set_moduli(const Modulus     a,
+                    const Expression &value_a,
+                    const Modulus     b,
+                    const Expression &value_b);
+
     /** The same moduli in the whole body, given by numbers. */
     bool uniform_moduli() const;
 

@@ -109,7 +109,8 @@ namespace PeriDeal
     MaterialProperty() = default;
 
     /** The same formula everywhere. */
-    explicit MaterialProperty(const Expression &everywhere);
+    MaterialProperty(const Expression &everywhere);
+    MaterialProperty(const double everywhere);
 
     MaterialProperty(const Expression                             &elsewhere,
                      const std::shared_ptr<const Regions>         &regions,
@@ -171,8 +172,8 @@ namespace PeriDeal
      * @param may_vanish which of the entries that have to be positive may be 0
      */
     void parse(
-      const Physics                                  physics = Physics::heat,
-      const std::shared_ptr<const PhaseMap>         &image   = nullptr,
+      const Physics                                  physics    = Physics::heat,
+      const std::shared_ptr<const PhaseMap>         &image      = nullptr,
       const std::function<bool(const std::string &)> may_vanish = [](const std::string &) {
         return false;
       });

@@ -3,15 +3,9 @@
 
 #pragma once
 
-#include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/body_parameters.h>
 #include <perideal/scene/checkpoint_control.h>
 #include <perideal/scene/control.h>
-#include <perideal/scene/coupling_control.h>
-#include <perideal/scene/crack_history.h>
-#include <perideal/scene/domain.h>
-#include <perideal/scene/elasticity_control.h>
-#include <perideal/scene/material.h>
-#include <perideal/scene/models.h>
 #include <perideal/scene/physics.h>
 
 #include <mpi.h>
@@ -63,18 +57,19 @@ namespace PeriDeal
    * objects of that section.
    */
   template <int dim>
-  struct Scene
+  struct Scene : BodyParameters<dim>
   {
+    using BodyParameters<dim>::domain;
+    using BodyParameters<dim>::material;
+    using BodyParameters<dim>::initial_and_source;
+    using BodyParameters<dim>::boundary_conditions;
+    using BodyParameters<dim>::cracks;
+    using BodyParameters<dim>::peridynamics;
+    using BodyParameters<dim>::coupling;
+    using BodyParameters<dim>::elasticity;
+    using BodyParameters<dim>::finite_elements;
+
     General                 general;
-    Domain<dim>             domain;
-    Material                material;
-    InitialAndSource        initial_and_source;
-    BoundaryConditions<dim> boundary_conditions;
-    Cracks<dim>             cracks;
-    Peridynamics            peridynamics;
-    CouplingControl         coupling;
-    ElasticityControl       elasticity;
-    FiniteElements          finite_elements;
     TimeControl             time;
     SolverControlParameters solver;
     OutputControl<dim>      output;
@@ -87,18 +82,6 @@ namespace PeriDeal
      * without what elasticity alone has; else null.
      */
     std::shared_ptr<const Scene<dim>> heat;
-
-    /**
-     * The horizon as a length: `Horizon`, or `Horizon ratio` times the smallest spacing of the
-     * lattice.
-     */
-    double horizon() const;
-
-    /**
-     * When the cracks change, and how they are in between. Throws UserError, among others where a
-     * mesh file needs `Growth step`. The scene must outlive it.
-     */
-    CrackHistory<dim> crack_history() const;
 
     /**
      * An elastic body in equilibrium at each time, under loads or with a temperature that depend on
@@ -114,6 +97,9 @@ namespace PeriDeal
 
     /** Parse all sections and check them one by one and against each other. Throws UserError. */
     void parse_and_validate();
+
+  private:
+    void take_times(); // of a run, for the parameters
   };
 
 

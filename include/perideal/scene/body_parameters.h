@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/coupling_control.h>
+#include <perideal/scene/crack_history.h>
+#include <perideal/scene/domain.h>
+#include <perideal/scene/elasticity_control.h>
+#include <perideal/scene/material.h>
+#include <perideal/scene/models.h>
+
+#include <array>
+
+namespace PeriDeal
+{
+  /**
+   * What operators are built from: a body, its material, what acts on it, its cracks, and the
+   * choices of both models. How a run goes on is no matter here.
+   *
+   * A Scene has them from a file; a program sets the members of HeatParameters or SolidParameters.
+   */
+  template <int dim>
+  struct BodyParameters
+  {
+    Domain<dim>             domain;
+    Material                material;
+    InitialAndSource        initial_and_source;
+    BoundaryConditions<dim> boundary_conditions;
+    Cracks<dim>             cracks;
+    Peridynamics            peridynamics;
+    CouplingControl         coupling;
+    ElasticityControl       elasticity;
+    FiniteElements          finite_elements;
+
+    bool   deforms   = false; // a solid; else something diffuses
+    bool   steady    = false; // nothing is stored
+    double time_step = -1.;   // of what diffuses with a given step; negative: none is given
+
+    /**
+     * The horizon as a length: `Horizon`, or `Horizon ratio` times the smallest spacing of the
+     * lattice.
+     */
+    double horizon() const;
+
+    /**
+     * When the cracks change, and how they are in between. Throws UserError, among others where a
+     * mesh file needs `Growth step`. The parameters must outlive it.
+     */
+    CrackHistory<dim> crack_history() const;
+
+    /**
+     * For programs whose mesh is a box of equal cells, the lattice of the nodes, with deal.II's
+     * boundary ids 0 (left), 1 (right), 2 (bottom), ...
+     */
+    void set_box(const dealii::Point<dim>            &lower,
+                 const dealii::Point<dim>            &upper,
+                 const std::array<unsigned int, dim> &cells);
+
+    /**
+     * For programs that bring a mesh of any shape, with any boundary ids, and families with this
+     * horizon.
+     */
+    void set_own_mesh(const double horizon);
+  };
+
+
+  /**
+   * A body in which something diffuses, as a program describes it: the defaults of a scene, bonds
+   * that end at its surface. Conductivity, density and heat capacity are 1 until they are set.
+   */
+  template <int dim>
+  struct HeatParameters : BodyParameters<dim>
+  {
+    HeatParameters();
+  };
+
+
+  /** A body that deforms, likewise. Its moduli have to be set (Material::set_moduli()). */
+  template <int dim>
+  struct SolidParameters : BodyParameters<dim>
+  {
+    SolidParameters();
+  };
+} // namespace PeriDeal

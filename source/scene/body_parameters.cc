@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/scene/body_parameters.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  double BodyParameters<dim>::horizon() const
+  {
+    if (peridynamics.horizon > 0.)
+      return peridynamics.horizon;
+    if (!domain.has_lattice())
+      entry_error(peridynamics.where("Horizon"), "is empty, but a mesh file needs it.");
+    const Tensor<1, dim> h        = domain.spacing();
+    double               smallest = h[0];
+    for (unsigned int d = 1; d < dim; ++d)
+      smallest = std::min(smallest, h[d]);
+    return peridynamics.horizon_ratio * smallest;
+  }
+
+
+  template <int dim>
+  CrackHistory<dim> BodyParameters<dim>::crack_history() const
+  {
+    double step = cracks.growth_step;
+    if (step < 0. && !cracks.tips.empty())
+      {
+        if (!domain.has_lattice())
+          entry_error(cracks.where("Growth step"),
+                      "is empty, but a mesh file has no node spacing: give a length.");
+        const Tensor<1, dim> h = domain.spacing();
+        step                   = 0.25 * h[0];
+        for (unsigned int d = 1; d < dim; ++d)
+          step = std::min(step, 0.25 * h[d]);
+      }
+    // Bodies that deform change between any two steps; what diffuses stops at each event.
+    const double whole_steps = deforms ? -1. : time_step;
+    return CrackHistory<dim>(cracks, step, steady ? 1. : cracks.end_time, whole_steps);
+  }
+
+
+  template <int dim>
+  void BodyParameters<dim>::set_box(const Point<dim>                    &lower,
+                                    const Point<dim>                    &upper,
+                                    const std::array<unsigned int, dim> &cells)
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      Assert(lower[d] < upper[d] && cells[d] > 0, ExcMessage("A box needs cells."));
+    domain.shape      = Shape::box;
+    domain.lower      = lower;
+    domain.upper      = upper;
+    domain.body_lower = lower;
+    domain.body_upper = upper;
+    domain.cells      = cells;
+    cracks.set_box(lower, upper);
+  }
+
+
+  template <int dim>
+  void BodyParameters<dim>::set_own_mesh(const double horizon)
+  {
+    domain.use_own_mesh();
+    domain.shape         = Shape::mesh_file;
+    peridynamics.horizon = horizon;
+    boundary_conditions.name_sides_by_number();
+  }
+
+
+  namespace
+  {
+    /** The values of the default texts, for all sections that need none of a user. */
+    template <int dim>
+    void take_defaults(BodyParameters<dim> &body, const Physics physics)
+    {
+      body.domain.parse();
+      body.initial_and_source.parse(physics, dim);
+      body.boundary_conditions.parse(true, false, physics);
+      body.cracks.parse(physics);
+      body.peridynamics.parse(physics);
+      body.peridynamics.treatment = BoundaryTreatment::none;
+      body.coupling.parse();
+      body.elasticity.parse(physics, dim);
+      body.finite_elements.parse();
+      body.material.thermal_expansion = MaterialProperty(Expression(0.));
+    }
+  } // namespace
+
+
+  template <int dim>
+  HeatParameters<dim>::HeatParameters()
+  {
+    take_defaults(*this, Physics::heat);
+  }
+
+
+  template <int dim>
+  SolidParameters<dim>::SolidParameters()
+  {
+    this->deforms = true;
+    take_defaults(*this, Physics::elasticity);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)      \
+  template struct BodyParameters<dim>; \
+  template struct HeatParameters<dim>; \
+  template struct SolidParameters<dim>;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
