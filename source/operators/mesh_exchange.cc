@@ -82,7 +82,7 @@ namespace PeriDeal
       UserError(
         "'Zone' in section 'Coupling': the cells of the zone are so distorted that only " +
         std::to_string(100. * kept) +
-        " % of the bonds' conductance can be exchanged. Use a mesh with better cells there, or a smaller zone."));
+        " % of the bonds' strength can be exchanged. Use a mesh with better cells there, or a smaller zone."));
   }
 
 

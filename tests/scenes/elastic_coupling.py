@@ -8,7 +8,7 @@
 import math
 import sys
 
-from scene_test import Comparison, finish, print_table, run_scene
+from scene_test import Comparison, check_message, finish, print_table, run_scene
 
 SCENE = "prm/elasticity/coupled_crack.prm"
 BLENDED = "prm/elasticity/blended_crack.prm"
@@ -207,6 +207,7 @@ def meshes():
         # Measured: 0.83 on both.
         table.add_limit(f"on faces, {n} cells: error over that of finite elements", run.error("coupled") / run.error("finite elements"), 0.87)
         table.add_limit(f"on faces, {n} cells: linear patch", run.model("coupled")["certificate"]["patch error"]["linear"], 1e-13)
+    check_message(run_scene(RING, {"Coupling/Scheme": "splice"}, expect_error=True), "'Shape' in section 'Domain'", "'Scheme = exchange'", "'box'")
     grown = run_scene(RING, {**QUIET, "Reference/Solution": "", "Cracks/Growth": "2: 0, 0.08,0, 0.95", "Cracks/Growth step": "0.01",
                              "Time/End time": "1", "Time/Time step": "0.5"})
     still = run_scene(RING, {**QUIET, "Reference/Solution": "", "Cracks/Segments": "0.41,0.53 ; 0.726,0.53"})

@@ -473,9 +473,10 @@ end
     };
     EXPECT_EQ(with({}), "");
     expect(with({c + "Zone=adaptive", "Domain/Coarsening=1"}), c + "Zone", {"'adaptive'"});
-    expect(with({"Cracks/Segments=0.2,0.3 ; 0.6,0.3", "Cracks/Mesh=faces"}),
-           "Cracks/Mesh",
-           {"'removed'", "coupled"});
+    Overrides faces = {"Cracks/Segments=0.2,0.3 ; 0.6,0.3", "Cracks/Mesh=faces"};
+    EXPECT_EQ(with(faces), "");
+    faces.push_back(c + "Scheme=splice");
+    expect(with(faces), "Cracks/Mesh", {"'Scheme = exchange'", "'removed'"});
     EXPECT_EQ(with({c + "Scheme=splice", c + "Overlap=1"}), "");
     EXPECT_EQ(with({c + "Scheme=blending", e + "Solver=conjugate gradients"}), "");
     expect(with({c + "Scheme=splice", e + "Solver=conjugate gradients"}),
