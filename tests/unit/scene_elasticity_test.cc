@@ -493,9 +493,8 @@ end
     expect(with({e + "Model=bond-based", e + "Kinematics=full", e + "Solver=conjugate gradients"}),
            e + "Kinematics",
            {"coupled"});
-    expect(with({"Cracks/Segments=0.2,0.3 ; 0.6,0.3", "Cracks/Mesh=pairs"}),
-           "Cracks/Mesh",
-           {"'removed' or 'faces'"});
+    faces[1] = "Cracks/Mesh=pairs";
+    expect(with(faces), "Cracks/Mesh", {"'removed' or 'faces'"});
     expect(with({c + "Scheme=splice", "Domain/Nodes=cell centers"}), "Domain/Nodes", {"coupled"});
   }
 } // namespace PeriDeal
