@@ -128,6 +128,7 @@ namespace PeriDeal
     if (body.coupling.zone != ZoneKind::adaptive)
       throw_if_zone_empty(n_in_zone, nodes.communicator());
     set_table_around(candidates);
+    stays = true;
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       if (at(site_of(i)) != nullptr)
         {
@@ -136,6 +137,7 @@ namespace PeriDeal
           site.volume    = nodes.volume(i);
           site.may_join  = candidates[i];
           site.in_zone   = site.may_join && zone.contains(nodes.position(i));
+          stays          = stays && site.in_zone == site.may_join;
         }
   }
 
@@ -203,6 +205,13 @@ namespace PeriDeal
                                                 std::vector<unsigned int> &neighbors) const
   {
     neighbors.clear();
+    if (stays)
+      {
+        for_each_bond(node, [&](const unsigned int neighbor, const auto &, const double) {
+          neighbors.push_back(neighbor);
+        });
+        return;
+      }
     const Site      site = site_of(node);
     const SiteData *own  = at(site);
     if (own == nullptr || !own->may_join)

@@ -17,8 +17,11 @@ namespace PeriDeal
     : bonds(nodes, body, zone, Law::stiffness(body), Law::zone_of_whole_way)
     , law(bonds.families, body)
   {
-    law.check_form(bonds);
+    if constexpr (Law::has_form)
+      law.check_form(bonds);
     surplus = Law::calibrate(bonds);
+    for (const auto &offset : bonds.offsets)
+      directions.push_back(Law::direction(bonds.vector_of(offset)));
   }
 
 
@@ -102,19 +105,16 @@ namespace PeriDeal
   template <int dim, typename Law>
   std::unique_ptr<BondForm> LatticeExchange<dim, Law>::make_form()
   {
-    return law.make_form();
+    if constexpr (Law::has_form)
+      return law.make_form();
+    return nullptr;
   }
 
   template <int dim, typename Law>
   void LatticeExchange<dim, Law>::set_form_factors(std::vector<double> factors)
   {
-    law.set_form_factors(std::move(factors));
-  }
-
-  template <int dim, typename Law>
-  bool LatticeExchange<dim, Law>::symmetric() const
-  {
-    return true;
+    if constexpr (Law::has_form)
+      law.set_form_factors(std::move(factors));
   }
 
   template <int dim, typename Law>

@@ -20,7 +20,7 @@ namespace PeriDeal
   namespace
   {
     constexpr double part_to_take = 0.9; // of what a distorted cell has
-    constexpr double least_kept   = 0.2; // of all bonds' conductance
+    constexpr double least_kept   = 0.2; // of all bonds' strength
 
 
     template <int dim>
@@ -343,13 +343,6 @@ namespace PeriDeal
     for (unsigned int a = 0; a < n_values; ++a)
       for (unsigned int b = 0; b < n_values; ++b)
         stiffness(a, b) = 0.5 * (rest(a, b) + rest(b, a));
-    return true;
-  }
-
-
-  template <int dim, typename Law>
-  bool MeshExchange<dim, Law>::symmetric() const
-  {
     return true;
   }
 

@@ -365,10 +365,9 @@ namespace PeriDeal
   }
 
   template <int dim>
-  std::size_t StateCoupling<dim>::memory_consumption() const
+  std::size_t StateCoupling<dim>::memory_of_bonds() const
   {
-    return WeightedCoupling<dim>::memory_consumption() + laws.capacity() * sizeof(StateLaw) +
-           acts.capacity() / 8;
+    return laws.capacity() * sizeof(StateLaw) + acts.capacity() / 8;
   }
 
 

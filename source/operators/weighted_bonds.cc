@@ -48,9 +48,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::size_t WeightedBonds<dim>::memory_consumption() const
+  std::size_t WeightedBonds<dim>::memory_of_bonds() const
   {
-    return WeightedCoupling<dim>::memory_consumption() + bonds.memory_consumption();
+    return bonds.memory_consumption();
   }
 
 

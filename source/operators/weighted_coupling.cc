@@ -11,77 +11,6 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  namespace
-  {
-    class Blending : public Weighting
-    {
-    public:
-      double of_family(const double beta) const override
-      {
-        return beta;
-      }
-
-      double of_row(const double) const override
-      {
-        return 1.;
-      }
-
-      double of_cell(const double mean) const override
-      {
-        return std::max(0., 1. - mean);
-      }
-
-      double of_cell_row(const double) const override
-      {
-        return 1.;
-      }
-
-      bool symmetric() const override
-      {
-        return true;
-      }
-    };
-
-
-    class Splice : public Weighting
-    {
-    public:
-      double of_family(const double) const override
-      {
-        return 1.;
-      }
-
-      double of_row(const double beta) const override
-      {
-        return beta;
-      }
-
-      double of_cell(const double) const override
-      {
-        return 1.;
-      }
-
-      double of_cell_row(const double beta) const override
-      {
-        return 1. - beta;
-      }
-
-      bool symmetric() const override
-      {
-        return false;
-      }
-    };
-  } // namespace
-
-
-  std::unique_ptr<const Weighting> make_weighting(const CouplingScheme scheme)
-  {
-    if (scheme == CouplingScheme::splice)
-      return std::make_unique<Splice>();
-    return std::make_unique<Blending>();
-  }
-
-
   template <int dim>
   WeightedCoupling<dim>::WeightedCoupling(Nodes<dim>                      &nodes,
                                           const BodyParameters<dim>       &body,
@@ -191,7 +120,7 @@ namespace PeriDeal
   std::size_t WeightedCoupling<dim>::memory_consumption() const
   {
     return own_families.memory_consumption() + weights_now.memory_consumption() +
-           weights_at_end.memory_consumption();
+           weights_at_end.memory_consumption() + memory_of_bonds();
   }
 
 

@@ -11,6 +11,17 @@ namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    template <int dim>
+    double smallest_spacing(const Domain<dim> &domain)
+    {
+      const Tensor<1, dim> h = domain.spacing();
+      return *std::min_element(h.begin_raw(), h.end_raw());
+    }
+  } // namespace
+
+
   template <int dim>
   double BodyParameters<dim>::horizon() const
   {
@@ -18,11 +29,7 @@ namespace PeriDeal
       return peridynamics.horizon;
     if (!domain.has_lattice())
       entry_error(peridynamics.where("Horizon"), "is empty, but a mesh file needs it.");
-    const Tensor<1, dim> h        = domain.spacing();
-    double               smallest = h[0];
-    for (unsigned int d = 1; d < dim; ++d)
-      smallest = std::min(smallest, h[d]);
-    return peridynamics.horizon_ratio * smallest;
+    return peridynamics.horizon_ratio * smallest_spacing(domain);
   }
 
 
@@ -35,10 +42,7 @@ namespace PeriDeal
         if (!domain.has_lattice())
           entry_error(cracks.where("Growth step"),
                       "is empty, but a mesh file has no node spacing: give a length.");
-        const Tensor<1, dim> h = domain.spacing();
-        step                   = 0.25 * h[0];
-        for (unsigned int d = 1; d < dim; ++d)
-          step = std::min(step, 0.25 * h[d]);
+        step = 0.25 * smallest_spacing(domain);
       }
     // Bodies that deform change between any two steps; what diffuses stops at each event.
     const double whole_steps = deforms ? -1. : time_step;

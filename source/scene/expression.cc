@@ -221,8 +221,7 @@ namespace PeriDeal
     const std::function<double(const dealii::Point<3> &, const double)> &function,
     const bool                                                           depends_on_time)
     : compiled(std::make_shared<Compiled>())
-    , formula("of the program")
-    , where("a function")
+    , formula("a function of the program")
     , constant(0.)
   {
     compiled->function      = function;
@@ -310,8 +309,8 @@ namespace PeriDeal
     std::string point;
     for (unsigned int d = 0; d < dim; ++d)
       point += (d == 0 ? "" : ", ") + number_text(p[d]);
-    report_formula_error("Entry " + where + ": the value of '" + formula + "' is not finite at (" +
-                         point + "), t = " + number_text(t) +
+    report_formula_error((where.empty() ? "The" : "Entry " + where + ": the") + " value of '" +
+                         formula + "' is not finite at (" + point + "), t = " + number_text(t) +
                          (compiled->uses_temperature ? ", T = " + number_text(temperature) : "") +
                          ". Change the formula so that it is a number everywhere.");
   }

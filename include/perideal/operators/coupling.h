@@ -97,7 +97,10 @@ namespace PeriDeal
     virtual void set_form_factors(std::vector<double>) {}
 
     /** K is symmetric. */
-    virtual bool symmetric() const = 0;
+    virtual bool symmetric() const
+    {
+      return true;
+    }
 
     /**
      * Boxes around the nodes that join the zone on the way to the cracks of that representative

@@ -22,7 +22,7 @@ namespace PeriDeal
    *   W v (v . (u_j - u_i)),  v = direction(xi),  W = w V_i V_j k,
    *
    * k the smallest stiffness(p) on the bond's way. LatticeExchange and MeshExchange take one of
-   * these laws; both have the same members.
+   * these laws; both have the same members, but for those of a form.
    */
 
   /** ch_a v_c of the corners a of a cell and the components c, the latter running faster. */
@@ -90,14 +90,14 @@ namespace PeriDeal
       return bonds.kept_fraction(node, neighbor, cut);
     }
 
+    /** Bonds everywhere, between equal cells, are better kept as a form than in a matrix. */
+    static constexpr bool has_form = true;
+
     /** Throws UserError for a form that bonds of a lattice cannot have. */
     void check_form(const LatticeBonds<dim> &of_lattice) const;
 
-    /** Of bonds everywhere, between equal cells, or none; these laws have to outlive it. */
+    /** This law has to outlive it. */
     std::unique_ptr<BondForm> make_form() const;
-
-    /** Such a form is better than a matrix. */
-    static constexpr bool has_form = true;
 
     void set_form_factors(std::vector<double> factors);
 
@@ -170,16 +170,7 @@ namespace PeriDeal
       return cut ? 0. : 1.;
     }
 
-    void check_form(const LatticeBonds<dim> &) const {}
-
     static constexpr bool has_form = false;
-
-    std::unique_ptr<BondForm> make_form() const
-    {
-      return nullptr;
-    }
-
-    void set_form_factors(const std::vector<double> &) {}
 
     std::size_t memory_consumption() const
     {

@@ -128,7 +128,8 @@ namespace PeriDeal
     Site            site_of(const unsigned int node) const;
     double          stiffness_on(const Offset &offset, const Site &start) const;
 
-    double                last; // time of the run
+    double                last;                      // time of the run
+    bool                  stays             = false; // all that may join the zone are in it
     bool                  uniform           = true;
     double                uniform_stiffness = 0.;
     Site                  corner{}, extent{};

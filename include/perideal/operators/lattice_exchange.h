@@ -42,7 +42,6 @@ namespace PeriDeal
     bool has_form() const override;
     std::unique_ptr<BondForm>             make_form() override;
     void                                  set_form_factors(std::vector<double> factors) override;
-    bool                                  symmetric() const override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
     void                                  set_cracks_of(const double time) override;
     bool                                  in_zone(const unsigned int node) const override;
@@ -51,10 +50,12 @@ namespace PeriDeal
 
 
   private:
-    using Site = typename Lattice<dim>::Index;
+    using Site      = typename Lattice<dim>::Index;
+    using Direction = decltype(Law::direction({}));
 
-    LatticeBonds<dim> bonds;
-    Law               law;
-    CellSurplus       surplus;
+    LatticeBonds<dim>      bonds;
+    Law                    law;
+    CellSurplus            surplus;
+    std::vector<Direction> directions; // by number of offset
   };
 } // namespace PeriDeal

@@ -46,7 +46,6 @@ namespace PeriDeal
     void possible_neighbors_of(const unsigned int         node,
                                std::vector<unsigned int> &neighbors) const override;
     bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
-    bool symmetric() const override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
     void                                  set_cracks_of(const double time) override;
     bool                                  in_zone(const unsigned int node) const override;

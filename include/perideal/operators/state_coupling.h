@@ -62,9 +62,10 @@ namespace PeriDeal
                                       const std::function<void(const Family &)> &visit) const override;
     std::string fault_of(const unsigned int node) const override;
     std::vector<dealii::types::boundary_id> mirrors() const override;
-    std::size_t                             memory_consumption() const override;
 
   private:
+    std::size_t memory_of_bonds() const override;
+
     using WeightedCoupling<dim>::own_families;
     using WeightedCoupling<dim>::weights_now;
 

@@ -22,12 +22,13 @@ namespace PeriDeal
                   const Zone<dim>                 &zone,
                   std::unique_ptr<const Weighting> weighting);
 
-    void        bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
-    void        possible_neighbors_of(const unsigned int         node,
-                                      std::vector<unsigned int> &neighbors) const override;
-    std::size_t memory_consumption() const override;
+    void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
+    void possible_neighbors_of(const unsigned int         node,
+                               std::vector<unsigned int> &neighbors) const override;
 
   private:
+    std::size_t memory_of_bonds() const override;
+
     DiffusionBonds<dim> bonds;
   };
 } // namespace PeriDeal

@@ -5,6 +5,7 @@
 
 #include <perideal/operators/coupling.h>
 #include <perideal/operators/node_weights.h>
+#include <perideal/operators/weighting.h>
 #include <perideal/scene/body_parameters.h>
 
 #include <memory>
@@ -12,39 +13,6 @@
 
 namespace PeriDeal
 {
-  /**
-   * What splice and blending make of the weight beta of peridynamics at a node: a factor of the
-   * energy of its family, and one of its row. A bond belongs to the families of both of its ends in
-   * equal parts.
-   */
-  class Weighting
-  {
-  public:
-    virtual ~Weighting() = default;
-
-    virtual double of_family(const double beta) const = 0;
-    virtual double of_row(const double beta) const    = 0;
-
-    /** What finite elements keep of a cell with that mean of beta. */
-    virtual double of_cell(const double mean) const = 0;
-
-    /** What they keep of the row of a node. */
-    virtual double of_cell_row(const double beta) const = 0;
-
-    /** What comes of symmetric matrices is symmetric. */
-    virtual bool symmetric() const = 0;
-
-    /** Of a bond in the row of its first end. */
-    double of_bond(const double own, const double neighbor) const
-    {
-      return of_row(own) * 0.5 * (of_family(own) + of_family(neighbor));
-    }
-  };
-
-  /** Of `blending` or `splice`. */
-  std::unique_ptr<const Weighting> make_weighting(const CouplingScheme scheme);
-
-
   /**
    * What splice and blending share, whatever diffuses or deforms: each node has a weight beta_i of
    * peridynamics, 1 in the zone, falling linearly to 0 over the overlap outside of it. Nodes with
@@ -80,9 +48,12 @@ namespace PeriDeal
     void                                  set_cracks_of(const double time) override;
     bool                                  in_zone(const unsigned int node) const override;
     const Families<dim>                  &families() const override;
-    std::size_t                           memory_consumption() const override;
+    std::size_t                           memory_consumption() const final;
 
   protected:
+    /** Besides that of the families and weights. */
+    virtual std::size_t memory_of_bonds() const = 0;
+
     Families<dim>                          own_families;
     const double                           overlap; // a length
     const std::unique_ptr<const Weighting> weighting;
