@@ -20,13 +20,11 @@ namespace ScalarWave
   using namespace PeriDeal;
 
   template <int dim>
-  WaveProblem<dim>::WaveProblem(const ModelKind           model,
-                                const Triangulation<dim> &mesh,
-                                const Scene<dim>         &scene)
+  WaveProblem<dim>::WaveProblem(Model<dim> &model, const Scene<dim> &scene)
     : scene(scene)
   {
-    with_formulas(mesh.get_communicator(),
-                  [&] { field = make_diffusion_problem(model, mesh, scene); });
+    with_formulas(model.mesh.get_communicator(),
+                  [&] { field = make_diffusion_problem(model, scene); });
     this->timings = field->timings;
   }
 
@@ -312,11 +310,10 @@ namespace ScalarWave
 
 
   template <int dim>
-  std::unique_ptr<Problem<dim>> WaveFactory<dim>::make_problem(const ModelKind           model,
-                                                               const Triangulation<dim> &mesh,
+  std::unique_ptr<Problem<dim>> WaveFactory<dim>::make_problem(Model<dim>       &model,
                                                                const Scene<dim> &scene) const
   {
-    return std::make_unique<WaveProblem<dim>>(model, mesh, scene);
+    return std::make_unique<WaveProblem<dim>>(model, scene);
   }
 
 

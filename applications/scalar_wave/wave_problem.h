@@ -28,9 +28,7 @@ namespace ScalarWave
   class WaveProblem : public PeriDeal::Problem<dim>
   {
   public:
-    WaveProblem(const PeriDeal::ModelKind         model,
-                const dealii::Triangulation<dim> &mesh,
-                const PeriDeal::Scene<dim>       &scene);
+    WaveProblem(PeriDeal::Model<dim> &model, const PeriDeal::Scene<dim> &scene);
 
     // What moves in time.
     void   begin(const PeriDeal::RunContext &context) override;
@@ -103,8 +101,7 @@ namespace ScalarWave
     void require_computable(const PeriDeal::Scene<dim> &scene) const override;
 
     std::unique_ptr<PeriDeal::Problem<dim>> make_problem(
-      const PeriDeal::ModelKind         model,
-      const dealii::Triangulation<dim> &mesh,
-      const PeriDeal::Scene<dim>       &scene) const override;
+      PeriDeal::Model<dim>       &model,
+      const PeriDeal::Scene<dim> &scene) const override;
   };
 } // namespace ScalarWave

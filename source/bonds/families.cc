@@ -45,20 +45,31 @@ namespace PeriDeal
         return nodes.lattice()->spacing;
       return {};
     }
-
-
-    template <int dim>
-    double halo_reach(const Nodes<dim> &nodes, const BodyParameters<dim> &body, const double reach)
-    {
-      // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away
-      // than any bond.
-      const double layer  = body.peridynamics.flux_treatment == FluxTreatment::layer_extrapolation ?
-                              body.horizon() + 0.5 * nodes.smallest_spacing() :
-                              0.;
-      const double images = completes_mesh(body) ? halo_of_images(reach) : 0.;
-      return std::max({reach, layer, images});
-    }
   } // namespace
+
+
+  template <int dim>
+  KernelWeights<dim> kernel_weights(const Nodes<dim> &nodes, const BodyParameters<dim> &body)
+  {
+    return {kernel_parameters(body.peridynamics, body.horizon()),
+            lattice_spacing(nodes),
+            nodes.smallest_spacing()};
+  }
+
+
+  template <int dim>
+  double halo_reach(const Nodes<dim>          &nodes,
+                    const BodyParameters<dim> &body,
+                    const KernelWeights<dim>  &weights)
+  {
+    // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away
+    // than any bond.
+    const double layer  = body.peridynamics.flux_treatment == FluxTreatment::layer_extrapolation ?
+                            body.horizon() + 0.5 * nodes.smallest_spacing() :
+                            0.;
+    const double images = completes_mesh(body) ? halo_of_images(weights.reach()) : 0.;
+    return std::max({weights.reach(), layer, images});
+  }
 
 
   template <int dim>
@@ -66,10 +77,8 @@ namespace PeriDeal
                           const BodyParameters<dim> &body,
                           const HaloAround           halo,
                           const HasBonds            &has_bonds)
-    : of_bonds(kernel_parameters(body.peridynamics, body.horizon()),
-               lattice_spacing(nodes),
-               nodes.smallest_spacing())
-    , topology(nodes, of_bonds, halo_reach(nodes, body, of_bonds.reach()), halo)
+    : of_bonds(kernel_weights(nodes, body))
+    , topology(nodes, of_bonds, {halo_reach(nodes, body, of_bonds), halo})
     , crack_set(topology,
                 body.crack_history(),
                 cuts_at_tips(body, halo),
@@ -210,7 +219,14 @@ namespace PeriDeal
     return topology.memory_consumption();
   }
 
-  template class Families<1>;
-  template class Families<2>;
-  template class Families<3>;
+#define PERIDEAL_INSTANTIATE(dim)                                                              \
+  template class Families<dim>;                                                                \
+  template KernelWeights<dim> kernel_weights(const Nodes<dim> &, const BodyParameters<dim> &); \
+  template double             halo_reach(const Nodes<dim> &,                                   \
+                                         const BodyParameters<dim> &,                          \
+                                         const KernelWeights<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

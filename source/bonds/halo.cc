@@ -72,7 +72,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void add_halo(Nodes<dim> &nodes, const double reach, const HaloAround around)
+  void add_halo(Nodes<dim> &nodes, const HaloNeed &need)
   {
     const MPI_Comm               communicator = nodes.communicator();
     const unsigned int           me           = Utilities::MPI::this_mpi_process(communicator);
@@ -80,14 +80,14 @@ namespace PeriDeal
     if (Utilities::MPI::n_mpi_processes(communicator) > 1)
       {
         double                  margin = 0.;
-        const ProcessBoxes<dim> boxes(around == HaloAround::nodes ? own_positions(nodes) :
-                                                                    cell_corners(nodes, margin),
-                                      communicator);
+        const ProcessBoxes<dim> boxes(
+          need.around == HaloAround::nodes ? own_positions(nodes) : cell_corners(nodes, margin),
+          communicator);
         std::map<unsigned int, std::vector<double>> to_send;
         margin = Utilities::MPI::max(margin, communicator);
         for (unsigned int rank = 0; rank < boxes.n_processes(); ++rank)
           for (unsigned int i = 0; i < nodes.n_owned() && rank != me; ++i)
-            if (boxes.reach(rank, nodes.position(i), reach + margin))
+            if (boxes.reach(rank, nodes.position(i), need.reach + margin))
               append(nodes.record(i), to_send[rank]);
         constexpr unsigned int record_size = 2 + 2 * dim;
         for (const auto &[rank, numbers] : Utilities::MPI::some_to_some(communicator, to_send))
@@ -98,7 +98,35 @@ namespace PeriDeal
   }
 
 
-  template void add_halo(Nodes<1> &, const double, const HaloAround);
-  template void add_halo(Nodes<2> &, const double, const HaloAround);
-  template void add_halo(Nodes<3> &, const double, const HaloAround);
+  template <int dim>
+  void prepare_search(Nodes<dim>                         &nodes,
+                      const HaloNeed                     &need,
+                      const typename Lattice<dim>::Index &margin)
+  {
+    const auto known = nodes.search();
+    if (!known)
+      add_halo(nodes, need);
+    AssertThrow(!known || known->halo().covers(need),
+                ExcMessage("The nodes have a halo already, and it is too small."));
+    bool wide = known != nullptr;
+    for (unsigned int d = 0; d < dim && wide; ++d)
+      wide = known->margin()[d] >= margin[d];
+    if (!wide)
+      nodes.set_search(
+        std::make_shared<NodeSearch<dim>>(nodes, known ? known->halo() : need, margin));
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                \
+  template void prepare_search(Nodes<dim> &,     \
+                               const HaloNeed &, \
+                               const typename Lattice<dim>::Index &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+
+  template void add_halo(Nodes<1> &, const HaloNeed &);
+  template void add_halo(Nodes<2> &, const HaloNeed &);
+  template void add_halo(Nodes<3> &, const HaloNeed &);
 } // namespace PeriDeal

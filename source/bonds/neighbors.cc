@@ -2,12 +2,9 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/bonds/neighbors.h>
-#include <perideal/mesh/lattice_sites.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "neighbors_search.h"
 
 namespace PeriDeal
 {
@@ -16,70 +13,24 @@ namespace PeriDeal
   template <int dim>
   Neighbors<dim>::Neighbors(Nodes<dim>               &nodes,
                             const KernelWeights<dim> &weights,
-                            const double              halo_reach,
-                            const HaloAround          around)
+                            const HaloNeed           &halo)
     : own_nodes(nodes)
     , of_bonds(weights)
-    , on_lattice(nodes.lattice().has_value() && !nodes.has_doubled_nodes())
   {
-    add_halo(nodes, halo_reach, around);
-    if (on_lattice)
-      index_lattice();
-    else
-      search = std::make_unique<Search>(nodes);
-  }
-
-
-  template <int dim>
-  Neighbors<dim>::~Neighbors() = default;
-
-
-  template <int dim>
-  bool Neighbors<dim>::in_table(const Index &site) const
-  {
-    for (unsigned int d = 0; d < dim; ++d)
-      if (site[d] < corner[d] || site[d] >= corner[d] + extent[d])
-        return false;
-    return true;
-  }
-
-
-  template <int dim>
-  void Neighbors<dim>::index_lattice()
-  {
-    Index low{}, high{};
-    for (unsigned int i = 0; i < own_nodes.n_local(); ++i)
-      {
-        const Index site = own_nodes.lattice()->index(own_nodes.position(i));
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            low[d]  = i == 0 ? site[d] : std::min(low[d], site[d]);
-            high[d] = i == 0 ? site[d] : std::max(high[d], site[d]);
-          }
-      }
-    const Index reach   = of_bonds.reach_in_sites();
-    std::size_t n_sites = 1;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        corner[d] = low[d] - std::max(1, reach[d]);
-        extent[d] = high[d] + std::max(1, reach[d]) + 1 - corner[d];
-        n_sites *= extent[d];
-      }
-    node_of_site.assign(n_sites, numbers::invalid_unsigned_int);
-    for (unsigned int i = 0; i < own_nodes.n_local(); ++i)
-      node_of_site[site_key(own_nodes.lattice()->index(own_nodes.position(i)))] = i;
+    prepare_search(nodes, halo, weights.reach_in_sites());
+    search = nodes.search();
   }
 
 
   template <int dim>
   void Neighbors<dim>::add_outside(std::vector<FictitiousNode<dim>> nodes)
   {
-    Assert(beyond.empty() && (on_lattice || nodes.empty()), ExcInternalError());
+    Assert(beyond.empty() && (has_unique_sites() || nodes.empty()), ExcInternalError());
     beyond = std::move(nodes);
     // Images of ghosts may lie beyond the table, where no owned node has a bond to.
     for (unsigned int f = 0; f < beyond.size(); ++f)
-      if (in_table(beyond[f].site))
-        outside_of_site[site_key(beyond[f].site)].push_back(own_nodes.n_local() + f);
+      if (search->in_table(beyond[f].site))
+        outside_of_site[search->key(beyond[f].site)].push_back(own_nodes.n_local() + f);
   }
 
 
@@ -135,7 +86,7 @@ namespace PeriDeal
   template <int dim>
   unsigned int Neighbors<dim>::node_at(const Index &site) const
   {
-    return in_table(site) ? node_of_site[site_key(site)] : numbers::invalid_unsigned_int;
+    return search->node_at(site);
   }
 
 
@@ -143,51 +94,14 @@ namespace PeriDeal
   std::vector<unsigned int> Neighbors<dim>::nodes_near(const std::vector<BoundingBox<dim>> &boxes,
                                                        const double distance) const
   {
-    std::vector<unsigned int> near;
-    for (const BoundingBox<dim> &box : boxes)
-      {
-        BoundingBox<dim> wide = box;
-        wide.extend(distance * (1. + 1e-6));
-        if (on_lattice)
-          sites_in(wide, near);
-        else
-          for (unsigned int i = 0; i < own_nodes.n_owned(); ++i)
-            if (wide.point_inside(own_nodes.position(i)))
-              near.push_back(i);
-      }
-    std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
-    return near;
-  }
-
-
-  template <int dim>
-  void Neighbors<dim>::sites_in(const BoundingBox<dim> &box, std::vector<unsigned int> &found) const
-  {
-    const Lattice<dim> &lattice = *own_nodes.lattice();
-    Index               first{}, last{};
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        const double origin = lattice.position(Index{})[d];
-        const auto   site   = [&](const double x, const double low, const double high) {
-          return static_cast<int>(
-            std::clamp(std::floor((x - origin) / lattice.spacing[d]), low, high));
-        };
-        first[d] = site(box.lower_bound(d), corner[d], corner[d] + extent[d] - 1);
-        last[d] =
-          site(box.upper_bound(d) + lattice.spacing[d], corner[d], corner[d] + extent[d] - 1);
-      }
-    for_each_site(first, last, [&](const Index &site) {
-      if (const unsigned int i = node_of_site[site_key(site)]; i < own_nodes.n_owned())
-        found.push_back(i);
-    });
+    return search->owned_near(boxes, distance);
   }
 
 
   template <int dim>
   bool Neighbors<dim>::has_unique_sites() const
   {
-    return on_lattice;
+    return search->has_unique_sites();
   }
 
   template <int dim>
@@ -211,8 +125,7 @@ namespace PeriDeal
   template <int dim>
   std::size_t Neighbors<dim>::memory_consumption() const
   {
-    return node_of_site.capacity() * sizeof(unsigned int) +
-           beyond.capacity() * sizeof(FictitiousNode<dim>);
+    return search->memory_consumption() + beyond.capacity() * sizeof(FictitiousNode<dim>);
   }
 
   template class Neighbors<1>;

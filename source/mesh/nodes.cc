@@ -382,6 +382,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Nodes<dim>::set_search(std::shared_ptr<const NodeSearch<dim>> search)
+  {
+    finder = std::move(search);
+  }
+
+
+  template <int dim>
   const std::shared_ptr<const Utilities::MPI::Partitioner> &Nodes<dim>::partitioner() const
   {
     Assert(layout, ExcMessage("The halo has not been set."));

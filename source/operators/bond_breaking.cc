@@ -253,56 +253,62 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned long long BondBreaking<dim>::break_overstretched(const double t)
+  unsigned long long BondBreaking<dim>::break_overstretched(const double               t,
+                                                            std::vector<unsigned int> &touched)
   {
+    const std::vector<std::size_t> &starts = bonds.rows.first_of_nodes();
+    std::set<unsigned int>          nodes;
     for (const auto &[number, ratio] : inside)
       {
         state.mark(number, BondState::broken, t);
         bonds.kinematics.release(number);
+        nodes.insert(std::upper_bound(starts.begin(), starts.end(), number) - starts.begin() - 1);
       }
     unsigned long long n_ends = inside.size();
-    if (!bonds.beyond)
-      return n_ends;
-    std::set<unsigned int> touched;
-    bonds.beyond->for_each_in(beyond, [&](const auto &bond, const double) {
-      n_ends += bonds.beyond->n_ends(bond);
-      bonds.beyond->break_bond(bond.number, BondState::broken, t);
-      touched.insert(bond.node);
-    });
-    const std::vector<std::size_t> &starts = bonds.rows.first_of_nodes();
-    for (const auto &[number, ratio] : inside)
-      touched.insert(std::upper_bound(starts.begin(), starts.end(), number) - starts.begin() - 1);
-    for (const unsigned int i : touched)
+    if (bonds.beyond)
       {
-        std::vector<unsigned int> lost;
-        bonds.rows.for_each_stored(i, [&](const auto &bond) {
-          if (!state.is_whole(bond.number))
-            lost.push_back(bond.neighbor);
+        bonds.beyond->for_each_in(beyond, [&](const auto &bond, const double) {
+          n_ends += bonds.beyond->n_ends(bond);
+          bonds.beyond->break_bond(bond.number, BondState::broken, t);
+          nodes.insert(bond.node);
         });
-        bonds.beyond->break_dependent(i, lost, t);
+        for (const unsigned int i : nodes)
+          {
+            std::vector<unsigned int> lost;
+            bonds.rows.for_each_stored(i, [&](const auto &bond) {
+              if (!state.is_whole(bond.number))
+                lost.push_back(bond.neighbor);
+            });
+            bonds.beyond->break_dependent(i, lost, t);
+          }
       }
+    touched.assign(nodes.begin(), nodes.end());
     return n_ends;
   }
 
 
   template <int dim>
-  bool BondBreaking<dim>::break_bonds(const Vector                  &u,
-                                      const double                   t,
-                                      const double                   share,
-                                      const std::function<double()> &energy)
+  std::optional<ChangeSet<dim>> BondBreaking<dim>::break_bonds(
+    const Vector                  &u,
+    const double                   t,
+    const double                   share,
+    const std::function<double()> &energy)
   {
     if (!breaks)
-      return false;
+      return {};
     find_overstretched(u, share);
     const MPI_Comm           all     = bonds.families.nodes().communicator();
     const unsigned long long n_found = inside.size() + beyond.size();
     if (Utilities::MPI::sum(n_found, all) == 0)
-      return false;
+      return {};
     keep_places();
-    const double before = energy();
-    so_far.n_broken += Utilities::MPI::sum(break_overstretched(t), all) / 2;
+    const double   before = energy();
+    ChangeSet<dim> change;
+    change.since  = t;
+    change.damage = true;
+    so_far.n_broken += Utilities::MPI::sum(break_overstretched(t, change.nodes), all) / 2;
     so_far.released += before - energy();
-    return true;
+    return change;
   }
 
 

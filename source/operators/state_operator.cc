@@ -110,14 +110,40 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateOperator<dim>::find_diagonal()
+  template <typename Factor>
+  void StateOperator<dim>::find_diagonal_of(const unsigned int i, const Factor &factor)
   {
     // The energy is 1/4 sum over directed bonds of s (p . eta)^2 + 1/2 sum m_k (sum p . eta)^2 with
-    // m = c d/(q^2 V).
+    // m = c d/(q^2 V), the factor of node k.
+    Tensor<1, dim> sum, diagonal;
+    solid.rows.for_each(i, [&](const auto &bond) {
+      const double factors = bond.spring + factor(bond.neighbor);
+      sum += bond.moment;
+      for (unsigned int d = 0; d < dim; ++d)
+        diagonal[d] += factors * bond.moment[d] * bond.moment[d];
+    });
+    for (unsigned int d = 0; d < dim; ++d)
+      stiffness_diagonal.local_element(dim * i + d) = diagonal[d] + factor(i) * sum[d] * sum[d];
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::hold_diagonal(const unsigned int i)
+  {
+    // Nodes without bonds, all of them broken: any positive number.
+    for (unsigned int d = 0; d < dim; ++d)
+      if (double &entry = stiffness_diagonal.local_element(dim * i + d); !(entry > 0.))
+        entry = solid.laws[i].extension * std::pow(solid.families.nodes().volume(i), 1. - 2. / dim);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_diagonal()
+  {
     const Nodes<dim>   &nodes = solid.families.nodes();
-    std::vector<double> factor(nodes.n_local(), 0.);
+    std::vector<double> factors(nodes.n_local(), 0.);
     for (unsigned int i = 0; i < nodes.n_local() && solid.laws.volumetric; ++i)
-      factor[i] = solid.laws.tension(i, 1.);
+      factors[i] = solid.laws.tension(i, 1.);
     unsigned int regular = numbers::invalid_unsigned_int; // the first of those that are all alike
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
@@ -129,24 +155,28 @@ namespace PeriDeal
                 stiffness_diagonal.local_element(dim * regular + d);
             continue;
           }
-        Tensor<1, dim> sum, diagonal;
-        solid.rows.for_each(i, [&](const auto &bond) {
-          sum += bond.moment;
-          for (unsigned int d = 0; d < dim; ++d)
-            diagonal[d] += (bond.spring + factor[bond.neighbor]) * bond.moment[d] * bond.moment[d];
-        });
-        for (unsigned int d = 0; d < dim; ++d)
-          stiffness_diagonal.local_element(dim * i + d) = diagonal[d] + factor[i] * sum[d] * sum[d];
+        find_diagonal_of(i, [&](const unsigned int k) { return factors[k]; });
         if (is_regular)
           regular = i;
       }
     if (solid.beyond)
-      solid.beyond->add_to_diagonal(stiffness_diagonal, solid.rows, factor);
-    // Nodes without bonds, all of them broken: any positive number.
-    for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
-      if (!(stiffness_diagonal.local_element(i) > 0.))
-        stiffness_diagonal.local_element(i) =
-          solid.laws[i / dim].extension * std::pow(nodes.volume(i / dim), 1. - 2. / dim);
+      solid.beyond->add_to_diagonal(stiffness_diagonal, solid.rows, factors);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      hold_diagonal(i);
+    conditions->mask(stiffness_diagonal, 1.);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::mend_diagonal(const std::vector<unsigned int> &of_nodes)
+  {
+    for (const unsigned int i : of_nodes)
+      {
+        find_diagonal_of(i, [&](const unsigned int k) {
+          return solid.laws.volumetric ? solid.laws.tension(k, 1.) : 0.;
+        });
+        hold_diagonal(i);
+      }
     conditions->mask(stiffness_diagonal, 1.);
   }
 
@@ -438,9 +468,10 @@ namespace PeriDeal
                                                      const double  share)
   {
     const unsigned long long before = this->n_broken_bonds();
-    if (!breakage.break_bonds(u, t, share, [&]() { return energy(u); }))
+    const auto change = breakage.break_bonds(u, t, share, [&]() { return energy(u); });
+    if (!change)
       return 0;
-    follow_bonds();
+    apply_change(*change, true);
     return this->n_broken_bonds() - before;
   }
 
@@ -448,8 +479,13 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::apply_change(const ChangeSet<dim> &change, const bool loaded)
   {
-    breakage.apply_change(change, loaded);
-    follow_bonds();
+    if (!change.damage)
+      breakage.apply_change(change, loaded);
+    if (!change.damage || solid.beyond)
+      return follow_bonds();
+    mend_diagonal(change.nodes);
+    if (solid.thermal.any())
+      find_thermal_loads();
   }
 
 

@@ -53,22 +53,13 @@ namespace PeriDeal
     public:
       using DiffusionProblem<dim>::scene;
 
-      BondDiffusion(const Triangulation<dim> &mesh, const Scene<dim> &scene)
+      BondDiffusion(Model<dim> &model, const Scene<dim> &scene)
         : DiffusionProblem<dim>(scene)
-        , handler(mesh)
+        , handler(model.dofs())
       {
         {
           Timings::Scope scope(this->timings, "unknowns");
-          if (scene.domain.nodes == NodePlacement::vertices)
-            handler.distribute_dofs(FE_Q<dim>(1));
-          else
-            handler.distribute_dofs(FE_DGQ<dim>(0));
-          if (scene.domain.has_lattice())
-            number_along_lattice(handler, scene.domain);
-          node_set = std::make_unique<Nodes<dim>>(handler,
-                                                  scene.domain,
-                                                  scene.cracks,
-                                                  scene.peridynamics.nodal_volume);
+          node_set = &make_bond_nodes(model, scene);
         }
         Timings::Scope scope(this->timings, "operator");
         bonds = std::make_unique<BondOperator<dim>>(*node_set, scene);
@@ -86,7 +77,7 @@ namespace PeriDeal
 
       const Nodes<dim> *nodes() const override
       {
-        return node_set.get();
+        return node_set;
       }
 
       Point<dim> position(const unsigned int node) const override
@@ -226,8 +217,8 @@ namespace PeriDeal
     private:
       static constexpr double much = 3.;
 
-      DoFHandler<dim>                    handler;
-      std::unique_ptr<Nodes<dim>>        node_set;
+      const DoFHandler<dim>             &handler;
+      Nodes<dim>                        *node_set = nullptr; // of the model
       std::unique_ptr<BondOperator<dim>> bonds;
       mutable Vector                     node_volumes,
         cut; // for output; empty until needed, and when the cracks have changed
@@ -279,23 +270,32 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<DiffusionProblem<dim>> make_bond_diffusion(const Triangulation<dim> &mesh,
-                                                             const Scene<dim>         &scene)
+  Nodes<dim> &make_bond_nodes(Model<dim> &model, const Scene<dim> &scene)
   {
-    return std::make_unique<BondDiffusion<dim>>(mesh, scene);
+    if (scene.domain.nodes == NodePlacement::vertices)
+      model.number(FE_Q<dim>(1), scene.domain, true);
+    else
+      model.number(FE_DGQ<dim>(0), scene.domain, true);
+    return model.nodes(scene, scene.peridynamics.nodal_volume);
   }
 
 
-  template std::unique_ptr<DiffusionProblem<1>> make_bond_diffusion(const Triangulation<1> &,
-                                                                    const Scene<1> &);
-  template std::unique_ptr<DiffusionProblem<2>> make_bond_diffusion(const Triangulation<2> &,
-                                                                    const Scene<2> &);
-  template std::unique_ptr<DiffusionProblem<3>> make_bond_diffusion(const Triangulation<3> &,
-                                                                    const Scene<3> &);
-  template std::vector<std::pair<std::string, std::string>> bond_settings(const Scene<1> &,
-                                                                          const Families<1> &);
-  template std::vector<std::pair<std::string, std::string>> bond_settings(const Scene<2> &,
-                                                                          const Families<2> &);
-  template std::vector<std::pair<std::string, std::string>> bond_settings(const Scene<3> &,
-                                                                          const Families<3> &);
+  template <int dim>
+  std::unique_ptr<DiffusionProblem<dim>> make_bond_diffusion(Model<dim>       &model,
+                                                             const Scene<dim> &scene)
+  {
+    return std::make_unique<BondDiffusion<dim>>(model, scene);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                    \
+  template Nodes<dim>                            &make_bond_nodes(Model<dim> &, const Scene<dim> &); \
+  template std::unique_ptr<DiffusionProblem<dim>> make_bond_diffusion(Model<dim> &,                  \
+                                                                      const Scene<dim> &);           \
+  template std::vector<std::pair<std::string, std::string>> bond_settings(const Scene<dim> &,        \
+                                                                          const Families<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

@@ -2,8 +2,6 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/fe/fe_dgq.h>
-#include <deal.II/fe/fe_q.h>
 
 #include <perideal/operators/state_operator.h>
 #include <perideal/scene/beyond_sides.h>
@@ -26,22 +24,13 @@ namespace PeriDeal
     public:
       using SolidProblem<dim>::scene;
 
-      BondSolid(const Triangulation<dim> &mesh, const Scene<dim> &scene)
+      BondSolid(Model<dim> &model, const Scene<dim> &scene)
         : SolidProblem<dim>(scene)
-        , handler(mesh)
+        , handler(model.dofs())
       {
         {
           Timings::Scope scope(this->timings, "unknowns");
-          if (scene.domain.nodes == NodePlacement::vertices)
-            handler.distribute_dofs(FE_Q<dim>(1));
-          else
-            handler.distribute_dofs(FE_DGQ<dim>(0));
-          if (scene.domain.has_lattice())
-            number_along_lattice(handler, scene.domain);
-          node_set = std::make_unique<Nodes<dim>>(handler,
-                                                  scene.domain,
-                                                  scene.cracks,
-                                                  scene.peridynamics.nodal_volume);
+          node_set = &make_bond_nodes(model, scene);
         }
         Timings::Scope scope(this->timings, "operator");
         states = std::make_unique<StateOperator<dim>>(*node_set, scene);
@@ -59,7 +48,7 @@ namespace PeriDeal
 
       const Nodes<dim> *nodes() const override
       {
-        return node_set.get();
+        return node_set;
       }
 
       ElasticOperator &op() const override
@@ -248,23 +237,21 @@ namespace PeriDeal
         return reader.evaluate(change);
       }
 
-      DoFHandler<dim>                     handler;
-      std::unique_ptr<Nodes<dim>>         node_set;
+      const DoFHandler<dim>              &handler;
+      Nodes<dim>                         *node_set = nullptr; // of the model
       std::unique_ptr<StateOperator<dim>> states;
     };
   } // namespace
 
 
   template <int dim>
-  std::unique_ptr<SolidProblem<dim>> make_bond_solid(const Triangulation<dim> &mesh,
-                                                     const Scene<dim>         &scene)
+  std::unique_ptr<SolidProblem<dim>> make_bond_solid(Model<dim> &model, const Scene<dim> &scene)
   {
-    return std::make_unique<BondSolid<dim>>(mesh, scene);
+    return std::make_unique<BondSolid<dim>>(model, scene);
   }
 
-#define PERIDEAL_INSTANTIATE(dim)                                                         \
-  template std::unique_ptr<SolidProblem<dim>> make_bond_solid(const Triangulation<dim> &, \
-                                                              const Scene<dim> &);
+#define PERIDEAL_INSTANTIATE(dim) \
+  template std::unique_ptr<SolidProblem<dim>> make_bond_solid(Model<dim> &, const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

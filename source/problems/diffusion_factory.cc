@@ -38,13 +38,12 @@ namespace PeriDeal
         note_diffusion(scene, notes);
       }
 
-      std::unique_ptr<Problem<dim>> make_problem(const ModelKind           model,
-                                                 const Triangulation<dim> &mesh,
-                                                 const Scene<dim>         &scene) const override
+      std::unique_ptr<Problem<dim>> make_problem(Model<dim>       &model,
+                                                 const Scene<dim> &scene) const override
       {
         std::unique_ptr<Problem<dim>> problem;
-        with_formulas(mesh.get_communicator(),
-                      [&] { problem = make_diffusion_problem(model, mesh, scene); });
+        with_formulas(model.mesh.get_communicator(),
+                      [&] { problem = make_diffusion_problem(model, scene); });
         return problem;
       }
     };

@@ -5,6 +5,7 @@
 
 #include <perideal/analysis/heat_flux.h>
 #include <perideal/problems/diffusion_problem.h>
+#include <perideal/problems/model.h>
 
 #include <memory>
 #include <sstream>
@@ -19,15 +20,17 @@ namespace PeriDeal
    * zone everywhere.
    */
   template <int dim>
-  std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion(
-    const ModelKind                   model,
-    const dealii::Triangulation<dim> &mesh,
-    const Scene<dim>                 &scene);
+  std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion(Model<dim>       &model,
+                                                                const Scene<dim> &scene);
 
   /** Peridynamics by bonds alone. */
   template <int dim>
-  std::unique_ptr<DiffusionProblem<dim>> make_bond_diffusion(const dealii::Triangulation<dim> &mesh,
+  std::unique_ptr<DiffusionProblem<dim>> make_bond_diffusion(Model<dim>       &model,
                                                              const Scene<dim> &scene);
+
+  /** The nodes of peridynamics by bonds alone, of what diffuses and of solids. Collective. */
+  template <int dim>
+  Nodes<dim> &make_bond_nodes(Model<dim> &model, const Scene<dim> &scene);
 
 
   /** What was chosen for the bonds, for the report. */

@@ -452,33 +452,27 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<DiffusionProblem<dim>> make_diffusion_problem(const ModelKind           model,
-                                                                const Triangulation<dim> &mesh,
-                                                                const Scene<dim>         &scene)
+  std::unique_ptr<DiffusionProblem<dim>> make_diffusion_problem(Model<dim>       &model,
+                                                                const Scene<dim> &scene)
   {
     std::unique_ptr<DiffusionProblem<dim>> run;
-    if (model == ModelKind::peridynamics &&
+    if (model.kind == ModelKind::peridynamics &&
         scene.peridynamics.treatment != BoundaryTreatment::exchange)
-      run = make_bond_diffusion(mesh, scene);
+      run = make_bond_diffusion(model, scene);
     else
-      run = make_element_diffusion(model, mesh, scene);
+      run = make_element_diffusion(model, scene);
     set_start(*run);
     return run;
   }
 
-  template class DiffusionProblem<1>;
-  template class DiffusionProblem<2>;
-  template class DiffusionProblem<3>;
-  template void                                 set_start(DiffusionProblem<1> &);
-  template void                                 set_start(DiffusionProblem<2> &);
-  template void                                 set_start(DiffusionProblem<3> &);
-  template std::unique_ptr<DiffusionProblem<1>> make_diffusion_problem(const ModelKind,
-                                                                       const Triangulation<1> &,
-                                                                       const Scene<1> &);
-  template std::unique_ptr<DiffusionProblem<2>> make_diffusion_problem(const ModelKind,
-                                                                       const Triangulation<2> &,
-                                                                       const Scene<2> &);
-  template std::unique_ptr<DiffusionProblem<3>> make_diffusion_problem(const ModelKind,
-                                                                       const Triangulation<3> &,
-                                                                       const Scene<3> &);
+
+#define PERIDEAL_INSTANTIATE(dim)                                                      \
+  template class DiffusionProblem<dim>;                                                \
+  template void                                   set_start(DiffusionProblem<dim> &);  \
+  template std::unique_ptr<DiffusionProblem<dim>> make_diffusion_problem(Model<dim> &, \
+                                                                         const Scene<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

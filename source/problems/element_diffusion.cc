@@ -31,13 +31,12 @@ namespace PeriDeal
        * @param model finite elements, coupled, or peridynamics by exchange, which is `coupled` with
        *              the zone everywhere
        */
-      ElementDiffusion(const ModelKind           model,
-                       const Triangulation<dim> &mesh,
-                       const Scene<dim>         &scene)
+      ElementDiffusion(Model<dim> &on, const Scene<dim> &scene)
         : DiffusionProblem<dim>(scene)
-        , model(model)
+        , on(on)
+        , model(on.kind)
         , element(model == ModelKind::finite_elements ? scene.finite_elements.degree : 1)
-        , handler(mesh)
+        , handler(on.dofs())
       {
         number_unknowns();
         build_operator();
@@ -57,7 +56,7 @@ namespace PeriDeal
 
       const Nodes<dim> *nodes() const override
       {
-        return model == ModelKind::peridynamics ? node_set.get() : nullptr;
+        return model == ModelKind::peridynamics ? node_set : nullptr;
       }
 
       Point<dim> position(const unsigned int node) const override
@@ -132,7 +131,7 @@ namespace PeriDeal
       {
         const unsigned long long applications = fem->n_applications();
         fem.reset();
-        node_set.reset();
+        on.forget();
         number_unknowns();
         build_operator(t);
         this->time_of_start = t;
@@ -276,9 +275,7 @@ namespace PeriDeal
       void number_unknowns()
       {
         Timings::Scope scope(this->timings, "unknowns");
-        handler.distribute_dofs(element);
-        if (scene.domain.has_lattice() && element.degree == 1)
-          number_along_lattice(handler, scene.domain);
+        on.number(element, scene.domain, element.degree == 1);
       }
 
       /**
@@ -359,10 +356,7 @@ namespace PeriDeal
         std::unique_ptr<Coupling<dim>> coupling;
         if (model != ModelKind::finite_elements)
           {
-            node_set = std::make_unique<Nodes<dim>>(handler,
-                                                    scene.domain,
-                                                    scene.cracks,
-                                                    NodalVolume::partial);
+            node_set = &on.nodes(scene, NodalVolume::partial);
             Zone<dim> zone;
             if (model == ModelKind::coupled)
               zone = Zone<dim>(scene.coupling, scene.horizon());
@@ -465,10 +459,11 @@ namespace PeriDeal
             }
       }
 
+      Model<dim>                        &on;
       const ModelKind                    model;
       FE_Q<dim>                          element;
-      DoFHandler<dim>                    handler;
-      std::unique_ptr<Nodes<dim>>        node_set; // null for finite elements alone
+      const DoFHandler<dim>             &handler;
+      Nodes<dim>                        *node_set = nullptr; // null for finite elements alone
       std::unique_ptr<FEMOperator<dim>>  fem;
       std::optional<CouplingCertificate> certificate;
       std::unique_ptr<Transfer>          transfer; // while the mesh changes
@@ -478,19 +473,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion(const ModelKind           model,
-                                                                const Triangulation<dim> &mesh,
-                                                                const Scene<dim>         &scene)
+  std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion(Model<dim>       &model,
+                                                                const Scene<dim> &scene)
   {
-    return std::make_unique<ElementDiffusion<dim>>(model, mesh, scene);
+    return std::make_unique<ElementDiffusion<dim>>(model, scene);
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                         \
-  template std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion( \
-    const ModelKind,                                                      \
-    const Triangulation<dim> &,                                           \
-    const Scene<dim> &);
+#define PERIDEAL_INSTANTIATE(dim)                                                      \
+  template std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion(Model<dim> &, \
+                                                                         const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

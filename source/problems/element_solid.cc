@@ -31,28 +31,23 @@ namespace PeriDeal
        * @param model finite elements, coupled, or peridynamics with fictitious nodes, which has
        *              elements for what is beside bonds: loads, masses, stresses
        */
-      ElementSolid(const ModelKind model, const Triangulation<dim> &mesh, const Scene<dim> &scene)
+      ElementSolid(Model<dim> &on, const Scene<dim> &scene)
         : SolidProblem<dim>(scene)
-        , model(model)
-        , handler(mesh)
+        , model(on.kind)
+        , handler(on.dofs())
       {
         {
           Timings::Scope scope(this->timings, "unknowns");
-          handler.distribute_dofs(FE_Q<dim>(degree()));
-          if (model != ModelKind::finite_elements)
-            number_along_lattice(handler, scene.domain);
+          on.number(FE_Q<dim>(degree()), scene.domain, model != ModelKind::finite_elements);
         }
         {
           Timings::Scope                 scope(this->timings, "operator");
           std::unique_ptr<Coupling<dim>> coupling;
           if (model != ModelKind::finite_elements)
             {
-              node_set = std::make_unique<Nodes<dim>>(handler,
-                                                      scene.domain,
-                                                      scene.cracks,
-                                                      NodalVolume::partial);
-              coupling = model == ModelKind::coupled ? make_solid_coupling(*node_set, scene) :
-                                                       make_families_everywhere(*node_set, scene);
+              Nodes<dim> &nodes = on.nodes(scene, NodalVolume::partial);
+              coupling          = model == ModelKind::coupled ? make_solid_coupling(nodes, scene) :
+                                                                make_families_everywhere(nodes, scene);
             }
           elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
         }
@@ -383,8 +378,7 @@ namespace PeriDeal
       }
 
       const ModelKind                       model;
-      DoFHandler<dim>                       handler;
-      std::unique_ptr<Nodes<dim>>           node_set; // of the coupled model
+      const DoFHandler<dim>                &handler;
       std::unique_ptr<ElasticElements<dim>> elements;
       std::optional<CouplingCertificate>    certificate;
     };
@@ -392,17 +386,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<SolidProblem<dim>> make_element_solid(const ModelKind           model,
-                                                        const Triangulation<dim> &mesh,
-                                                        const Scene<dim>         &scene)
+  std::unique_ptr<SolidProblem<dim>> make_element_solid(Model<dim> &model, const Scene<dim> &scene)
   {
-    return std::make_unique<ElementSolid<dim>>(model, mesh, scene);
+    return std::make_unique<ElementSolid<dim>>(model, scene);
   }
 
-#define PERIDEAL_INSTANTIATE(dim)                                                            \
-  template std::unique_ptr<SolidProblem<dim>> make_element_solid(const ModelKind,            \
-                                                                 const Triangulation<dim> &, \
-                                                                 const Scene<dim> &);
+#define PERIDEAL_INSTANTIATE(dim) \
+  template std::unique_ptr<SolidProblem<dim>> make_element_solid(Model<dim> &, const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -104,40 +104,40 @@ namespace PeriDeal
         note_growth(scene, notes);
       }
 
-      std::unique_ptr<Problem<dim>> make_problem(const ModelKind           model,
-                                                 const Triangulation<dim> &mesh,
-                                                 const Scene<dim>         &scene) const override
+      std::unique_ptr<Problem<dim>> make_problem(Model<dim>       &model,
+                                                 const Scene<dim> &scene) const override
       {
-        return make_solid_problem(model, mesh, scene);
+        if (scene.heat)
+          {
+            model.share_nodes(scene);
+            model.share_nodes(*scene.heat);
+          }
+        return make_solid_problem(model, scene);
       }
 
       /** What computes the temperature. */
-      Problems<dim> make_companions(const Problems<dim>      &problems,
-                                    const Triangulation<dim> &mesh,
-                                    const Scene<dim>         &scene,
-                                    std::vector<std::string> &notes) const override
+      void add_companions(const Models<dim>        &models,
+                          const Scene<dim>         &scene,
+                          std::vector<std::string> &notes) const override
       {
-        Problems<dim> companions;
         if (!scene.heat)
-          return companions;
+          return;
         std::vector<std::string> of_heat;
         note_diffusion(*scene.heat, of_heat);
-        for (unsigned int k = 0; k < problems.size(); ++k)
+        for (const auto &model : models)
           {
             std::unique_ptr<DiffusionProblem<dim>> heat;
-            with_formulas(mesh.get_communicator(), [&] {
-              heat = make_diffusion_problem(scene.general.models[k], mesh, *scene.heat);
-            });
+            with_formulas(model->mesh.get_communicator(),
+                          [&] { heat = make_diffusion_problem(*model, *scene.heat); });
             for (const std::string &note : heat->notes())
               of_heat.push_back(note);
-            const auto solid = dynamic_cast<SolidProblem<dim> *>(problems[k].get());
+            const auto solid = dynamic_cast<SolidProblem<dim> *>(model->problem.get());
             Assert(solid, ExcMessage("Only problems of this factory have a temperature to find."));
             solid->heat = heat.get();
-            companions.push_back(std::move(heat));
+            model->companions.push_back(std::move(heat));
           }
         for (const std::string &note : of_heat)
           notes.push_back("temperature: " + note);
-        return companions;
       }
     };
   } // namespace

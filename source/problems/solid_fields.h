@@ -97,11 +97,8 @@ namespace PeriDeal
                   std::vector<double>                 &rows);
 
   template <int dim>
-  std::unique_ptr<SolidProblem<dim>> make_element_solid(const ModelKind                   model,
-                                                        const dealii::Triangulation<dim> &mesh,
-                                                        const Scene<dim>                 &scene);
+  std::unique_ptr<SolidProblem<dim>> make_element_solid(Model<dim> &model, const Scene<dim> &scene);
 
   template <int dim>
-  std::unique_ptr<SolidProblem<dim>> make_bond_solid(const dealii::Triangulation<dim> &mesh,
-                                                     const Scene<dim>                 &scene);
+  std::unique_ptr<SolidProblem<dim>> make_bond_solid(Model<dim> &model, const Scene<dim> &scene);
 } // namespace PeriDeal

@@ -20,7 +20,6 @@
 #include "solid_phases.h"
 #include "solid_sides.h"
 #include "solid_summary.h"
-#include "solid_temperature.h"
 #include "solid_totals.h"
 
 namespace PeriDeal
@@ -97,9 +96,12 @@ namespace PeriDeal
     if (heat == nullptr)
       return;
     Timings::Scope scope(this->timings, "thermal loads");
-    Vector         change;
+    // Both have the nodes of the model, each with its own ghosts.
+    Vector change;
     op().initialize_nodal_vector(change);
-    find_temperature_change(*heat, *this, scene.elasticity.reference_temperature, change);
+    for (unsigned int i = 0; i < change.locally_owned_size(); ++i)
+      change.local_element(i) =
+        heat->solution.local_element(i) - scene.elasticity.reference_temperature;
     op().set_temperature_change(change);
   }
 
@@ -461,22 +463,18 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<SolidProblem<dim>> make_solid_problem(const ModelKind           model,
-                                                        const Triangulation<dim> &mesh,
-                                                        const Scene<dim>         &scene)
+  std::unique_ptr<SolidProblem<dim>> make_solid_problem(Model<dim> &model, const Scene<dim> &scene)
   {
     // With fictitious nodes peridynamics is the coupled model without elements.
-    return model == ModelKind::peridynamics && !scene.peridynamics.completes_families() ?
-             make_bond_solid(mesh, scene) :
-             make_element_solid(model, mesh, scene);
+    return model.kind == ModelKind::peridynamics && !scene.peridynamics.completes_families() ?
+             make_bond_solid(model, scene) :
+             make_element_solid(model, scene);
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                            \
-  template class SolidProblem<dim>;                                                          \
-  template std::unique_ptr<SolidProblem<dim>> make_solid_problem(const ModelKind,            \
-                                                                 const Triangulation<dim> &, \
-                                                                 const Scene<dim> &);
+#define PERIDEAL_INSTANTIATE(dim)   \
+  template class SolidProblem<dim>; \
+  template std::unique_ptr<SolidProblem<dim>> make_solid_problem(Model<dim> &, const Scene<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -9,50 +9,67 @@
 
 namespace PeriDeal
 {
+  namespace
+  {
+    /** The values of the sections that heat has in common with the body that deforms. */
+    template <int dim>
+    void take_sections(const Scene<dim> &scene, Scene<dim> &heat)
+    {
+      heat.general            = scene.general;
+      heat.domain             = scene.domain;
+      heat.material           = scene.material;
+      heat.initial_and_source = scene.initial_and_source;
+      heat.finite_elements    = scene.finite_elements;
+      heat.coupling           = scene.coupling;
+      heat.time               = scene.time;
+      heat.solver             = scene.solver;
+      heat.units              = scene.units;
+      heat.general.physics    = Physics::heat;
+      heat.domain.notes.clear();
+      heat.boundary_conditions = scene.boundary_conditions;
+      heat.boundary_conditions.displacement.clear();
+      heat.boundary_conditions.traction.clear();
+      // Where no lattice mirrors its nodes in it, a plane of symmetry is an insulated side.
+      if (!scene.domain.has_lattice() ||
+          (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty()))
+        heat.boundary_conditions.symmetry.clear();
+    }
+
+
+    /** Sections that are read in another way for what diffuses. */
+    template <int dim>
+    void read_sections(const Scene<dim> &scene, Scene<dim> &heat)
+    {
+      heat.cracks       = scene.cracks;
+      heat.peridynamics = scene.peridynamics;
+      heat.cracks.set("Mesh", scene.cracks.mesh == CrackMesh::faces ? "faces" : "removed");
+      heat.cracks.parse(Physics::heat);
+      // Corrections of elastic bonds are none of those that conduct.
+      if (scene.peridynamics.surface_correction != SurfaceCorrection::crack_scaling)
+        heat.peridynamics.set("Surface correction", "none");
+      heat.peridynamics.set("Operator form", "auto"); // that of elastic bonds is meant
+      heat.peridynamics.parse(Physics::heat);
+      heat.time.steady = heat.time.steady || !heat.material.stores;
+      heat.take_times();
+      if (!heat.time.steady)
+        heat.material.require_storage();
+      heat.solver.parse();
+    }
+  } // namespace
+
+
   template <int dim>
   void make_heat_problem(Scene<dim> &scene)
   {
     scene.heat.reset();
     if (scene.general.physics != Physics::elasticity || !scene.elasticity.computes_temperature)
       return;
-    const auto                        problem = std::make_shared<Scene<dim>>();
-    const std::vector<SceneSection *> from = scene.sections(), to = problem->sections();
-    for (unsigned int k = 0; k < from.size(); ++k)
-      if (from[k] != &scene.elasticity && from[k] != &scene.output &&
-          from[k] != &scene.checkpoint && from[k] != &scene.reference)
-        for (const Entry &entry : from[k]->entries())
-          to[k]->set(entry.name, entry.text);
-    problem->general.set("Physics", names_of(Physics::heat).physics);
-    for (const char *const entry :
-         {"Displacement", "Displacement layer", "Velocity", "Traction", "Traction layer"})
-      problem->boundary_conditions.set(entry, "");
-    for (const char *const entry : {"Body force", "Initial displacement", "Initial velocity"})
-      problem->initial_and_source.set(entry, "");
-    // Corrections of elastic bonds are none of those that conduct.
-    if (scene.peridynamics.surface_correction != SurfaceCorrection::crack_scaling)
-      problem->peridynamics.set("Surface correction", "none");
-    problem->peridynamics.set("Operator form", "auto"); // that of elastic bonds is meant
-    // Where no lattice mirrors its nodes in it, a plane of symmetry is an insulated side.
-    if (!scene.domain.has_lattice() ||
-        (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty()))
-      problem->boundary_conditions.set("Symmetry", "");
-    // Both share the mesh.
-    problem->cracks.set("Mesh", scene.cracks.mesh == CrackMesh::faces ? "faces" : "removed");
-    problem->cracks.set("Nodes on cracks", "left");
-    if (scene.domain.has_lattice() && scene.domain.shape != Shape::image &&
-        !scene.domain.has_extra_layers())
-      {
-        std::string cells;
-        for (const unsigned int n : scene.domain.cells)
-          cells += (cells.empty() ? "" : ", ") + std::to_string(n);
-        problem->domain.set("Node spacing", "");
-        problem->domain.set("Cells", cells);
-      }
-    problem->domain.scene_folder = scene.domain.scene_folder;
-    problem->domain.communicator = scene.domain.communicator;
+    const auto heat = std::make_shared<Scene<dim>>();
     try
       {
-        problem->parse_and_validate();
+        take_sections(scene, *heat);
+        read_sections(scene, *heat);
+        heat->validate();
       }
     catch (const UserError &fault)
       {
@@ -60,7 +77,7 @@ namespace PeriDeal
           false,
           UserError("The heat problem of 'Temperature change = computed': " + fault.message()));
       }
-    scene.heat = problem;
+    scene.heat = heat;
   }
 
 

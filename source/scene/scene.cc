@@ -388,7 +388,13 @@ namespace PeriDeal
                      layers ? domain.body_upper : domain.upper);
     reference.parse();
     units.parse();
+    validate();
+  }
 
+
+  template <int dim>
+  void Scene<dim>::validate()
+  {
     if (domain.has_lattice())
       {
         cracks.set_box(domain.lower, domain.upper);

@@ -99,13 +99,13 @@ namespace PeriDeal
       ResultRecord     record;
       Progress         quiet(mesh->get_communicator(), true);
       const RunContext context{quiet, record, {}};
-      Problems<dim>    problems;
+      Models<dim>      models;
       for (unsigned int k = 0; k < sample.models.size(); ++k)
         {
           const double start = processor_seconds();
-          problems.push_back(
-            problem_factory(scene).make_problem(scene.general.models[k], *mesh, scene));
-          const Problem<dim> &problem = *problems.back();
+          models.push_back(std::make_unique<Model<dim>>(scene.general.models[k], *mesh));
+          models.back()->problem      = problem_factory(scene).make_problem(*models.back(), scene);
+          const Problem<dim> &problem = *models.back()->problem;
           ModelEstimate      &model   = sample.models[k];
           const OperatorSize  size    = problem.op().size();
           model.unknowns              = static_cast<double>(size.unknowns);
@@ -113,10 +113,10 @@ namespace PeriDeal
           sample.time_to_build += processor_seconds() - start;
           model.time_of_application = time_of_application(problem.op());
         }
-      for (unsigned int k = 0; k < problems.size(); ++k)
+      for (unsigned int k = 0; k < models.size(); ++k)
         {
-          problems[k]->take_sample(context, sample.models[k]);
-          sample.models[k].components = components_written(*problems[k], problems.size());
+          models[k]->problem->take_sample(context, sample.models[k]);
+          sample.models[k].components = components_written(*models[k]->problem, models.size());
         }
     }
   } // namespace

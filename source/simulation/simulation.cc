@@ -93,17 +93,21 @@ namespace PeriDeal
     for (const ModelKind model : scene.general.models)
       {
         progress.doing("building " + to_string(model));
-        problems.push_back(problem_factory(scene).make_problem(model, *mesh, scene));
+        models.push_back(std::make_unique<Model<dim>>(model, *mesh));
+        models.back()->problem = problem_factory(scene).make_problem(*models.back(), scene);
+        problems.push_back(models.back()->problem.get());
         say_size(*problems.back(), progress);
         for (const std::string &note : problems.back()->notes())
           record->notes.push_back(note);
       }
-    companions = problem_factory(scene).make_companions(problems, *mesh, scene, record->notes);
-    for (const auto &companion : companions)
-      {
-        progress.line("to find the " + companion->field_name() + " in it:");
-        say_size(*companion, progress);
-      }
+    problem_factory(scene).add_companions(models, scene, record->notes);
+    for (const auto &model : models)
+      for (const auto &companion : model->companions)
+        {
+          companions.push_back(companion.get());
+          progress.line("to find the " + companion->field_name() + " in it:");
+          say_size(*companion, progress);
+        }
     prepare_adaptation();
     exact = make_reference(scene);
     Timings::Scope scope(timings, "output");
@@ -126,10 +130,7 @@ namespace PeriDeal
   template <int dim>
   std::vector<const Problem<dim> *> Simulation<dim>::reported() const
   {
-    std::vector<const Problem<dim> *> list;
-    for (const auto &problem : problems)
-      list.push_back(problem.get());
-    return list;
+    return {problems.begin(), problems.end()};
   }
 
 

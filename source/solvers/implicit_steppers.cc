@@ -117,6 +117,7 @@ namespace PeriDeal
         archive.exchange("time step", dt);
         archive.exchange("taken", taken, keys);
         held.exchange(archive, keys);
+        solver.exchange(archive);
       }
 
       /**

@@ -143,6 +143,22 @@ namespace PeriDeal
   }
 
 
+  void LinearSolver::exchange(Archive &archive)
+  {
+    const Archive::Part part(archive, "linear solver");
+    archive.exchange("capacity", built_capacity);
+    archive.exchange("stiffness", built_stiffness);
+    archive.exchange("first iterations", n_first_iterations);
+    archive.exchange("last iterations", n_last_iterations);
+    archive.exchange("outdated", outdated);
+    if (!archive.loads())
+      return;
+    preconditioner = std::make_unique<MultigridPreconditioner>(op, direct_up_to);
+    if (built_stiffness >= 0.)
+      preconditioner->initialize(built_capacity, built_stiffness);
+  }
+
+
   const TrilinosWrappers::SparseMatrix &LinearSolver::surrogate() const
   {
     return preconditioner->surrogate();

@@ -42,6 +42,12 @@ namespace PeriDeal
         is_untried = false;
       }
 
+      void exchange(Archive &archive) override
+      {
+        solver.exchange(archive);
+        archive.exchange("untried", is_untried);
+      }
+
       unsigned int solve(Vector &u, const double t, const double size) override
       {
         op.distribute(u, t);

@@ -223,6 +223,7 @@ namespace PeriDeal
     account.exchange(archive, keys);
     if (limit)
       limit->exchange(archive);
+    exchange_own(archive);
     if (archive.loads() && op.has_growing_cracks())
       operator_changed();
   }

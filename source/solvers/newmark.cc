@@ -83,6 +83,11 @@ namespace PeriDeal
         solver.operator_changed();
       }
 
+      void exchange_own(Archive &archive) override
+      {
+        solver.exchange(archive);
+      }
+
     private:
       /** Forces less M a. */
       void find_residual(const Vector &u, const double factor)

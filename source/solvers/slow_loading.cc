@@ -194,8 +194,7 @@ namespace PeriDeal
     archive.exchange("any broken", breaking.any);
     archive.exchange("breaking", breaking.is_open);
     work_of_forces.exchange(archive, keys);
-    if (archive.loads())
-      solver->operator_changed();
+    solver->exchange(archive);
   }
 
 

@@ -13,6 +13,17 @@
 
 namespace PeriDeal
 {
+  /** The weights of a body's bonds between its nodes, before calibration off the lattice. */
+  template <int dim>
+  KernelWeights<dim> kernel_weights(const Nodes<dim> &nodes, const BodyParameters<dim> &body);
+
+  /** How far the halo of a body's families has to reach. */
+  template <int dim>
+  double halo_reach(const Nodes<dim>          &nodes,
+                    const BodyParameters<dim> &body,
+                    const KernelWeights<dim>  &weights);
+
+
   /**
    * The families of the nodes: who is bonded to whom, with which weight, and which bonds the cracks
    * of now cut. What diffuses and what deforms have them in common; neither knows the other's

@@ -3,8 +3,6 @@
 
 #pragma once
 
-#include <deal.II/base/bounding_box.h>
-
 #include <perideal/bonds/fictitious_nodes.h>
 #include <perideal/bonds/halo.h>
 #include <perideal/bonds/kernel_weights.h>
@@ -19,7 +17,8 @@ namespace PeriDeal
 {
   /**
    * Who is within the reach of whom: topology and halo. No material, no cracks; of weights only
-   * that of a bond of unit conductivity between intact places.
+   * that of a bond of unit conductivity between intact places. The search for nodes is that of the
+   * nodes, the same for all who have bonds on them; fictitious nodes are those of one physics.
    *
    * Neighbours are numbered like the nodes: owned, ghosts, then fictitious nodes from n_local() on.
    * The order of a family is that of the lattice offsets (or of the relative positions), never of
@@ -32,14 +31,11 @@ namespace PeriDeal
     using Index = typename Lattice<dim>::Index;
 
     /**
-     * Adds the halo to the nodes. Collective. Nodes and weights have to outlive this object.
-     * @param halo_reach  of the halo, at least that of the weights
+     * Adds the halo to the nodes unless they have it. Collective. Nodes and weights have to outlive
+     * this object.
+     * @param halo that is needed, at least the reach of the weights
      */
-    Neighbors(Nodes<dim>               &nodes,
-              const KernelWeights<dim> &weights,
-              const double              halo_reach,
-              const HaloAround          around);
-    ~Neighbors();
+    Neighbors(Nodes<dim> &nodes, const KernelWeights<dim> &weights, const HaloNeed &halo);
 
     /** Fictitious nodes, once, before the first visit. Only with unique sites. */
     void add_outside(std::vector<FictitiousNode<dim>> nodes);
@@ -94,15 +90,6 @@ namespace PeriDeal
     std::size_t memory_consumption() const;
 
   private:
-    struct Search; // neighbours off the lattice
-
-    /** The table of lattice sites around the nodes. */
-    bool        in_table(const Index &site) const;
-    std::size_t site_key(const Index &site) const;
-    void        index_lattice();
-
-    void sites_in(const dealii::BoundingBox<dim> &box, std::vector<unsigned int> &found) const;
-
     template <typename Visit>
     void visit_sites(const unsigned int                    node,
                      const std::vector<FamilyMember<dim>> &offsets,
@@ -113,12 +100,9 @@ namespace PeriDeal
 
     const Nodes<dim>                                          &own_nodes;
     const KernelWeights<dim>                                  &of_bonds;
-    const bool                                                 on_lattice;
+    std::shared_ptr<const NodeSearch<dim>>                     search;
     std::vector<FictitiousNode<dim>>                           beyond;
-    Index                                                      corner, extent; // of the table
-    std::vector<unsigned int>                                  node_of_site;
     std::unordered_map<std::size_t, std::vector<unsigned int>> outside_of_site;
-    std::unique_ptr<Search>                                    search;
   };
 
 
@@ -126,7 +110,7 @@ namespace PeriDeal
   template <typename Visit>
   void Neighbors<dim>::for_each(const unsigned int node, const Visit &visit) const
   {
-    if (on_lattice)
+    if (has_unique_sites())
       visit_sites(node, of_bonds.members(), visit);
     else
       for (const auto &[neighbor, w] : family_of(node))
@@ -138,7 +122,7 @@ namespace PeriDeal
   template <typename Visit>
   void Neighbors<dim>::for_each_nearest(const unsigned int node, const Visit &visit) const
   {
-    if (on_lattice)
+    if (has_unique_sites())
       visit_sites(node, of_bonds.nearest_members(), visit);
     else
       for_each(node, visit);
@@ -157,9 +141,10 @@ namespace PeriDeal
         Index other = site;
         for (unsigned int d = 0; d < dim; ++d)
           other[d] += member.offset[d];
-        const std::size_t key = site_key(other);
-        if (node_of_site[key] != dealii::numbers::invalid_unsigned_int)
-          visit(node_of_site[key], member.weight);
+        const std::size_t  key  = search->key(other);
+        const unsigned int real = (*search)[key];
+        if (real != dealii::numbers::invalid_unsigned_int)
+          visit(real, member.weight);
         if (!beyond.empty())
           if (const auto found = outside_of_site.find(key); found != outside_of_site.end())
             for (const unsigned int neighbor : found->second)
@@ -204,16 +189,4 @@ namespace PeriDeal
     return is_real(node) ? node : beyond[node - own_nodes.n_local()].mirror;
   }
 
-
-  template <int dim>
-  inline std::size_t Neighbors<dim>::site_key(const Index &site) const
-  {
-    std::size_t key = 0;
-    for (unsigned int d = dim; d-- > 0;)
-      {
-        Assert(site[d] >= corner[d] && site[d] < corner[d] + extent[d], dealii::ExcInternalError());
-        key = key * extent[d] + (site[d] - corner[d]);
-      }
-    return key;
-  }
 } // namespace PeriDeal

@@ -23,6 +23,8 @@ namespace PeriDeal
 {
   template <int dim>
   struct BodyParameters;
+  template <int dim>
+  class NodeSearch;
 
   /** What another process needs to know of a node to build bonds to it. */
   template <int dim>
@@ -144,6 +146,17 @@ namespace PeriDeal
     const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &partitioner() const;
 
     /**
+     * Finds nodes, for all who have bonds on them; null before the first asks (Neighbors). Not
+     * collective.
+     */
+    const std::shared_ptr<const NodeSearch<dim>> &search() const
+    {
+      return finder;
+    }
+
+    void set_search(std::shared_ptr<const NodeSearch<dim>> search);
+
+    /**
      * Share of the body's volume that owned nodes have for which the test, of their local number,
      * holds. Collective.
      */
@@ -171,6 +184,7 @@ namespace PeriDeal
     std::vector<bool>           hanging; // empty: none
     double                      shortest_edge = 0.;
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout;
+    std::shared_ptr<const NodeSearch<dim>>                     finder;
   };
 
 

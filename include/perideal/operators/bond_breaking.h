@@ -8,6 +8,7 @@
 #include <perideal/operators/solid_loads.h>
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace PeriDeal
@@ -35,16 +36,16 @@ namespace PeriDeal
 
     /**
      * Break what is stretched too far at u: of bonds inside the body and beyond its sides those
-     * with at least a share of the largest stretch over critical stretch. Returns whether there
-     * were any on any process. Collective.
+     * with at least a share of the largest stretch over critical stretch. Returns what has changed,
+     * or nothing if there were none on any process. Collective.
      *
      * @param t      the time of u, kept with each bond
      * @param energy of the body as it is, collective
      */
-    bool break_bonds(const Vector                  &u,
-                     const double                   t,
-                     const double                   share,
-                     const std::function<double()> &energy);
+    std::optional<ChangeSet<dim>> break_bonds(const Vector                  &u,
+                                              const double                   t,
+                                              const double                   share,
+                                              const std::function<double()> &energy);
 
     /**
      * What cracks cut as they grow is marked, too. Collective. Throws UserError.
@@ -83,10 +84,12 @@ namespace PeriDeal
     std::vector<double> damage() const;
 
   private:
-    void               find_critical_stretches();
-    void               find_overstretched(const Vector &u, const double share);
-    void               keep_places(); // of what is overstretched
-    unsigned long long break_overstretched(const double t);
+    void find_critical_stretches();
+    void find_overstretched(const Vector &u, const double share);
+    void keep_places(); // of what is overstretched
+
+    /** Returns the number of ends of bonds. @param touched the owned nodes that lose a bond */
+    unsigned long long break_overstretched(const double t, std::vector<unsigned int> &touched);
 
     SolidBonds<dim>           &bonds;
     const BodyParameters<dim> &body;

@@ -6,6 +6,7 @@
 #include <perideal/analysis/comparison.h>
 #include <perideal/analysis/recovery.h>
 #include <perideal/problems/heat_ledger.h>
+#include <perideal/problems/model.h>
 #include <perideal/problems/problem.h>
 #include <perideal/scene/scene.h>
 #include <perideal/solvers/stepper.h>
@@ -118,10 +119,11 @@ namespace PeriDeal
   template <int dim>
   void set_start(DiffusionProblem<dim> &run);
 
-  /** Builds a model's unknowns and operator. The time goes into the run's timings. */
+  /**
+   * Builds the operator, and the model's nodes if they have not been made. The time goes into the
+   * run's timings.
+   */
   template <int dim>
-  std::unique_ptr<DiffusionProblem<dim>> make_diffusion_problem(
-    const ModelKind                   model,
-    const dealii::Triangulation<dim> &mesh,
-    const Scene<dim>                 &scene);
+  std::unique_ptr<DiffusionProblem<dim>> make_diffusion_problem(Model<dim>       &model,
+                                                                const Scene<dim> &scene);
 } // namespace PeriDeal

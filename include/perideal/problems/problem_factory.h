@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/problems/problem.h>
+#include <perideal/problems/model.h>
 #include <perideal/scene/scene.h>
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,9 +14,6 @@
 
 namespace PeriDeal
 {
-  template <int dim>
-  using Problems = std::vector<std::unique_ptr<Problem<dim>>>;
-
   /** How the problems of one physics are made, and what is to be known of them before. */
   template <int dim>
   class ProblemFactory
@@ -46,21 +43,17 @@ namespace PeriDeal
     {}
 
     /** The problem of a model, and the time that this takes in its timings. Collective. */
-    virtual std::unique_ptr<Problem<dim>> make_problem(const ModelKind                   model,
-                                                       const dealii::Triangulation<dim> &mesh,
+    virtual std::unique_ptr<Problem<dim>> make_problem(Model<dim>       &model,
                                                        const Scene<dim> &scene) const = 0;
 
     /**
-     * What the problems of a scene need from others on their own nodes before they advance: none,
-     * or one for each. They are not reported. Collective.
+     * Give the models, which have their problems, what these need from others on the same nodes
+     * before they advance: none, or one for each. They are not reported. Collective.
      */
-    virtual Problems<dim> make_companions(const Problems<dim> & /*problems*/,
-                                          const dealii::Triangulation<dim> & /*mesh*/,
-                                          const Scene<dim> & /*scene*/,
-                                          std::vector<std::string> & /*notes*/) const
-    {
-      return {};
-    }
+    virtual void add_companions(const Models<dim> & /*models*/,
+                                const Scene<dim> & /*scene*/,
+                                std::vector<std::string> & /*notes*/) const
+    {}
   };
 
 

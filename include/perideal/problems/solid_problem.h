@@ -7,6 +7,7 @@
 #include <perideal/analysis/phase_statistics.h>
 #include <perideal/analysis/stress_intensity.h>
 #include <perideal/operators/elastic_operator.h>
+#include <perideal/problems/model.h>
 #include <perideal/problems/motion_parts.h>
 #include <perideal/problems/problem.h>
 #include <perideal/scene/scene.h>
@@ -121,9 +122,7 @@ namespace PeriDeal
   template <int dim>
   std::vector<std::string> solid_columns(const Scene<dim> &scene);
 
-  /** Builds a model's nodes and operator. The time goes into its timings. */
+  /** As make_diffusion_problem(). */
   template <int dim>
-  std::unique_ptr<SolidProblem<dim>> make_solid_problem(const ModelKind                   model,
-                                                        const dealii::Triangulation<dim> &mesh,
-                                                        const Scene<dim>                 &scene);
+  std::unique_ptr<SolidProblem<dim>> make_solid_problem(Model<dim> &model, const Scene<dim> &scene);
 } // namespace PeriDeal

@@ -11,8 +11,9 @@ namespace PeriDeal
 {
   /**
    * What has changed of a body from one time to another: made by the history of its cracks
-   * (CrackHistory::change()), consumed by operators and their bonds, cells and couplings, which
-   * mend only what it names. The same on all processes.
+   * (CrackHistory::change()), or by damage (BondBreaking::break_bonds()), consumed by operators and
+   * their bonds, cells and couplings, which mend only what it names. The same on all processes, but
+   * for the nodes.
    */
   template <int dim>
   struct ChangeSet
@@ -20,5 +21,10 @@ namespace PeriDeal
     double                                from = 0., to = 0.; // representative times of the cracks
     double                                since = 0.; // when those of `to` begin: an event, or 0
     std::vector<dealii::BoundingBox<dim>> cuts;       // around what is cut, or conducts otherwise
+
+    bool damage = false; // bonds have broken, else cracks have changed
+
+    /** Of damage: the owned nodes that have lost a bond, in ascending order. */
+    std::vector<unsigned int> nodes;
   };
 } // namespace PeriDeal

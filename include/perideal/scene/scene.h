@@ -78,8 +78,9 @@ namespace PeriDeal
     Units                   units;
 
     /**
-     * The heat problem of `Temperature change = computed`: this scene with `Physics = heat` and
-     * without what elasticity alone has; else null.
+     * What `Temperature change = computed` solves first: the values of the same sections, with
+     * `Physics = heat` and without what deforms the body; else null. No text is parsed for it but
+     * that of cracks and peridynamics, which mean something else there.
      */
     std::shared_ptr<const Scene<dim>> heat;
 
@@ -98,8 +99,11 @@ namespace PeriDeal
     /** Parse all sections and check them one by one and against each other. Throws UserError. */
     void parse_and_validate();
 
-  private:
-    void take_times(); // of a run, for the parameters
+    /** Check the sections against each other, once all have their values. Throws UserError. */
+    void validate();
+
+    /** Those of a run, for the parameters. */
+    void take_times();
   };
 
 

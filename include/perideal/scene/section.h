@@ -54,6 +54,15 @@ namespace PeriDeal
     /** @param name the section as users write it; empty: the entries stand outside all sections. */
     explicit SceneSection(const std::string &name);
 
+    SceneSection(const SceneSection &) = delete;
+
+    /** Takes over the texts of another section of the same name; values are members' own. */
+    SceneSection &operator=(const SceneSection &other)
+    {
+      list = other.list;
+      return *this;
+    }
+
     void declare_parameters(dealii::ParameterHandler &prm) override;
 
     void parse_parameters(dealii::ParameterHandler &prm) override;

@@ -10,7 +10,7 @@
 #include <perideal/mesh/grading.h>
 #include <perideal/mesh/mesh_history.h>
 #include <perideal/output/result_folder.h>
-#include <perideal/problems/problem.h>
+#include <perideal/problems/model.h>
 #include <perideal/scene/scene.h>
 
 #include <nlohmann/json_fwd.hpp>
@@ -55,7 +55,7 @@ namespace PeriDeal
     void dry_run();
 
   private:
-    using List = std::vector<std::unique_ptr<Problem<dim>>>;
+    using List = std::vector<Problem<dim> *>;
 
     /** How far the run is, at and between the times at which all problems meet. */
     struct Place
@@ -127,7 +127,8 @@ namespace PeriDeal
     mutable Progress                            progress;
     Timings                                     timings;
     std::shared_ptr<dealii::Triangulation<dim>> mesh;
-    List                                        companions, problems; // advanced in this order
+    Models<dim>                                 models;
+    List                                        companions, problems; // of them, in this order
     std::unique_ptr<ExactSolution>              exact;
     std::unique_ptr<ResultRecord>               record;
     std::unique_ptr<RunOutput<dim>>             output;

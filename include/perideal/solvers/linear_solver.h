@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/archive.h>
 #include <perideal/operators/operator.h>
 #include <perideal/solvers/preconditioner.h>
 
@@ -43,6 +44,13 @@ namespace PeriDeal
 
     /** K is no longer what the preconditioner was made for. Not collective. */
     void operator_changed();
+
+    /**
+     * What the preconditioner was made for, so that a run that goes on has the same, unless K has
+     * changed since it was made: then it is made for K as it is. The operator is what it was when
+     * this was kept. Collective.
+     */
+    void exchange(Archive &archive);
 
     /** The operator's surrogate matrix, from which the preconditioner is made. */
     const dealii::TrilinosWrappers::SparseMatrix &surrogate() const;

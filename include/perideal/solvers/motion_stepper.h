@@ -98,6 +98,9 @@ namespace PeriDeal
     /** Bonds have broken, or cracks have grown: K is another one. */
     virtual void operator_changed() {}
 
+    /** As exchange(), of what a method has beyond that. */
+    virtual void exchange_own(Archive &) {}
+
     /** y = M^{-1} r on free unknowns, zero elsewhere. */
     void accelerate(Vector &y, const Vector &r) const;
 

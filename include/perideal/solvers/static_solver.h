@@ -41,6 +41,13 @@ namespace PeriDeal
 
     /** K is no longer that of the last solution. Not collective. */
     virtual void operator_changed() {}
+
+    /** What the next solution depends on besides the operator, which has its state. Collective. */
+    virtual void exchange(Archive &archive)
+    {
+      if (archive.loads())
+        operator_changed();
+    }
   };
 
 
