@@ -34,6 +34,14 @@ namespace PeriDeal
   }
 
 
+  std::vector<std::pair<std::size_t, double>> BondState::marked_since(std::size_t &n_known) const
+  {
+    const std::size_t first = n_known;
+    n_known                 = times.size();
+    return {times.begin() + first, times.end()};
+  }
+
+
   double BondState::since(const std::size_t number) const
   {
     if (is_whole(number))

@@ -16,7 +16,8 @@ namespace PeriDeal
                           const CrackHistory<dim> &history,
                           const bool               cut_at_tips,
                           const double             contact_conductance,
-                          const Domain<dim>       *voids)
+                          const Domain<dim>       *voids,
+                          const double             transmission_of_broken)
     : neighbors(neighbors)
     , past(history)
     , cut_at_tips(cut_at_tips)
@@ -25,6 +26,7 @@ namespace PeriDeal
     , time(past.representative(0.))
     , cracks(make_crack_geometries(past.pieces(time, cut_at_tips)))
     , transmission(past.transmission(time))
+    , broken_bonds(transmission_of_broken)
   {}
 
 
@@ -111,6 +113,9 @@ namespace PeriDeal
           }
         kept *= fraction;
       }
+    const double of_broken = kept_of_broken(node, neighbor);
+    cut                    = cut || of_broken < 1.;
+    kept *= of_broken;
     if (leaves_body(node, neighbor))
       {
         cut  = true;
@@ -129,7 +134,7 @@ namespace PeriDeal
         test_crossings(node, neighbor, crack, [&](const Point<dim> &, const Point<dim> &) {
           cut = true;
         });
-    return cut || leaves_body(node, neighbor);
+    return cut || kept_of_broken(node, neighbor) < 1. || leaves_body(node, neighbor);
   }
 
 
@@ -145,7 +150,7 @@ namespace PeriDeal
   template <int dim>
   bool CrackSet<dim>::empty() const
   {
-    return cracks.empty();
+    return cracks.empty() && broken_bonds.empty();
   }
 
 
@@ -183,9 +188,36 @@ namespace PeriDeal
 
 
   template <int dim>
+  void CrackSet<dim>::apply_change(const ChangeSet<dim> &change)
+  {
+    set_time(change.to);
+    broken_bonds.add(change.broken);
+  }
+
+
+  template <int dim>
+  types::global_dof_index CrackSet<dim>::global(const unsigned int node) const
+  {
+    return neighbors.nodes().partitioner()->local_to_global(node);
+  }
+
+
+  template <int dim>
+  double CrackSet<dim>::kept_of_broken(const unsigned int node, const unsigned int neighbor) const
+  {
+    return broken_bonds.empty() || !neighbors.is_real(neighbor) ?
+             1. :
+             broken_bonds.kept_fraction(global(node), global(neighbor));
+  }
+
+
+  template <int dim>
   bool CrackSet<dim>::is_near(const unsigned int node, const double distance) const
   {
-    return voids != nullptr ||
+    // Bonds that have broken are the node's own; who asks farther away has to look everywhere.
+    const bool near_broken = !broken_bonds.empty() && (distance > neighbors.weights().reach() ||
+                                                       broken_bonds.touch(global(node)));
+    return voids != nullptr || near_broken ||
            std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
              return crack.is_near(neighbors.position(node), distance);
            });

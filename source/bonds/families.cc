@@ -85,7 +85,8 @@ namespace PeriDeal
                 body.cracks.contact_conductance,
                 body.peridynamics.across_voids == BondsAcrossVoids::cut && body.domain.has_voids() ?
                   &body.domain :
-                  nullptr)
+                  nullptr,
+                body.elasticity.broken_bonds_conduct)
   {
     const bool unique = topology.has_unique_sites();
     // A symmetry plane of an elastic body holds its nodes, and families end at it.

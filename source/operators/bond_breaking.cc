@@ -313,6 +313,24 @@ namespace PeriDeal
 
 
   template <int dim>
+  std::vector<NodePair> BondBreaking<dim>::broken_since(std::size_t &n_known) const
+  {
+    const std::vector<std::size_t> &starts = bonds.rows.first_of_nodes();
+    const auto                     &layout = *bonds.families.nodes().partitioner();
+    std::vector<NodePair>           pairs;
+    for (const auto &[number, time] : state.marked_since(n_known))
+      {
+        const auto     next = std::upper_bound(starts.begin(), starts.end(), number);
+        const NodePair pair{layout.local_to_global(next - starts.begin() - 1),
+                            layout.local_to_global(bonds.rows.neighbor(number))};
+        if (state[number] == BondState::broken && pair[0] < pair[1])
+          pairs.push_back(pair);
+      }
+    return pairs;
+  }
+
+
+  template <int dim>
   void BondBreaking<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
     if (!changes)

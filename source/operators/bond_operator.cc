@@ -201,7 +201,7 @@ namespace PeriDeal
   template <int dim>
   bool BondOperator<dim>::apply_change(const ChangeSet<dim> &change)
   {
-    bonds.cracks().set_time(change.to);
+    bonds.cracks().apply_change(change);
     if (change.cuts.empty())
       return false;
     std::vector<unsigned int> rows =
@@ -214,7 +214,8 @@ namespace PeriDeal
     constraints.update(bonds, body);
     form->update_rows(rows, stiffness_diagonal.begin());
     outside.update(rows);
-    throw_if_isolated(rows);
+    if (!change.damage) // which may leave nodes alone, that keep their heat
+      throw_if_isolated(rows);
     for (const auto &load : loads.convections())
       if (std::binary_search(rows.begin(), rows.end(), load.node))
         stiffness_diagonal.local_element(load.node) += load.factor;

@@ -130,14 +130,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  typename BondsBesideElements<dim>::Rows BondsBesideElements<dim>::set_cracks_of(
-    const double                     time,
+  typename BondsBesideElements<dim>::Rows BondsBesideElements<dim>::apply_change(
+    const ChangeSet<dim>            &change,
     const std::vector<unsigned int> &nodes)
   {
     Rows old;
     if (!in_form)
       old = rows(nodes);
-    coupled->set_cracks_of(time);
+    coupled->apply_change(change);
     recount = true;
     return old;
   }

@@ -34,14 +34,39 @@ namespace PeriDeal
   template <int dim>
   void CutCells<dim>::set(const std::vector<Cell>            &cells,
                           const std::vector<CrackPiece<dim>> &pieces,
-                          const double                        new_transmission)
+                          const double                        new_transmission,
+                          const BrokenBonds                  *broken_now)
   {
+    broken          = broken_now != nullptr && !broken_now->empty() ? broken_now : nullptr;
     cracks          = make_crack_geometries(pieces);
     transmission    = new_transmission;
     const auto open = make_open_geometries(pieces);
+    if (broken)
+      damaged.resize(cut.size(), false);
     for (const Cell &cell : cells)
-      cut[cell->active_cell_index()] = rule.removes ? is_removed(cell, open) :
-                                                      PeriDeal::is_cut(cell, cracks);
+      {
+        const unsigned int index = cell->active_cell_index();
+        cut[index]               = !rule.in_mesh &&
+                     (rule.removes ? is_removed(cell, open) : PeriDeal::is_cut(cell, cracks));
+        if (!broken || (cut[index] && rule.removes))
+          continue;
+        damaged[index] = false;
+        for (const unsigned int a : cell->vertex_indices())
+          for (unsigned int b = 0; b < a; ++b)
+            damaged[index] = damaged[index] || kept_of_broken(cell, a, b) < 1.;
+        cut[index] = cut[index] || damaged[index];
+      }
+  }
+
+
+  template <int dim>
+  double CutCells<dim>::kept_of_broken(const Cell        &cell,
+                                       const unsigned int a,
+                                       const unsigned int b) const
+  {
+    return broken ?
+             broken->kept_fraction(cell->vertex_dof_index(a, 0), cell->vertex_dof_index(b, 0)) :
+             1.;
   }
 
 
@@ -106,7 +131,7 @@ namespace PeriDeal
           }
         kept *= fraction;
       }
-    return kept;
+    return kept * kept_of_broken(cell, a, b);
   }
 
 
@@ -117,7 +142,7 @@ namespace PeriDeal
   {
     const FullMatrix<double> original = stiffness;
     stiffness                         = 0.;
-    if (rule.removes)
+    if (rule.removes && !(broken && damaged[cell->active_cell_index()]))
       return;
     for (const unsigned int a : cell->vertex_indices())
       for (unsigned int b = 0; b < a; ++b)

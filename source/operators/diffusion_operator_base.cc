@@ -55,6 +55,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool DiffusionOperatorBase<dim>::follow(ChangeSet<dim> change)
+  {
+    change.from = change.to = cracks_of;
+    return apply_change(change);
+  }
+
+
+  template <int dim>
   Balance DiffusionOperatorBase<dim>::balance(const Vector &u,
                                               const double  t,
                                               const bool    steady) const

@@ -232,7 +232,7 @@ namespace PeriDeal
     if (scales_beside_cracks()) // factors of cells and bonds change farther away
       {
         cut_by_cracks.set(pieces, 0.);
-        zone_bonds->set_cracks_of(change.to);
+        zone_bonds->apply_change(change);
         assemble();
       }
     else
@@ -248,7 +248,7 @@ namespace PeriDeal
         add_parts(cells, near, -1.);
         cut_by_cracks.set(cells, pieces, 0.);
         if (zone_bonds)
-          zone_bonds->set_cracks_of(change.to);
+          zone_bonds->apply_change(change);
         add_parts(cells, near, 1.);
         stiffness.compress(VectorOperation::add);
         find_diagonal();

@@ -142,9 +142,12 @@ namespace PeriDeal
         auto         boxes  = cuts;
         boxes.insert(boxes.end(), joins.begin(), joins.end());
         nodes    = zone_bonds->coupling().families().neighbors().nodes_near(boxes, reach + beyond);
-        old_rows = zone_bonds->set_cracks_of(to, nodes);
+        old_rows = zone_bonds->apply_change(change, nodes);
       }
-    cells.cut().set(near, history.pieces(to), history.transmission(to));
+    cells.cut().set(near,
+                    history.pieces(to),
+                    history.transmission(to),
+                    zone_bonds ? &zone_bonds->coupling().families().cracks().broken() : nullptr);
     if (scaled)
       {
         const auto beside = owned_unknowns<dim>(cells_near(0.), *layout);
@@ -163,7 +166,7 @@ namespace PeriDeal
       }
     event->touched.compress();
     event->touched.sort();
-    update_rows(!joins.empty());
+    update_rows(!joins.empty(), change.damage);
     event->touched.clear();
     return true;
   }
@@ -188,7 +191,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FEMOperator<dim>::update_rows(const bool zone_moves)
+  void FEMOperator<dim>::update_rows(const bool zone_moves, const bool may_isolate)
   {
     const auto &partitioner = *stiffness_diagonal.get_partitioner();
     std::string message;
@@ -205,7 +208,8 @@ namespace PeriDeal
         });
         bound = std::max(bound, sum / capacity.local_element(i));
         // Cells are taken away by subtraction, which leaves round-off behind.
-        if (!(sum > 1e-13 * bounds.safe() * capacity.local_element(i)) && message.empty())
+        if (!may_isolate && message.empty() &&
+            !(sum > 1e-13 * bounds.safe() * capacity.local_element(i)))
           message =
             zone_bonds ?
               "The node at " + this->place_of(i) +

@@ -43,7 +43,11 @@ namespace PeriDeal
              [&body] { return body.horizon(); }})
   {
     if (zone_bonds && start > 0.)
-      zone_bonds->set_cracks_of(this->cracks_of, {});
+      {
+        ChangeSet<dim> from_start;
+        from_start.to = this->cracks_of;
+        zone_bonds->apply_change(from_start, {});
+      }
     cells.cut().set(history.pieces(this->cracks_of), history.transmission(this->cracks_of));
     assemble();
     find_diagonal();

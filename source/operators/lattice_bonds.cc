@@ -252,12 +252,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeBonds<dim>::set_cracks_of(const double time)
+  void LatticeBonds<dim>::apply_change(const ChangeSet<dim> &change)
   {
-    for (const BoundingBox<dim> &box : joining_by(time))
+    for (const BoundingBox<dim> &box : joining_by(change.to))
       own(families.nodes().lattice()->index(box.get_boundary_points().first)).in_zone = true;
-    families.cracks().set_time(time);
-    zone.set_cracks(families.cracks().history().pieces(time));
+    families.cracks().apply_change(change);
+    zone.set_cracks(families.cracks().history().pieces(change.to));
   }
 
 

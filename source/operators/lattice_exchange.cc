@@ -124,9 +124,9 @@ namespace PeriDeal
   }
 
   template <int dim, typename Law>
-  void LatticeExchange<dim, Law>::set_cracks_of(const double time)
+  void LatticeExchange<dim, Law>::apply_change(const ChangeSet<dim> &change)
   {
-    bonds.set_cracks_of(time);
+    bonds.apply_change(change);
   }
 
   template <int dim, typename Law>

@@ -367,11 +367,11 @@ namespace PeriDeal
 
 
   template <int dim, typename Law>
-  void MeshExchange<dim, Law>::set_cracks_of(const double time)
+  void MeshExchange<dim, Law>::apply_change(const ChangeSet<dim> &change)
   {
     bool any = false;
-    own_families.cracks().set_time(time);
-    zone.set_cracks(own_families.cracks().history().pieces(time));
+    own_families.cracks().apply_change(change);
+    zone.set_cracks(own_families.cracks().history().pieces(change.to));
     for (unsigned int i = 0; i < joined.size() && zone.follows_cracks(); ++i)
       if (may_join[i] && !joined[i] && zone.contains(own_families.nodes().position(i)))
         {

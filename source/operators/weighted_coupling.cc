@@ -95,10 +95,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  void WeightedCoupling<dim>::set_cracks_of(const double time)
+  void WeightedCoupling<dim>::apply_change(const ChangeSet<dim> &change)
   {
-    own_families.cracks().set_time(time);
-    zone.set_cracks(own_families.cracks().history().pieces(time));
+    own_families.cracks().apply_change(change);
+    zone.set_cracks(own_families.cracks().history().pieces(change.to));
     if (follows)
       weights_now.set(zone);
   }

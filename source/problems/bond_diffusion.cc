@@ -103,6 +103,12 @@ namespace PeriDeal
         return changed;
       }
 
+      bool follow(const ChangeSet<dim> &damage) override
+      {
+        cut.reinit(0);
+        return bonds->follow(damage);
+      }
+
       void set_initial_value(Vector &u) const override
       {
         for (unsigned int i = 0; i < node_set->n_owned(); ++i)

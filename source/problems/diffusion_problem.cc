@@ -147,6 +147,15 @@ namespace PeriDeal
 
 
   template <int dim>
+  void DiffusionProblem<dim>::apply_change(const ChangeSet<dim> &damage)
+  {
+    Timings::Scope scope(this->timings, "following damage");
+    follow(damage);
+    stepper->restart();
+  }
+
+
+  template <int dim>
   void DiffusionProblem<dim>::begin(const RunContext &context)
   {
     if (scene.time.steady)

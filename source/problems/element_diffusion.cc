@@ -81,6 +81,11 @@ namespace PeriDeal
         return fem->update(t);
       }
 
+      bool follow(const ChangeSet<dim> &damage) override
+      {
+        return fem->follow(damage);
+      }
+
       void set_initial_value(Vector &u) const override
       {
         // Lumped projection for Q1, so that a jump inside a cell is averaged; interpolation for

@@ -107,6 +107,64 @@ namespace PeriDeal
 
 
   template <int dim>
+  ChangeSet<dim> SolidProblem<dim>::damage_since_told()
+  {
+    ChangeSet<dim> change;
+    change.damage                     = true;
+    const MPI_Comm                all = this->dofs().get_communicator();
+    std::vector<NodePair>         own = op().broken_since(n_told);
+    std::vector<Point<dim>>       places;
+    const types::global_dof_index first = this->dofs().locally_owned_dofs().nth_index_in_set(0);
+    for (const NodePair &pair : own)
+      places.push_back(this->position(pair[0] - first));
+    for (const auto &list : Utilities::MPI::all_gather(all, own))
+      change.broken.insert(change.broken.end(), list.begin(), list.end());
+    for (const auto &list : Utilities::MPI::all_gather(all, places))
+      for (const Point<dim> &p : list)
+        change.cuts.push_back(BoundingBox<dim>({p, p}));
+    std::sort(change.broken.begin(), change.broken.end());
+    return change;
+  }
+
+
+  template <int dim>
+  bool SolidProblem<dim>::heat_follows() const
+  {
+    return heat != nullptr && scene.warms_slowly() && scene.elasticity.broken_bonds_conduct < 1. &&
+           op().brittle();
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::tell_damage()
+  {
+    if (!heat_follows())
+      return;
+    const ChangeSet<dim> damage = damage_since_told();
+    if (!damage.broken.empty() || heat_was_told)
+      heat->apply_change(damage);
+    heat_was_told = false;
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::exchange_damage(Archive &archive)
+  {
+    if (!heat_follows())
+      return;
+    std::size_t n_marks = n_told;
+    bool        untold  = Utilities::MPI::max(op().broken_since(n_marks).empty() ? 0 : 1,
+                                      this->dofs().get_communicator()) > 0;
+    archive.exchange("damage that heat does not know", untold);
+    if (!archive.loads())
+      return;
+    heat_was_told = untold;
+    n_told        = 0;
+    heat->follow(damage_since_told());
+  }
+
+
+  template <int dim>
   void SolidProblem<dim>::set_start()
   {
     const InitialAndSource &given = scene.initial_and_source;
@@ -259,6 +317,7 @@ namespace PeriDeal
       loading->step(displacement, to, context.after_step);
     n_iterations = loading->n_iterations();
     tell_first_break(*this, to, context);
+    tell_damage();
   }
 
 
@@ -313,6 +372,7 @@ namespace PeriDeal
       }
     if (archive.loads())
       op().linearize(displacement);
+    exchange_damage(archive);
   }
 
 
@@ -412,6 +472,7 @@ namespace PeriDeal
     loading->begin(displacement, 0.);
     n_iterations = loading->n_iterations();
     tell_first_break(*this, 0., context);
+    tell_damage();
   }
 
 

@@ -53,6 +53,12 @@ namespace PeriDeal
             "temperature",
             "With `Temperature change = computed`: temperature of the unstressed body.");
     declare(
+      "Broken bonds conduct",
+      EntryType::number,
+      "0",
+      "1",
+      "With `Temperature change = computed` that changes in time: the part of its heat that a bond still conducts once it has broken, from 0 (nothing) to 1 (as before).");
+    declare(
       "Solver",
       EntryType::choice,
       "linear",
@@ -120,6 +126,14 @@ namespace PeriDeal
         "'computed' is for bodies at rest, but 'Solver' is 'dynamics'. Use another solver, or a formula of x, y, z here.");
     if (is_given("Reference temperature") && !computes_temperature)
       error("Reference temperature",
+            "has no effect: 'Temperature change' is '" + text("Temperature change") +
+              "'. Use 'Temperature change = computed', or leave the entry out.");
+    broken_bonds_conduct = number("Broken bonds conduct");
+    if (!(broken_bonds_conduct >= 0. && broken_bonds_conduct <= 1.))
+      error("Broken bonds conduct",
+            "found " + text("Broken bonds conduct") + ", needs a number from 0 to 1.");
+    if (is_given("Broken bonds conduct") && !computes_temperature)
+      error("Broken bonds conduct",
             "has no effect: 'Temperature change' is '" + text("Temperature change") +
               "'. Use 'Temperature change = computed', or leave the entry out.");
     if (dim != 2 && is_given("Plane"))

@@ -26,7 +26,8 @@ namespace PeriDeal
       heat.units              = scene.units;
       heat.general.physics    = Physics::heat;
       heat.domain.notes.clear();
-      heat.boundary_conditions = scene.boundary_conditions;
+      heat.elasticity.broken_bonds_conduct = scene.elasticity.broken_bonds_conduct;
+      heat.boundary_conditions             = scene.boundary_conditions;
       heat.boundary_conditions.displacement.clear();
       heat.boundary_conditions.traction.clear();
       // Where no lattice mirrors its nodes in it, a plane of symmetry is an insulated side.

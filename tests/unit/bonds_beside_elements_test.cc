@@ -169,11 +169,13 @@ namespace PeriDeal
     Matrix         matrix = body.matrix();
     body.bonds.add_to(matrix);
     matrix.compress(dealii::VectorOperation::add);
-    const auto history = body.problem.scene.crack_history();
-    RowSet     touched(body.vector());
-    const auto before = body.bonds.rows(body.all);
-    const auto old    = body.bonds.set_cracks_of(history.representative(1.), body.all);
-    const auto after  = body.bonds.rows(body.all);
+    const auto   history = body.problem.scene.crack_history();
+    RowSet       touched(body.vector());
+    const auto   before = body.bonds.rows(body.all);
+    ChangeSet<2> change;
+    change.to        = history.representative(1.);
+    const auto old   = body.bonds.apply_change(change, body.all);
+    const auto after = body.bonds.rows(body.all);
     EXPECT_EQ(old, before);
     body.bonds.add_changes(body.all, old, matrix, touched);
     matrix.compress(dealii::VectorOperation::add);

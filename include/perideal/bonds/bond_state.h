@@ -61,6 +61,12 @@ namespace PeriDeal
                                       const std::vector<std::size_t> &starts,
                                       const NodeKeys                 &keys);
 
+    /**
+     * Numbers and times of what has been marked since there were @p n_known such marks, which
+     * becomes what there are now; those at the start apart.
+     */
+    std::vector<std::pair<std::size_t, double>> marked_since(std::size_t &n_known) const;
+
     /** Of those marks. */
     std::size_t count(const Mark mark) const;
 

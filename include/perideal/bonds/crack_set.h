@@ -4,6 +4,8 @@
 #pragma once
 
 #include <perideal/bonds/bond_conductivities.h>
+#include <perideal/bonds/broken_bonds.h>
+#include <perideal/scene/change_set.h>
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/crack_history.h>
 #include <perideal/scene/domain.h>
@@ -27,12 +29,14 @@ namespace PeriDeal
      * @param contact_conductance  of cracks; negative: none is given, they let through their
      *                             transmission
      * @param voids                that bonds must not cross, or nullptr
+     * @param transmission_of_broken what bonds let through that another physics breaks
      */
     CrackSet(const Neighbors<dim>    &neighbors,
              const CrackHistory<dim> &history,
              const bool               cut_at_tips,
              const double             contact_conductance,
-             const Domain<dim>       *voids);
+             const Domain<dim>       *voids,
+             const double             transmission_of_broken = 0.);
 
     /** Whether a bond crosses some crack. */
     bool cuts(const unsigned int node, const unsigned int neighbor) const;
@@ -66,6 +70,15 @@ namespace PeriDeal
     /** Make the cracks those of the representative time (CrackHistory). */
     void set_time(const double time);
 
+    /** The cracks after a change, and the bonds that it has broken. */
+    void apply_change(const ChangeSet<dim> &change);
+
+    /** What another physics of the model has broken. */
+    const BrokenBonds &broken() const
+    {
+      return broken_bonds;
+    }
+
     /** The representative time of the cracks as they are now. */
     double now() const;
 
@@ -79,6 +92,11 @@ namespace PeriDeal
                         const CrackGeometry<dim> &crack,
                         const Test               &test) const;
     bool leaves_body(const unsigned int node, const unsigned int neighbor) const;
+
+    /** What is left of a bond that may have broken. */
+    double kept_of_broken(const unsigned int node, const unsigned int neighbor) const;
+
+    dealii::types::global_dof_index global(const unsigned int node) const;
     template <typename Test>
     void test_images(const unsigned int         node,
                      const FictitiousNode<dim> &fictitious,
@@ -92,5 +110,6 @@ namespace PeriDeal
     double                          time; // the representative one
     std::vector<CrackGeometry<dim>> cracks;
     double                          transmission;
+    BrokenBonds                     broken_bonds;
   };
 } // namespace PeriDeal

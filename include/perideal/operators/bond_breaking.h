@@ -59,6 +59,9 @@ namespace PeriDeal
     /** What has broken or been cut, and since when. @param keys of the owned nodes. Collective. */
     void exchange(Archive &archive, const NodeKeys &keys);
 
+    /** As ElasticOperator::broken_since(). */
+    std::vector<NodePair> broken_since(std::size_t &n_known) const;
+
     /** What has broken so far; null: bonds do not break. */
     const BreakHistory *history() const
     {

@@ -57,7 +57,7 @@ namespace PeriDeal
      * @param nodes whose bonds may change
      * @return what their bonds were, for add_changes(); empty if they are apart
      */
-    Rows set_cracks_of(const double time, const std::vector<unsigned int> &nodes);
+    Rows apply_change(const ChangeSet<dim> &change, const std::vector<unsigned int> &nodes);
 
     /** Add to the matrix what has changed; rows that have are inserted into the set. */
     void add_changes(const std::vector<unsigned int>        &nodes,

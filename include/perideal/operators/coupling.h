@@ -109,11 +109,11 @@ namespace PeriDeal
     virtual std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const = 0;
 
     /**
-     * Move on to the cracks of that representative time (CrackHistory), and the zone with them. A
-     * bond's strength follows from the cracks as they are then, their whole way included: bonds
-     * that join find themselves broken where a crack has passed before.
+     * Move on to the cracks after a change, and the zone with them. A bond's strength follows from
+     * the cracks as they are then, their whole way included: bonds that join find themselves broken
+     * where a crack has passed before.
      */
-    virtual void set_cracks_of(const double time) = 0;
+    virtual void apply_change(const ChangeSet<dim> &change) = 0;
 
     /** Part of the bonds' strength that distorted cells leave. Collective. */
     virtual double kept_share() const

@@ -6,6 +6,7 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/full_matrix.h>
 
+#include <perideal/bonds/broken_bonds.h>
 #include <perideal/scene/crack_geometry.h>
 
 #include <functional>
@@ -46,10 +47,15 @@ namespace PeriDeal
     /** Take the cracks of another time, of which all cells may know. */
     void set(const std::vector<CrackPiece<dim>> &pieces, const double transmission);
 
-    /** The same where nothing has changed outside the given cells. */
+    /**
+     * The same where nothing has changed outside the given cells.
+     * @param broken bonds, or null: a cell is cut, too, where one of those between its vertices has
+     *               broken, and what is left of the cell then are the pairs of its vertices
+     */
     void set(const std::vector<Cell>            &cells,
              const std::vector<CrackPiece<dim>> &pieces,
-             const double                        transmission);
+             const double                        transmission,
+             const BrokenBonds                  *broken = nullptr);
 
     /** A cell of this process or a ghost. */
     bool is_cut(const Cell &cell) const;
@@ -84,11 +90,15 @@ namespace PeriDeal
     bool pairs_are_stiffer() const;
 
   private:
+    /** What damage leaves of a pair of vertices. */
+    double kept_of_broken(const Cell &cell, const unsigned int a, const unsigned int b) const;
+
     const dealii::DoFHandler<dim>  &dofs;
     const Rule                      rule;
     std::vector<CrackGeometry<dim>> cracks;
     double                          transmission = 0.;
-    std::vector<bool>               cut;
+    std::vector<bool>               cut, damaged; // the latter empty without damage
+    const BrokenBonds              *broken  = nullptr;
     mutable bool                    stiffer = false;
   };
 } // namespace PeriDeal

@@ -62,6 +62,13 @@ namespace PeriDeal
     }
 
     bool update(const double t) override;
+
+    /**
+     * Follow damage of a solid on the same nodes (ChangeSet::broken). Returns whether K has
+     * changed; then steppers have to be restarted. Collective.
+     */
+    bool follow(ChangeSet<dim> change);
+
     bool depends_on_solution() const override
     {
       return body.material.depends_on_temperature();

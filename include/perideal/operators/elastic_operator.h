@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/operators/operator.h>
+#include <perideal/scene/change_set.h>
 
 #include <map>
 #include <string>
@@ -180,6 +181,16 @@ namespace PeriDeal
     bool brittle() const
     {
       return break_history() != nullptr;
+    }
+
+    /**
+     * The bonds between nodes that have broken since there were @p n_known marks on this process,
+     * which becomes what there are now; each by the process that has its first node. Not
+     * collective.
+     */
+    virtual std::vector<NodePair> broken_since(std::size_t & /*n_known*/) const
+    {
+      return {};
     }
 
     /**

@@ -181,7 +181,7 @@ namespace PeriDeal
     void   assemble();
     void   fill();
     void   assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
-    void   update_rows(const bool zone_moves);
+    void   update_rows(const bool zone_moves, const bool may_isolate);
     double heat_of(const Vector &u) const;
     void   add_changes(const std::vector<Cell>                       &changed,
                        const std::vector<dealii::FullMatrix<double>> &old);

@@ -107,7 +107,7 @@ namespace PeriDeal
     double stiffness_of(const Site &cell) const;
 
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const;
-    void                                  set_cracks_of(const double time);
+    void                                  apply_change(const ChangeSet<dim> &change);
     bool                                  in_zone(const unsigned int node) const;
     std::size_t                           memory_consumption() const;
 

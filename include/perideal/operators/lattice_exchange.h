@@ -43,7 +43,7 @@ namespace PeriDeal
     std::unique_ptr<BondForm>             make_form() override;
     void                                  set_form_factors(std::vector<double> factors) override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
-    void                                  set_cracks_of(const double time) override;
+    void                                  apply_change(const ChangeSet<dim> &change) override;
     bool                                  in_zone(const unsigned int node) const override;
     const Families<dim>                  &families() const override;
     std::size_t                           memory_consumption() const override;

@@ -43,9 +43,9 @@ namespace PeriDeal
       return coupled->families().nodes();
     }
 
-    void set_cracks_of(const double time)
+    void apply_change(const ChangeSet<dim> &change)
     {
-      coupled->set_cracks_of(time);
+      coupled->apply_change(change);
     }
 
     /** NodeFamilies::mirrors(), if the coupling has families. */

@@ -67,6 +67,11 @@ namespace PeriDeal
       return breakage.history();
     }
 
+    std::vector<NodePair> broken_since(std::size_t &n_known) const override
+    {
+      return breakage.broken_since(n_known);
+    }
+
     unsigned long long break_bonds(const Vector &u, double t, double share = 0.) override;
     void               exchange(Archive &archive, const NodeKeys &keys) override;
 

@@ -45,7 +45,7 @@ namespace PeriDeal
     bool finish_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
     bool symmetric() const override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
-    void                                  set_cracks_of(const double time) override;
+    void                                  apply_change(const ChangeSet<dim> &change) override;
     bool                                  in_zone(const unsigned int node) const override;
     const Families<dim>                  &families() const override;
     std::size_t                           memory_consumption() const final;

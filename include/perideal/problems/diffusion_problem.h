@@ -77,6 +77,12 @@ namespace PeriDeal
     /** As Operator::update(). */
     virtual bool update(const double t) = 0;
 
+    /** As DiffusionOperatorBase::follow(). */
+    virtual bool follow(const ChangeSet<dim> &damage) = 0;
+
+    /** follow() in between two advances. Collective. */
+    void apply_change(const ChangeSet<dim> &damage);
+
     /** Initial value on the unknowns. */
     virtual void set_initial_value(Vector &u) const = 0;
 

@@ -91,7 +91,7 @@ namespace PeriDeal
     virtual std::vector<StressSample> stress_samples() const = 0;
 
     const Scene<dim>              &scene;
-    const DiffusionProblem<dim>   *heat = nullptr; // what computes the temperature, if anything
+    DiffusionProblem<dim>         *heat = nullptr; // what computes the temperature, if anything
     Vector                         displacement;
     Vector                         velocity;          // of a motion
     std::unique_ptr<MotionStepper> stepper;           // null in equilibrium
@@ -101,8 +101,15 @@ namespace PeriDeal
     unsigned int                   n_iterations = 0;
 
   private:
-    void           set_start();
-    void           take_temperature();
+    void set_start();
+    void take_temperature();
+
+    /** The heat of the same nodes follows what breaks. */
+    bool           heat_follows() const;
+    ChangeSet<dim> damage_since_told();
+    void           tell_damage();
+    void           exchange_damage(Archive &archive);
+
     StepperOptions stepper_options() const;
     void           make_loading();
     void           begin_loading(const RunContext &context);
@@ -112,6 +119,8 @@ namespace PeriDeal
                         const RunContext                        &context);
 
     MotionParts moving;
+    std::size_t n_told        = 0;     // marks of bonds of this process that the heat knows of
+    bool        heat_was_told = false; // when the run was resumed, of what broke in this step
   };
 
 

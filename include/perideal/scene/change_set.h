@@ -4,11 +4,17 @@
 #pragma once
 
 #include <deal.II/base/bounding_box.h>
+#include <deal.II/base/types.h>
 
+#include <array>
 #include <vector>
 
 namespace PeriDeal
 {
+  /** Two nodes by their global numbers, the smaller one first. */
+  using NodePair = std::array<dealii::types::global_dof_index, 2>;
+
+
   /**
    * What has changed of a body from one time to another: made by the history of its cracks
    * (CrackHistory::change()), or by damage (BondBreaking::break_bonds()), consumed by operators and
@@ -26,5 +32,8 @@ namespace PeriDeal
 
     /** Of damage: the owned nodes that have lost a bond, in ascending order. */
     std::vector<unsigned int> nodes;
+
+    /** Of damage that another physics follows: the bonds that have broken, ascending. */
+    std::vector<NodePair> broken;
   };
 } // namespace PeriDeal

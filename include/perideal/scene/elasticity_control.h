@@ -26,6 +26,7 @@ namespace PeriDeal
     Expression    temperature_change;
     bool          computes_temperature  = false; // by the heat problem of the same scene
     double        reference_temperature = 0.;    // of the unstressed body, where it is computed
+    double        broken_bonds_conduct  = 0.;    // of heat: their transmission, 0 to 1
     ElasticSolver solver                = ElasticSolver::linear;
     bool          multigrid             = true; // entry `Preconditioner`
 

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// What conducts follows what a solid on the same nodes breaks.
+
+#include <deal.II/base/mpi.h>
+
+#include "operator_test_tools.h"
+
+using namespace PeriDeal;
+using namespace PeriDeal::OperatorTests;
+
+namespace
+{
+  const Settings square{{"Domain/Lower corner", "0, 0"},
+                        {"Domain/Upper corner", "1, 1"},
+                        {"Domain/Cells", "12, 12"},
+                        {"Boundary conditions/Dirichlet", "left: 1; right: 0"},
+                        {"Time/End time", "1"}};
+
+  // It ends inside a cell, and lies between rows of nodes.
+  const Settings cracked{{"Cracks/Segments", "0,0.53 ; 0.62,0.46"}};
+
+
+  /** All bonds that the cracks of a problem cut, as if they had broken. */
+  template <int dim>
+  ChangeSet<dim> as_damage(const Families<dim> &families)
+  {
+    ChangeSet<dim>                              damage;
+    std::vector<typename Families<dim>::Member> members;
+    std::vector<NodePair>                       own;
+    std::vector<dealii::Point<dim>>             places;
+    const Nodes<dim>                           &nodes = families.nodes();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        families.members_of(i, members);
+        for (const auto &bond : members)
+          {
+            const auto a = nodes.partitioner()->local_to_global(i),
+                       b = nodes.partitioner()->local_to_global(bond.neighbor);
+            if (bond.cut && a < b)
+              {
+                own.push_back({a, b});
+                places.push_back(nodes.position(i));
+              }
+          }
+      }
+    for (const auto &list : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, own))
+      damage.broken.insert(damage.broken.end(), list.begin(), list.end());
+    for (const auto &list : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, places))
+      for (const auto &p : list)
+        damage.cuts.push_back(dealii::BoundingBox<dim>({p, p}));
+    std::sort(damage.broken.begin(), damage.broken.end());
+    damage.damage = true;
+    return damage;
+  }
+
+
+  /** K x of a body that breaks, and of one that had the crack from the start. */
+  template <typename Follow>
+  double gap(const Problem<2> &whole, const Problem<2> &cut, const Follow &follow)
+  {
+    const Vector x = whole.values(bumpy<2>);
+    Vector       y = whole.vector(), expected = cut.vector();
+    whole.op().apply(y, x);
+    cut.op().apply(expected, x);
+    EXPECT_GT(largest_difference(y, expected), 1e-2);
+    EXPECT_TRUE(follow());
+    whole.op().apply(y, x);
+    EXPECT_LT(largest_difference(whole.op().diagonal(), cut.op().diagonal()),
+              1e-12 * expected.linfty_norm());
+    return largest_difference(y, expected) / expected.linfty_norm();
+  }
+
+
+  TEST(BrokenBonds, are_as_a_crack_for_bonds_alone)
+  {
+    for (const std::string form : {"lattice", "stored"})
+      for (const std::string nodes : {"vertices", "cell centers"})
+        {
+          const Settings   settings = square + Settings{{"Domain/Nodes", nodes},
+                                                      {"Peridynamics/Boundary treatment", "none"},
+                                                      {"Peridynamics/Operator form", form}};
+          const Problem<2> whole(settings), cut(settings + cracked);
+          const auto       damage = as_damage(cut.bonds->diffusion_bonds().families());
+          EXPECT_GT(damage.broken.size(), 50u);
+          EXPECT_LT(gap(whole, cut, [&] { return whole.bonds->follow(damage); }), 1e-14)
+            << form << ", " << nodes;
+        }
+  }
+
+
+  TEST(BrokenBonds, are_as_a_crack_for_exchanged_bonds_and_their_cells)
+  {
+    for (const std::string zone : {"everywhere", "0.8 - x"})
+      {
+        const Settings settings =
+          square + Settings{{"Coupling/Zone", zone}, {"Peridynamics/Horizon ratio", "3"}};
+        const Problem<2> whole(settings, ModelKind::coupled),
+          cut(settings + cracked, ModelKind::coupled);
+        const auto damage = as_damage(cut.fem->bonds().families());
+        EXPECT_LT(gap(whole, cut, [&] { return whole.fem->follow(damage); }), 1e-12) << zone;
+      }
+  }
+
+
+  TEST(BrokenBonds, let_through_what_they_are_told)
+  {
+    BrokenBonds broken(0.25);
+    EXPECT_FALSE(broken.touch(3));
+    EXPECT_EQ(broken.kept_fraction(3, 7), 1.);
+    broken.add({{3, 7}, {5, 6}});
+    broken.add({{1, 7}, {4, 9}});
+    EXPECT_EQ(broken.kept_fraction(7, 3), 0.25);
+    EXPECT_EQ(broken.kept_fraction(9, 4), 0.25);
+    EXPECT_EQ(broken.kept_fraction(3, 6), 1.);
+    EXPECT_TRUE(broken.touch(1) && broken.touch(9));
+    EXPECT_FALSE(broken.touch(2));
+  }
+} // namespace
