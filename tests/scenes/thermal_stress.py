@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Elastic bodies whose temperature is computed: prm/elasticity/thermal_stress.prm and small plates against closed forms and against the same temperature as a formula.
 
-    thermal_stress.py free | held | formula | strip | cooling | ranks | mistakes
+    thermal_stress.py free | held | formula | strip | cooling | torn | ranks | mistakes
 
 Bounds that follow from no theory are at most 1.5 times the gap that was measured; the comment beside them gives it.
 """
@@ -242,9 +242,31 @@ def mistakes():
             check_message(run_plate(more, ranks=ranks, expect_error=True), *words)
 
 
+def torn():
+    """A strip that tears in its middle while heat flows along it: what has broken insulates, as far as it is told to."""
+    sides = ((0.4, 0.1), (0.6, 0.1))
+    # By bonds alone, and with exchanged bonds and what these leave of the cells at the sides.
+    for more in ({}, {"Peridynamics/Boundary treatment": "none"}, {"Domain/Nodes": "cell centers", "Domain/Cells": "41, 10"},
+                 {"Peridynamics/Horizon ratio": "2", "Cracks/Segments": "0.5,0 ; 0.5,0.05", "Cracks/Nodes on cracks": "left"}):
+        for ranks in (1, 2):
+            run = run_scene("prm/fracture/torn_strip.prm", {**more, "Output/Fields": "none"}, ranks=ranks)
+            for point, expected in zip(sides, (1., 0.)):
+                check_close(run.probe(PD, point, column="temperature", time=1.), expected, absolute=1e-3, what=f"{more}, {ranks} processes: T at {point}")
+                check_close(run.probe(PD, point, column="temperature", time=0.1), 1. - point[0], absolute=1e-3, what=f"{more}: T at {point} before")
+    whole = run_scene("prm/fracture/torn_strip.prm", {"Elasticity/Broken bonds conduct": "1", "Output/Fields": "none"})
+    for point in sides:
+        check_close(whole.probe(PD, point, column="temperature", time=1.), 1. - point[0], absolute=1e-6, what=f"conducting as before: T at {point}")
+    some = run_scene("prm/fracture/torn_strip.prm", {"Elasticity/Broken bonds conduct": "0.1", "Output/Fields": "none"})
+    check(0.65 < some.probe(PD, sides[0], column="temperature", time=1.) < 0.99, "a crack that conducts a little is a resistance")
+    for more, *words in (({"Elasticity/Broken bonds conduct": "1.5"}, "Broken bonds conduct", "0 to 1"),
+                         ({"Elasticity/Temperature change": "0", "Elasticity/Broken bonds conduct": "0.5", "Boundary conditions/Dirichlet": "",
+                           "Initial and source/Initial value": "0"}, "Broken bonds conduct", "computed")):
+        check_message(run_scene("prm/fracture/torn_strip.prm", more, expect_error=True), *words)
+
+
 def main():
     for part in sys.argv[1:]:
-        {"free": free, "held": held, "formula": formula, "strip": strip, "cooling": cooling, "ranks": ranks, "mistakes": mistakes}[part]()
+        {"free": free, "held": held, "formula": formula, "strip": strip, "cooling": cooling, "torn": torn, "ranks": ranks, "mistakes": mistakes}[part]()
     finish()
 
 
