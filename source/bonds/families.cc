@@ -86,7 +86,7 @@ namespace PeriDeal
                 body.peridynamics.across_voids == BondsAcrossVoids::cut && body.domain.has_voids() ?
                   &body.domain :
                   nullptr,
-                body.elasticity.broken_bonds_conduct)
+                body.broken_bonds_conduct)
   {
     const bool unique = topology.has_unique_sites();
     // A symmetry plane of an elastic body holds its nodes, and families end at it.

@@ -68,7 +68,8 @@ namespace PeriDeal
       explicit StoredForm(const DiffusionBonds<dim> &bonds)
         : bonds(bonds)
         , varying(bonds.conductivities().depend_on_temperature())
-        , keep_cut(varying || bonds.cracks().history().changes_ever())
+        , keep_cut(varying || bonds.cracks().history().changes_ever() ||
+                   bonds.cracks().broken().are_followed())
         , n_values(bonds.nodes().n_local())
         , extended(
             bonds.neighbors().outside().empty() ? 0 : n_values + bonds.neighbors().outside().size())

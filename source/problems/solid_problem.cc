@@ -130,8 +130,7 @@ namespace PeriDeal
   template <int dim>
   bool SolidProblem<dim>::heat_follows() const
   {
-    return heat != nullptr && scene.warms_slowly() && scene.elasticity.broken_bonds_conduct < 1. &&
-           op().brittle();
+    return heat != nullptr && heat->scene.broken_bonds_conduct < 1.;
   }
 
 

@@ -26,8 +26,7 @@ namespace PeriDeal
       heat.units              = scene.units;
       heat.general.physics    = Physics::heat;
       heat.domain.notes.clear();
-      heat.elasticity.broken_bonds_conduct = scene.elasticity.broken_bonds_conduct;
-      heat.boundary_conditions             = scene.boundary_conditions;
+      heat.boundary_conditions = scene.boundary_conditions;
       heat.boundary_conditions.displacement.clear();
       heat.boundary_conditions.traction.clear();
       // Where no lattice mirrors its nodes in it, a plane of symmetry is an insulated side.
@@ -52,9 +51,16 @@ namespace PeriDeal
       heat.peridynamics.parse(Physics::heat);
       heat.time.steady = heat.time.steady || !heat.material.stores;
       heat.take_times();
-      if (!heat.time.steady)
-        heat.material.require_storage();
       heat.solver.parse();
+      if (heat.time.steady)
+        return;
+      heat.material.require_storage();
+      if (!scene.material.fracture_energy && !scene.material.critical_stretch)
+        return;
+      heat.broken_bonds_conduct = scene.elasticity.broken_bonds_conduct;
+      // What the solid's cracks part must not conduct once the bonds ahead of them have broken.
+      if (heat.broken_bonds_conduct < 1. && heat.cracks.through_tips == ThroughTips::automatic)
+        heat.cracks.through_tips = ThroughTips::cut;
     }
   } // namespace
 

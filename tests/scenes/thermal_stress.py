@@ -245,14 +245,15 @@ def mistakes():
 def torn():
     """A strip that tears in its middle while heat flows along it: what has broken insulates, as far as it is told to."""
     sides = ((0.4, 0.1), (0.6, 0.1))
-    # By bonds alone, and with exchanged bonds and what these leave of the cells at the sides.
-    for more in ({}, {"Peridynamics/Boundary treatment": "none"}, {"Domain/Nodes": "cell centers", "Domain/Cells": "41, 10"},
-                 {"Peridynamics/Horizon ratio": "2", "Cracks/Segments": "0.5,0 ; 0.5,0.05", "Cracks/Nodes on cracks": "left"}):
+    # With exchanged bonds and what these leave of the cells at the sides, and by bonds alone, where families are cut at the ends (0.0075 at m = 3).
+    for more, before in (({}, 1e-6), ({"Peridynamics/Horizon ratio": "2"}, 1e-6), ({"Peridynamics/Boundary treatment": "none"}, 0.01),
+                         ({"Domain/Nodes": "cell centers", "Domain/Cells": "41, 10"}, 0.01)):
         for ranks in (1, 2):
             run = run_scene("prm/fracture/torn_strip.prm", {**more, "Output/Fields": "none"}, ranks=ranks)
             for point, expected in zip(sides, (1., 0.)):
-                check_close(run.probe(PD, point, column="temperature", time=1.), expected, absolute=1e-3, what=f"{more}, {ranks} processes: T at {point}")
-                check_close(run.probe(PD, point, column="temperature", time=0.1), 1. - point[0], absolute=1e-3, what=f"{more}: T at {point} before")
+                what = f"{more}, {ranks} processes: T at {point}"
+                check_close(run.probe(PD, point, column="temperature", time=1.), expected, absolute=2e-3, what=what)
+                check_close(run.probe(PD, point, column="temperature", time=0.1), 1. - point[0], absolute=before, what=f"{what} before")
     whole = run_scene("prm/fracture/torn_strip.prm", {"Elasticity/Broken bonds conduct": "1", "Output/Fields": "none"})
     for point in sides:
         check_close(whole.probe(PD, point, column="temperature", time=1.), 1. - point[0], absolute=1e-6, what=f"conducting as before: T at {point}")

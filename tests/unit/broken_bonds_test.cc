@@ -56,6 +56,37 @@ namespace
   }
 
 
+  /** A problem whose bonds conduct nothing once they have broken. */
+  template <int dim>
+  struct Following : Problem<dim>
+  {
+    explicit Following(const Settings &settings, const ModelKind model = ModelKind::peridynamics)
+      : Problem<dim>(settings, model)
+    {
+      Scene<dim> &scene          = this->scene;
+      scene.broken_bonds_conduct = 0.;
+      this->bonds.reset();
+      this->fem.reset();
+      const bool alone = model == ModelKind::peridynamics;
+      this->nodes      = std::make_unique<Nodes<dim>>(this->handler,
+                                                 scene.domain,
+                                                 scene.cracks,
+                                                 alone ? scene.peridynamics.nodal_volume :
+                                                              NodalVolume::partial);
+      if (alone)
+        this->bonds = std::make_unique<BondOperator<dim>>(*this->nodes, scene);
+      else
+        this->fem = std::make_unique<FEMOperator<dim>>(
+          this->handler,
+          scene,
+          make_coupling(*this->nodes,
+                        scene,
+                        Zone<dim>(scene.coupling, scene.horizon()),
+                        CouplingScheme::exchange));
+    }
+  };
+
+
   /** K x of a body that breaks, and of one that had the crack from the start. */
   template <typename Follow>
   double gap(const Problem<2> &whole, const Problem<2> &cut, const Follow &follow)
@@ -78,15 +109,41 @@ namespace
     for (const std::string form : {"lattice", "stored"})
       for (const std::string nodes : {"vertices", "cell centers"})
         {
-          const Settings   settings = square + Settings{{"Domain/Nodes", nodes},
+          const Settings     settings = square + Settings{{"Domain/Nodes", nodes},
                                                       {"Peridynamics/Boundary treatment", "none"},
                                                       {"Peridynamics/Operator form", form}};
-          const Problem<2> whole(settings), cut(settings + cracked);
-          const auto       damage = as_damage(cut.bonds->diffusion_bonds().families());
+          const Following<2> whole(settings);
+          const Problem<2>   cut(settings + cracked);
+          const auto         damage = as_damage(cut.bonds->diffusion_bonds().families());
           EXPECT_GT(damage.broken.size(), 50u);
           EXPECT_LT(gap(whole, cut, [&] { return whole.bonds->follow(damage); }), 1e-14)
             << form << ", " << nodes;
         }
+  }
+
+
+  TEST(BrokenBonds, come_in_steps_beside_a_crack)
+  {
+    const Settings shorter{{"Cracks/Segments", "0,0.53 ; 0.3,0.504838709677419"}};
+    for (const std::string form : {"lattice", "stored"})
+      {
+        const Settings     settings = square + Settings{{"Peridynamics/Boundary treatment", "none"},
+                                                    {"Peridynamics/Operator form", form}};
+        const Following<2> whole(settings + shorter);
+        const Problem<2>   cut(settings + cracked);
+        const auto         damage = as_damage(cut.bonds->diffusion_bonds().families());
+        const auto         follow = [&] {
+          for (std::size_t k = 0; k < damage.broken.size(); k += 40)
+            {
+              const std::size_t end  = std::min(k + 40, damage.broken.size());
+              ChangeSet<2>      some = damage;
+              some.broken.assign(damage.broken.begin() + k, damage.broken.begin() + end);
+              EXPECT_TRUE(whole.bonds->follow(some));
+            }
+          return true;
+        };
+        EXPECT_LT(gap(whole, cut, follow), 1e-14) << form;
+      }
   }
 
 
@@ -96,9 +153,9 @@ namespace
       {
         const Settings settings =
           square + Settings{{"Coupling/Zone", zone}, {"Peridynamics/Horizon ratio", "3"}};
-        const Problem<2> whole(settings, ModelKind::coupled),
-          cut(settings + cracked, ModelKind::coupled);
-        const auto damage = as_damage(cut.fem->bonds().families());
+        const Following<2> whole(settings, ModelKind::coupled);
+        const Problem<2>   cut(settings + cracked, ModelKind::coupled);
+        const auto         damage = as_damage(cut.fem->bonds().families());
         EXPECT_LT(gap(whole, cut, [&] { return whole.fem->follow(damage); }), 1e-12) << zone;
       }
   }

@@ -23,6 +23,12 @@ namespace PeriDeal
     /** More of them, ascending. */
     void add(const std::vector<NodePair> &more);
 
+    /** There may be some, which conduct less. */
+    bool are_followed() const
+    {
+      return transmission < 1.;
+    }
+
     bool empty() const
     {
       return pairs.empty();

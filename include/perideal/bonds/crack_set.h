@@ -36,7 +36,7 @@ namespace PeriDeal
              const bool               cut_at_tips,
              const double             contact_conductance,
              const Domain<dim>       *voids,
-             const double             transmission_of_broken = 0.);
+             const double             transmission_of_broken = 1.);
 
     /** Whether a bond crosses some crack. */
     bool cuts(const unsigned int node, const unsigned int neighbor) const;

@@ -39,6 +39,12 @@ namespace PeriDeal
     double time_step = -1.;   // of what diffuses with a given step; negative: none is given
 
     /**
+     * What diffuses: a solid on the same nodes may break its bonds (ChangeSet::broken), which then
+     * conduct this part; 1: as before, so that there is nothing to follow.
+     */
+    double broken_bonds_conduct = 1.;
+
+    /**
      * The horizon as a length: `Horizon`, or `Horizon ratio` times the smallest spacing of the
      * lattice.
      */
