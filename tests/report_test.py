@@ -184,6 +184,11 @@ class Pages(ReportCase):
         page = self.page("cube")
         self.assertIn("Flux 3*t*sin(pi*x)", page.cells)
 
+    def test_colors_of_sides(self):
+        kinds = ("Dirichlet 1", "flux 2", "convection 3, 4", "contact layer 2, 0.5, 3", "sealed")
+        self.assertEqual(len({sketch.side_color(text) for text in kinds}), len(kinds))
+        self.assertEqual({sketch.side_color(text) for text in ("", "insulated", "sealed", "free")}, {sketch.CLOSED})
+
     def test_mesh_that_leaves_the_unit_square(self):
         page = self.page("ring")
         run = Run(self.directory)

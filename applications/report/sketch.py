@@ -16,7 +16,9 @@ from raster import boundary_lines
 KIND_COLOR = (("dirichlet", "#c0392b"), ("flux", "#d98200"), ("convection", "#00897b"),
               ("u = ", supports.DISPLACEMENT), ("velocity", supports.DISPLACEMENT), ("t = ", supports.TRACTION),
               ("symmetry", supports.SYMMETRY), ("temperature", "#00897b"))
-CLOSED = "#7b8794"  # insulated, sealed or free
+OTHER = "#8e44ad"  # kinds that have no colour of their own
+CLOSED = "#7b8794"
+CLOSED_WORDS = ("", "insulated", "sealed", "free")
 BODY = "#eef2f6"
 BOX_SIDES = {"bottom": ((0, 0), (1, 0)), "top": ((0, 1), (1, 1)), "left": ((0, 0), (0, 1)),
              "right": ((1, 0), (1, 1))}
@@ -29,10 +31,7 @@ LABELS = {"bottom": (0.5, -0.055, "center", "top", 0), "top": (0.5, 1.04, "cente
 def side_color(text):
     """Colour of a boundary condition by its kind."""
     lowered = text.lower()
-    for kind, color in KIND_COLOR:
-        if kind in lowered:
-            return color
-    return CLOSED
+    return next((color for kind, color in KIND_COLOR if kind in lowered), CLOSED if lowered in CLOSED_WORDS else OTHER)
 
 
 def shorten(text, length=30):

@@ -295,7 +295,7 @@ namespace ScalarWave
             "'Stepper' in section 'Time' is '" + scene.time.stepper +
               "'; waves have their own, use 'auto'.");
     require(
-      sides.flux.empty() && sides.convection.empty(),
+      sides.transfers.empty(),
       "Sides of waves are at rest ('Dirichlet', 0) or free: leave out 'Flux' and 'Convection'.");
     for (const SideCondition &side : sides.dirichlet)
       require(is_zero(side.value),

@@ -130,10 +130,7 @@ namespace PeriDeal
             return;
           // Of a side that is held in parts only, nodes lie beyond those parts.
           const SideCondition *const dirichlet =
-            symmetric ? nullptr :
-                        conditions.first_at(conditions.dirichlet,
-                                            side,
-                                            foot_of(lattice, original.site, side));
+            symmetric ? nullptr : conditions.value_at(side, foot_of(lattice, original.site, side));
           if (symmetric || dirichlet != nullptr)
             all.push_back(image(original, lattice, side, dirichlet, constant));
         };

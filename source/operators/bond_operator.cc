@@ -117,8 +117,8 @@ namespace PeriDeal
     const std_cxx20::ranges::iota_view<unsigned int, unsigned int> all(0u, bonds.nodes().n_owned());
     n_own_bonds = form->row_sums(stiffness_diagonal.begin());
     throw_if_isolated(all);
-    for (const auto &load : loads.convections())
-      stiffness_diagonal.local_element(load.node) += load.factor;
+    for (const auto &load : loads.with_coefficient())
+      stiffness_diagonal.local_element(load.node) += load.coefficient;
     bounds.set(largest_rate(all));
     constraints.mask(stiffness_diagonal, 1.);
   }
@@ -138,13 +138,13 @@ namespace PeriDeal
     input->update_ghost_values();
     const double *const beyond  = outside.homogeneous_values(*input);
     double             &entered = this->entering_now;
-    entered                     = loads.through_convection(*input);
+    entered                     = loads.through_transfer(*input);
     outside.add_to(entered, *input);
     form->apply(y.begin(),
                 input->begin(),
                 beyond,
                 [&](const unsigned int begin, const unsigned int end) {
-                  loads.add_convection(y, *input, begin, end);
+                  loads.add_transfer(y, *input, begin, end);
                   entered += constraints.sum(y, begin, end);
                   constraints.mask(y, 0., begin, end);
                   finish(begin, end);
@@ -166,11 +166,11 @@ namespace PeriDeal
     const bool          vary     = loads.depends_on_time();
     double             *values   = r.begin();
     double             &entered  = this->entering_now;
-    entered                      = loads.through_convection(u);
+    entered                      = loads.through_transfer(u);
     outside.add_to(entered, u);
     entered = entered + loads.through_slaves(t) + loads.constant_sum();
     form->apply(values, u.begin(), beyond, [&](const unsigned int begin, const unsigned int end) {
-      loads.add_convection(r, u, begin, end);
+      loads.add_transfer(r, u, begin, end);
       entered += constraints.sum(r, begin, end);
       if (constant != nullptr)
         NodeLoops::subtract_from(values + begin, constant + begin, end - begin);
@@ -193,7 +193,7 @@ namespace PeriDeal
   template <int dim>
   bool BondOperator<dim>::has_steady_state() const
   {
-    return constraints.any_prescribed() || !body.boundary_conditions.convection.empty() ||
+    return constraints.any_prescribed() || body.boundary_conditions.transfers_fix_level() ||
            !body.boundary_conditions.dirichlet.empty();
   }
 
@@ -216,9 +216,9 @@ namespace PeriDeal
     outside.update(rows);
     if (!change.damage) // which may leave nodes alone, that keep their heat
       throw_if_isolated(rows);
-    for (const auto &load : loads.convections())
+    for (const auto &load : loads.with_coefficient())
       if (std::binary_search(rows.begin(), rows.end(), load.node))
-        stiffness_diagonal.local_element(load.node) += load.factor;
+        stiffness_diagonal.local_element(load.node) += load.coefficient;
     // Rates can have grown. Where bonds are only cut, the old bounds still hold.
     if (factors.any() || this->history.may_close() || !symmetric())
       bounds.set(std::max(bounds.safe(), largest_rate(rows)));
@@ -276,8 +276,8 @@ namespace PeriDeal
         outside.update();
         update_crack_sides();
         constraints.update(bonds, body);
-        for (const auto &load : loads.convections())
-          stiffness_diagonal.local_element(load.node) += load.factor;
+        for (const auto &load : loads.with_coefficient())
+          stiffness_diagonal.local_element(load.node) += load.coefficient;
       }
     bounds.set(largest_rate(
       std_cxx20::ranges::iota_view<unsigned int, unsigned int>(0u, bonds.nodes().n_owned())));
@@ -325,7 +325,7 @@ namespace PeriDeal
     this->initialize_vector(entering);
     u.update_ghost_values();
     form->apply(heat.begin(), u.begin(), outside.values(u, t));
-    loads.add_convection(heat, u, 0, nodes.n_owned());
+    loads.add_transfer(heat, u, 0, nodes.n_owned());
     loads.add_to(entering, t);
     heat -= entering;
 

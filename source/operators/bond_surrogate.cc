@@ -100,13 +100,13 @@ namespace PeriDeal
       }
     pattern.compress();
     matrix.reinit(pattern);
-    std::vector<double> convection(nodes.n_owned(), 0.);
-    for (const auto &load : loads.convections())
+    std::vector<double> coefficients(nodes.n_owned(), 0.);
+    for (const auto &load : loads.with_coefficient())
       if (free_nodes.local_element(load.node) > 0.)
-        convection[load.node] += load.factor;
+        coefficients[load.node] += load.coefficient;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        double diag = convection[i] + of_outside[i];
+        double diag = coefficients[i] + of_outside[i];
         columns.assign(1, nodes.partitioner()->local_to_global(i));
         values.assign(1, 0.);
         for (unsigned int k = starts[i]; k < starts[i + 1]; ++k)

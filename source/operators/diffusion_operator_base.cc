@@ -68,11 +68,9 @@ namespace PeriDeal
                                               const bool    steady) const
   {
     const MPI_Comm communicator = layout->get_mpi_communicator();
-    const auto    &conditions   = body.boundary_conditions;
     Balance        balance;
-    for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})
-      for (const SideCondition &condition : *list)
-        balance.sides[condition.name];
+    body.boundary_conditions.for_each(
+      [&](const auto &, const auto &condition) { balance.sides[condition.name]; });
     balance.cracks.assign(body.cracks.cracks.size(), 0.);
     Vector heat(layout);
     find_flows(balance, heat, u, t);

@@ -58,8 +58,8 @@ namespace PeriDeal
         {
           const bool empty = zone_bonds && zone_bonds->leaves_nothing(cell);
           auto      &data  = cells.assemble(cell);
-          loads.find_convection(cell, data.convection);
-          data.stiffness.add(1., data.convection);
+          loads.find_transfer(cell, data.transfer);
+          data.stiffness.add(1., data.transfer);
           if (!empty)
             hanging.add_to(stiffness, data.stiffness, data.indices);
           if (!capacity_is_diagonal())
@@ -316,8 +316,8 @@ namespace PeriDeal
       if (cell->is_locally_owned())
         {
           auto &data = cells.assemble(cell, false);
-          loads.find_convection(cell, data.convection);
-          data.stiffness.add(1., data.convection);
+          loads.find_transfer(cell, data.transfer);
+          data.stiffness.add(1., data.transfer);
           hanging.add_to(matrix, data.stiffness, data.indices);
         }
     matrix.compress(VectorOperation::add);

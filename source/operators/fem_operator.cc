@@ -126,7 +126,7 @@ namespace PeriDeal
   {
     ++this->applications;
     double &entered = this->entering_now;
-    entered         = loads.through_convection(x);
+    entered         = loads.through_transfer(x);
     multiply_then(y, x, [&](const unsigned int begin, const unsigned int end) {
       entered += prescribed.sum(y, begin, end);
       prescribed.mask(y, 0., begin, end);
@@ -145,7 +145,7 @@ namespace PeriDeal
     multiply(r, u);
     const Vector      &now = loads.at(t);
     const unsigned int n   = r.locally_owned_size();
-    this->entering_now     = loads.through_convection(u) + prescribed.sum(r, 0, n) +
+    this->entering_now     = loads.through_transfer(u) + prescribed.sum(r, 0, n) +
                          (loads.sum() - prescribed.sum(now, 0, n));
     r.sadd(-1., 1., now);
     prescribed.mask(r);

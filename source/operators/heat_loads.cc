@@ -38,21 +38,7 @@ namespace PeriDeal
   {
     if (!varies)
       assemble(0.);
-    find_convection_sums();
-  }
-
-
-  template <int dim>
-  bool HeatLoads<dim>::depends_on_time() const
-  {
-    return varies;
-  }
-
-
-  template <int dim>
-  const std::vector<PartUnknown<dim>> &HeatLoads<dim>::part_unknowns() const
-  {
-    return of_parts;
+    find_coefficients();
   }
 
 
@@ -66,18 +52,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  double HeatLoads<dim>::sum() const
+  template <typename Visit>
+  void HeatLoads<dim>::on_faces(const Cell &cell, const Visit &visit) const
   {
-    return sum_of_loads;
+    for (const unsigned int f : cell->face_indices())
+      if (cell->face(f)->at_boundary())
+        faces.for_each(conditions.transfers, cell, f, face_values, visit);
   }
 
 
   template <int dim>
-  template <typename OnSource, typename OnFlux, typename OnConvection, typename OnPart>
-  void HeatLoads<dim>::for_each(const OnSource     &on_source,
-                                const OnFlux       &on_flux,
-                                const OnConvection &on_convection,
-                                const OnPart       &on_part) const
+  template <typename OnSource, typename OnSide, typename OnPart>
+  void HeatLoads<dim>::for_each(const OnSource &on_source,
+                                const OnSide   &on_side,
+                                const OnPart   &on_part) const
   {
     for (const auto &cell : dofs.active_cell_iterators())
       {
@@ -89,31 +77,18 @@ namespace PeriDeal
             values.reinit(cell);
             on_source(values);
           }
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            {
-              faces.for_each(conditions.flux, cell, f, face_values, on_flux);
-              faces.for_each(conditions.convection, cell, f, face_values, on_convection);
-            }
+        on_faces(cell, on_side);
       }
     for (const PartUnknown<dim> &unknown : of_parts)
-      for (const SideCondition &flux : conditions.flux)
-        if (flux.id == unknown.id)
-          on_part(unknown, flux);
+      for (const SurfaceTransfer &transfer : conditions.transfers)
+        if (transfer.id == unknown.id)
+          on_part(unknown, transfer);
   }
 
 
   template <int dim>
   void HeatLoads<dim>::assemble(const double t) const
   {
-    const auto add = [&](const auto &points, const auto &entering) {
-      for (const unsigned int q : points.quadrature_point_indices())
-        {
-          const double heat = entering(points.quadrature_point(q)) * points.JxW(q);
-          for (unsigned int i = 0; i < indices.size(); ++i)
-            loads(indices[i]) += heat * points.shape_value(i, q);
-        }
-    };
     loads = 0.;
     for_each(
       [&](const auto &points) {
@@ -124,16 +99,18 @@ namespace PeriDeal
               loads(indices[i]) += density * points.shape_value(i, q) * points.JxW(q);
           }
       },
-      [&](const SideCondition &flux, const auto &points) {
-        add(points, [&](const Point<dim> &p) { return flux.value.value(p, t); });
+      [&](const SurfaceTransfer &transfer, const auto &points) {
+        for (const unsigned int q : points.quadrature_point_indices())
+          {
+            const double heat =
+              transfer.entering(points.quadrature_point(q), t, 0.) * points.JxW(q);
+            for (unsigned int i = 0; i < indices.size(); ++i)
+              loads(indices[i]) += heat * points.shape_value(i, q);
+          }
       },
-      [&](const SideCondition &convection, const auto &points) {
-        add(points, [&](const Point<dim> &p) {
-          return convection.coefficient.value(p) * convection.value.value(p, t);
-        });
-      },
-      [&](const PartUnknown<dim> &unknown, const SideCondition &flux) {
-        loads.local_element(unknown.node) += unknown.share * flux.value.value(unknown.position, t);
+      [&](const PartUnknown<dim> &unknown, const SurfaceTransfer &transfer) {
+        loads.local_element(unknown.node) +=
+          unknown.share * transfer.flux.value(unknown.position, t);
       });
     loads.compress(VectorOperation::add);
     hanging.condense(loads);
@@ -142,66 +119,52 @@ namespace PeriDeal
 
 
   template <int dim>
-  void HeatLoads<dim>::find_convection(const Cell &cell, FullMatrix<double> &matrix) const
+  void HeatLoads<dim>::find_transfer(const Cell &cell, FullMatrix<double> &matrix) const
   {
     matrix = 0.;
-    for (const unsigned int f : cell->face_indices())
-      if (cell->face(f)->at_boundary())
-        faces.for_each(
-          conditions.convection,
-          cell,
-          f,
-          face_values,
-          [&](const SideCondition &condition, const auto &points) {
-            for (const unsigned int q : points.quadrature_point_indices())
-              {
-                const double h =
-                  condition.coefficient.value(points.quadrature_point(q)) * points.JxW(q);
-                for (unsigned int i = 0; i < matrix.m(); ++i)
-                  for (unsigned int j = 0; j < matrix.n(); ++j)
-                    matrix(i, j) += h * points.shape_value(i, q) * points.shape_value(j, q);
-              }
-          });
+    on_faces(cell, [&](const SurfaceTransfer &transfer, const auto &points) {
+      if (transfer.fixes_level())
+        for (const unsigned int q : points.quadrature_point_indices())
+          {
+            const double h = transfer.coefficient.value(points.quadrature_point(q)) * points.JxW(q);
+            for (unsigned int i = 0; i < matrix.m(); ++i)
+              for (unsigned int j = 0; j < matrix.n(); ++j)
+                matrix(i, j) += h * points.shape_value(i, q) * points.shape_value(j, q);
+          }
+    });
   }
 
 
   template <int dim>
-  void HeatLoads<dim>::find_convection_sums()
+  void HeatLoads<dim>::find_coefficients()
   {
-    if (conditions.convection.empty())
+    if (!conditions.transfers_fix_level())
       return;
     Vector sums(loads.get_partitioner());
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned() && cell->at_boundary())
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            {
-              cell->get_dof_indices(indices);
-              faces.for_each(conditions.convection,
-                             cell,
-                             f,
-                             face_values,
-                             [&](const SideCondition &condition, const auto &points) {
-                               for (const unsigned int q : points.quadrature_point_indices())
-                                 for (unsigned int i = 0; i < indices.size(); ++i)
-                                   sums(indices[i]) +=
-                                     condition.coefficient.value(points.quadrature_point(q)) *
-                                     points.JxW(q) * points.shape_value(i, q);
-                             });
-            }
+        {
+          cell->get_dof_indices(indices);
+          on_faces(cell, [&](const SurfaceTransfer &transfer, const auto &points) {
+            for (const unsigned int q : points.quadrature_point_indices())
+              for (unsigned int i = 0; i < indices.size(); ++i)
+                sums(indices[i]) += transfer.coefficient.value(points.quadrature_point(q)) *
+                                    points.JxW(q) * points.shape_value(i, q);
+          });
+        }
     sums.compress(VectorOperation::add);
     hanging.condense(sums);
     for (unsigned int i = 0; i < sums.locally_owned_size(); ++i)
       if (sums.local_element(i) != 0.)
-        convection_sums.emplace_back(i, sums.local_element(i));
+        coefficients.emplace_back(i, sums.local_element(i));
   }
 
 
   template <int dim>
-  double HeatLoads<dim>::through_convection(const Vector &u) const
+  double HeatLoads<dim>::through_transfer(const Vector &u) const
   {
     double sum = 0.;
-    for (const auto &[unknown, coefficient] : convection_sums)
+    for (const auto &[unknown, coefficient] : coefficients)
       sum -= coefficient * u.local_element(unknown);
     return sum;
   }
@@ -216,34 +179,20 @@ namespace PeriDeal
         for (const unsigned int q : points.quadrature_point_indices())
           balance.sources += source.value(points.quadrature_point(q), t) * points.JxW(q);
       },
-      [&](const SideCondition &flux, const auto &points) {
-        for (const unsigned int q : points.quadrature_point_indices())
-          balance.sides[flux.name] +=
-            flux.value.value(points.quadrature_point(q), t) * points.JxW(q);
-      },
-      [&](const SideCondition &convection, const auto &points) {
+      [&](const SurfaceTransfer &transfer, const auto &points) {
         for (const unsigned int q : points.quadrature_point_indices())
           {
-            const Point<dim> &p     = points.quadrature_point(q);
-            double            value = 0.;
+            double value = 0.;
             for (unsigned int i = 0; i < indices.size(); ++i)
               value += u(indices[i]) * points.shape_value(i, q);
-            balance.sides[convection.name] += convection.coefficient.value(p) *
-                                              (convection.value.value(p, t) - value) *
-                                              points.JxW(q);
+            balance.sides[transfer.name] +=
+              transfer.entering(points.quadrature_point(q), t, value) * points.JxW(q);
           }
       },
-      [&](const PartUnknown<dim> &unknown, const SideCondition &flux) {
-        balance.sides[flux.name] += unknown.share * flux.value.value(unknown.position, t);
+      [&](const PartUnknown<dim> &unknown, const SurfaceTransfer &transfer) {
+        balance.sides[transfer.name] += unknown.share * transfer.flux.value(unknown.position, t);
       });
     u.set_ghost_state(false);
-  }
-
-
-  template <int dim>
-  std::size_t HeatLoads<dim>::memory_consumption() const
-  {
-    return loads.memory_consumption();
   }
 
 

@@ -64,14 +64,13 @@ namespace PeriDeal
      * Of the listed sides and parts, the first in the list on which each owned node lies, or
      * (partial) some of its area.
      */
-    template <int dim>
-    std::map<unsigned int, const SideCondition *> first_sides(
-      const Nodes<dim>                 &nodes,
-      const std::vector<SideCondition> &list,
-      const bool                        with_partial = false)
+    template <int dim, typename Condition>
+    std::map<unsigned int, const Condition *> first_sides(const Nodes<dim>             &nodes,
+                                                          const std::vector<Condition> &list,
+                                                          const bool with_partial = false)
     {
-      std::map<unsigned int, const SideCondition *> first;
-      for (const SideCondition &condition : list)
+      std::map<unsigned int, const Condition *> first;
+      for (const Condition &condition : list)
         for (const BoundaryShare &share : nodes.condition_shares())
           if (share.id == condition.id && (share.inside || with_partial))
             first.try_emplace(share.node, &condition);
@@ -165,18 +164,25 @@ namespace PeriDeal
       UserError(
         "'Flux treatment' in section 'Peridynamics' must be 'natural' unless the body is a box "
         "without doubled nodes."));
+    std::vector<SurfaceTransfer> fluxes;
+    for (const SurfaceTransfer &transfer : body.boundary_conditions.transfers)
+      if (!transfer.fixes_level())
+        fluxes.push_back(transfer);
     std::string message;
     if (body.peridynamics.flux_treatment == FluxTreatment::layer_extrapolation)
-      for (const SideCondition &condition : body.boundary_conditions.flux)
-        message = extrapolate_layer(bonds, condition.id, body);
+      {
+        for (const SurfaceTransfer &flux : fluxes)
+          if (find_condition(fluxes, flux.id) == &flux) // once for each side
+            message = extrapolate_layer(bonds, flux.id, fluxes.size(), body);
+      }
     else
-      for (const auto &[node, condition] : first_sides(nodes, body.boundary_conditions.flux, true))
+      for (const auto &[node, transfer] : first_sides(nodes, fluxes, true))
         if (kinds[node] == free)
           {
-            const unsigned int side = body.boundary_conditions.side_of(condition->id);
+            const unsigned int side = body.boundary_conditions.side_of(transfer->id);
             Slave              slave;
             slave.node              = node;
-            const std::string fault = extrapolate(bonds, side, condition->name, slave);
+            const std::string fault = extrapolate(bonds, side, *transfer, slave);
             message                 = message.empty() ? fault : message;
             add_fluxes(body.boundary_conditions, side, slave);
             slaves.push_back(slave);
@@ -198,18 +204,19 @@ namespace PeriDeal
         whole = share.area;
     for (const BoundaryShare &share : nodes.condition_shares())
       if (share.node == slave.node && conditions.side_of(share.id) == side)
-        if (const SideCondition *const flux = conditions.find(conditions.flux, share.id))
-          slave.fluxes.push_back({flux,
-                                  share.id == side ? slave.flux_coefficient :
-                                                     slave.flux_coefficient * share.area / whole,
-                                  nodes.place_of(share)});
+        for (const SurfaceTransfer &transfer : conditions.transfers)
+          if (transfer.id == share.id && !transfer.fixes_level())
+            slave.fluxes.push_back({&transfer,
+                                    share.id == side ? slave.flux_coefficient :
+                                                       slave.flux_coefficient * share.area / whole,
+                                    nodes.place_of(share)});
   }
 
 
   template <int dim>
   std::string NodeConstraints<dim>::extrapolate(const DiffusionBonds<dim> &bonds,
                                                 const unsigned int         side,
-                                                const std::string         &name,
+                                                const SurfaceTransfer     &transfer,
                                                 Slave                     &slave) const
   {
     std::vector<typename DiffusionBonds<dim>::Bond> family;
@@ -230,11 +237,11 @@ namespace PeriDeal
       {
         std::ostringstream message;
         message
-          << "'Flux treatment = extrapolation' in section 'Peridynamics' needs bonds from every node of a side named in "
-             "'Flux' into the body, but the node at ("
+          << "'Flux treatment = extrapolation' in section 'Peridynamics' needs bonds from every node of a side named in '"
+          << transfer.kind->entry << "' into the body, but the node at ("
           << nodes.position(slave.node)
-          << ") has none left. Move the cracks in section 'Cracks' away from the side '" << name
-          << "', or choose 'natural'.";
+          << ") has none left. Move the cracks in section 'Cracks' away from the side '"
+          << transfer.name << "', or choose 'natural'.";
         return message.str();
       }
     for (auto &[neighbor, weight] : slave.masters)
@@ -247,13 +254,12 @@ namespace PeriDeal
   template <int dim>
   std::string NodeConstraints<dim>::extrapolate_layer(const DiffusionBonds<dim> &bonds,
                                                       const unsigned int         side,
+                                                      const int                  n_layers,
                                                       const BodyParameters<dim> &body)
   {
-    const Lattice<dim>  &lattice = *nodes.lattice();
-    const int            rows = static_cast<int>(std::lround(body.horizon() / lattice.spacing[0]));
-    const SideCondition *flux = BoundaryConditions<dim>::find(body.boundary_conditions.flux, side);
-    const int            layers = static_cast<int>(body.boundary_conditions.flux.size());
-    if (lattice.n_sites[0] <= layers * rows)
+    const Lattice<dim> &lattice = *nodes.lattice();
+    const int           rows = static_cast<int>(std::lround(body.horizon() / lattice.spacing[0]));
+    if (lattice.n_sites[0] <= n_layers * rows)
       return "'Flux treatment = layer extrapolation' in section 'Peridynamics' takes a layer of one horizon at each end named in "
              "'Flux', and the bar has no node beyond. Choose a shorter 'Horizon', more 'Cells' or 'natural'.";
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
@@ -270,7 +276,9 @@ namespace PeriDeal
         slave.masters = {{master, 1.}};
         slave.flux_coefficient =
           (rows - depth) * lattice.spacing[0] / bonds.conductivities().of_node(i);
-        slave.fluxes = {{flux, slave.flux_coefficient, nodes.position(i)}};
+        for (const SurfaceTransfer &transfer : body.boundary_conditions.transfers)
+          if (transfer.id == side && !transfer.fixes_level())
+            slave.fluxes.push_back({&transfer, slave.flux_coefficient, nodes.position(i)});
         slaves.push_back(slave);
       }
     return "";
@@ -353,7 +361,7 @@ namespace PeriDeal
       {
         double value = 0.;
         for (const SlaveFlux &flux : entry.fluxes)
-          value += homogeneous ? 0. : flux.coefficient * flux.condition->value.value(flux.place, t);
+          value += homogeneous ? 0. : flux.coefficient * flux.transfer->flux.value(flux.place, t);
         for (const auto &[master, coefficient] : entry.masters)
           value += coefficient * u.local_element(master);
         if (entry.coupled >= 0)

@@ -23,21 +23,24 @@ namespace PeriDeal
     const auto &conditions = body.boundary_conditions;
     for (const BoundaryShare &share : nodes.condition_shares())
       {
-        const bool  is_slave   = constraints.kind(share.node) == Constraints::slave;
-        const auto *flux       = conditions.find(conditions.flux, share.id);
-        const auto *convection = conditions.find(conditions.convection, share.id);
-        if (flux != nullptr && (is_slave || natural))
-          (is_slave ? of_slaves : fluxes)
-            .push_back({share.node, share.area, flux, nodes.place_of(share)});
-        if (convection == nullptr || is_slave)
-          continue;
-        const Point<dim> place = nodes.place_of(share);
-        with_convection.push_back(
-          {share.node, share.area * convection->coefficient.value(place), convection, place});
+        const bool       is_slave = constraints.kind(share.node) == Constraints::slave;
+        const Point<dim> place    = nodes.place_of(share);
+        for (const SurfaceTransfer &transfer : conditions.transfers)
+          if (transfer.id != share.id)
+            continue;
+          else if (!transfer.fixes_level() && (is_slave || natural))
+            (is_slave ? of_slaves : fluxes)
+              .push_back({share.node, share.area, 0., &transfer, place});
+          else if (transfer.fixes_level() && !is_slave)
+            relaxing.push_back({share.node,
+                                share.area,
+                                share.area * transfer.coefficient.value(place),
+                                &transfer,
+                                place});
       }
-    std::stable_sort(with_convection.begin(),
-                     with_convection.end(),
-                     [](const SideLoad &a, const SideLoad &b) { return a.node < b.node; });
+    std::stable_sort(relaxing.begin(), relaxing.end(), [](const SideLoad &a, const SideLoad &b) {
+      return a.node < b.node;
+    });
     if (varies)
       return;
     Vector loads(nodes.partitioner());
@@ -59,36 +62,36 @@ namespace PeriDeal
     if (!source.is_constant() || source.value(Point<dim>()) != 0.)
       for (unsigned int i = 0; i < nodes.n_owned(); ++i)
         add(i, nodes.volume(i) * source.value(nodes.position(i), t));
-    for (const auto *list : {&fluxes, &with_convection})
+    for (const auto *list : {&fluxes, &relaxing})
       for (const SideLoad &load : *list)
-        add(load.node, load.factor * load.condition->value.value(load.place, t));
+        add(load.node, load.entering(t, 0.));
     return sum;
   }
 
 
   template <int dim>
-  void NodeLoads<dim>::add_convection(Vector            &y,
-                                      const Vector      &x,
-                                      const unsigned int begin,
-                                      const unsigned int end) const
+  void NodeLoads<dim>::add_transfer(Vector            &y,
+                                    const Vector      &x,
+                                    const unsigned int begin,
+                                    const unsigned int end) const
   {
     for (auto load =
-           std::lower_bound(with_convection.begin(),
-                            with_convection.end(),
+           std::lower_bound(relaxing.begin(),
+                            relaxing.end(),
                             begin,
                             [](const SideLoad &a, const unsigned int b) { return a.node < b; });
-         load != with_convection.end() && load->node < end;
+         load != relaxing.end() && load->node < end;
          ++load)
-      y.local_element(load->node) += load->factor * x.local_element(load->node);
+      y.local_element(load->node) += load->coefficient * x.local_element(load->node);
   }
 
 
   template <int dim>
-  double NodeLoads<dim>::through_convection(const Vector &u) const
+  double NodeLoads<dim>::through_transfer(const Vector &u) const
   {
     double sum = 0.;
-    for (const SideLoad &load : with_convection)
-      sum -= load.factor * u.local_element(load.node);
+    for (const SideLoad &load : relaxing)
+      sum -= load.coefficient * u.local_element(load.node);
     return sum;
   }
 
@@ -98,7 +101,7 @@ namespace PeriDeal
   {
     double sum = 0.;
     for (const SideLoad &load : of_slaves)
-      sum += load.factor * load.condition->value.value(load.place, t);
+      sum += load.entering(t, 0.);
     return sum;
   }
 
@@ -106,16 +109,9 @@ namespace PeriDeal
   template <int dim>
   void NodeLoads<dim>::add_to(Balance &balance, const Vector &u, const double t) const
   {
-    const auto value = [t](const SideLoad &load) {
-      return load.condition->value.value(load.place, t);
-    };
-    for (const SideLoad &load : fluxes)
-      balance.sides[load.condition->name] += load.factor * value(load);
-    for (const SideLoad &load : with_convection)
-      balance.sides[load.condition->name] +=
-        load.factor * (value(load) - u.local_element(load.node));
-    for (const SideLoad &load : of_slaves)
-      balance.sides[load.condition->name] += load.factor * value(load);
+    for (const auto *list : {&fluxes, &relaxing, &of_slaves})
+      for (const SideLoad &load : *list)
+        balance.sides[load.transfer->name] += load.entering(t, u.local_element(load.node));
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       if (constraints.kind(i) != NodeConstraints<dim>::slave)
         balance.sources += nodes.volume(i) * source.value(nodes.position(i), t);

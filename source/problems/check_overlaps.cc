@@ -22,8 +22,8 @@ namespace PeriDeal
       bool                   gives_value; // else it is a load
       bool                   of_heat;
       unsigned int           component;
-      const Expression      *formula;
-      const VectorCondition *vector; // null for heat
+      const Expression      *formula; // of values
+      const VectorCondition *vector;  // null for heat
     };
 
 
@@ -31,15 +31,11 @@ namespace PeriDeal
     std::vector<Claim> claims_of(const BoundaryConditions<dim> &conditions)
     {
       std::vector<Claim> claims;
-      const auto         add = [&](const std::string &entry, const auto &list) {
-        for (const SideCondition &c : list)
-          if (entry != "Flux" || !is_zero(c.value))
-            claims.push_back(
-              {entry, c.name, c.id, entry == "Dirichlet", true, 0, &c.value, nullptr});
-      };
-      add("Dirichlet", conditions.dirichlet);
-      add("Flux", conditions.flux);
-      add("Convection", conditions.convection);
+      for (const SideCondition &c : conditions.dirichlet)
+        claims.push_back({"Dirichlet", c.name, c.id, true, true, 0, &c.value, nullptr});
+      for (const SurfaceTransfer &c : conditions.transfers)
+        if (!c.insulates())
+          claims.push_back({c.kind->entry, c.name, c.id, false, true, 0, nullptr, nullptr});
       for (const auto *const list : {&conditions.displacement, &conditions.traction})
         for (const VectorCondition &c : *list)
           for (unsigned int d = 0; d < dim; ++d)

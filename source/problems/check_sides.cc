@@ -16,13 +16,13 @@ namespace PeriDeal
 
   namespace
   {
-    /** What is wrong with a coefficient of convection at a point, or nothing. */
+    /** What is wrong with a coefficient at a point, or nothing. */
     template <int dim>
-    std::string negative_coefficient(const SideCondition &convection, const Point<dim> &p)
+    std::string negative_coefficient(const SurfaceTransfer &transfer, const Point<dim> &p)
     {
       try
         {
-          if (convection.coefficient.value(p) >= 0.)
+          if (transfer.coefficient.value(p) >= 0.)
             return "";
         }
       catch (const UserError &error) // of a formula that is no number here, on this process alone
@@ -30,9 +30,9 @@ namespace PeriDeal
           return error.message();
         }
       std::ostringstream message;
-      message << "'Convection' in section 'Boundary conditions', side '" << convection.name
-              << "': the coefficient '" << convection.coefficient.text() << "' is negative at ("
-              << p << "). It has to be 0 or more on the whole side.";
+      message << "'" << transfer.kind->entry << "' in section 'Boundary conditions', side '"
+              << transfer.name << "': the coefficient '" << transfer.coefficient.text()
+              << "' is negative at (" << p << "). It has to be 0 or more on the whole side.";
       return message.str();
     }
 
@@ -50,10 +50,9 @@ namespace PeriDeal
               {
                 const auto id = cell->face(f)->boundary_id();
                 present.insert(id);
-                const SideCondition *convection =
-                  BoundaryConditions<dim>::find(scene.boundary_conditions.convection, id);
-                if (convection != nullptr && message.empty())
-                  message = negative_coefficient<dim>(*convection, cell->face(f)->center());
+                for (const SurfaceTransfer &transfer : scene.boundary_conditions.transfers)
+                  if (transfer.id == id && message.empty())
+                    message = negative_coefficient<dim>(transfer, cell->face(f)->center());
               }
       throw_on_all_if_any(mesh.get_communicator(), message);
       present = Utilities::MPI::compute_set_union(present, mesh.get_communicator());
@@ -86,16 +85,10 @@ namespace PeriDeal
                "', but the hole in section 'Domain' leaves nothing of it. Sides that there are: ") +
             join_names(known) + "."));
       };
-    const auto check_all = [&](const std::string &entry, const auto &list) {
-      for (const auto &condition : list)
-        check(entry, condition.id, condition.name);
-    };
     const auto &conditions = scene.boundary_conditions;
-    check_all("Dirichlet", conditions.dirichlet);
-    check_all("Flux", conditions.flux);
-    check_all("Convection", conditions.convection);
-    check_all("Displacement", conditions.displacement);
-    check_all("Traction", conditions.traction);
+    conditions.for_each([&](const std::string &entry, const auto &condition) {
+      check(entry, condition.id, condition.name);
+    });
     for (const auto id : conditions.symmetry)
       check("Symmetry", id, conditions.name_of(id));
     for (const Part &part : conditions.parts)

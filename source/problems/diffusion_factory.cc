@@ -5,6 +5,8 @@
 #include <perideal/scene/lists.h>
 #include <perideal/scene/with_formulas.h>
 
+#include <algorithm>
+
 #include "crack_note.h"
 #include "physics_factories.h"
 
@@ -17,7 +19,11 @@ namespace PeriDeal
   void note_diffusion(const Scene<dim> &scene, std::vector<std::string> &notes)
   {
     note_growth(scene, notes);
-    if (!scene.peridynamics.natural_fluxes() && scene.boundary_conditions.flux.empty())
+    const auto &transfers = scene.boundary_conditions.transfers;
+    if (!scene.peridynamics.natural_fluxes() &&
+        std::all_of(transfers.begin(), transfers.end(), [](const SurfaceTransfer &transfer) {
+          return transfer.fixes_level();
+        }))
       notes.push_back(
         "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' (an insulated side "
         "needs 'side: 0' there).");

@@ -24,19 +24,16 @@ namespace PeriDeal
         for (unsigned int k = 0; k < 2 * dim; ++k)
           sides[box_side_names()[k]] = "insulated";
       const auto add = [&](const std::string &name, const std::string &text) {
-        if (sides.contains(name) && sides[name] != "insulated")
-          sides[name] = sides[name].template get<std::string>() + ", " + text;
-        else
-          sides[name] = text;
+        json &side = sides[name];
+        if (side.is_null() || side == "insulated")
+          side = text;
+        else if (text != "insulated")
+          side = side.get<std::string>() + ", " + text;
       };
       for (const SideCondition &c : conditions.dirichlet)
         add(c.name, "Dirichlet " + c.value.text());
-      for (const SideCondition &c : conditions.flux)
-        add(c.name,
-            c.value.is_constant() && c.value.value(Point<dim>()) == 0. ? "insulated" :
-                                                                         "flux " + c.value.text());
-      for (const SideCondition &c : conditions.convection)
-        add(c.name, "convection " + c.coefficient.text() + ", " + c.value.text());
+      for (const SurfaceTransfer &c : conditions.transfers)
+        add(c.name, c.insulates() ? "insulated" : c.text());
       for (const auto side : conditions.symmetry)
         add(conditions.name_of(side), "symmetry");
       return sides;

@@ -12,15 +12,11 @@ namespace PeriDeal
   template <int dim>
   std::optional<double> effective_conductivity(const Scene<dim> &scene, const Balance &balance)
   {
-    const BoundaryConditions<dim> &bc       = scene.boundary_conditions;
-    const auto                     vanishes = [](const Expression &formula) {
-      return formula.is_constant() && formula.value(Point<dim>()) == 0.;
-    };
+    const BoundaryConditions<dim> &bc = scene.boundary_conditions;
     if ((scene.domain.shape != Shape::box && scene.domain.shape != Shape::image) ||
-        bc.dirichlet.size() != 2 || !bc.convection.empty() ||
-        !vanishes(scene.initial_and_source.source) ||
-        !std::all_of(bc.flux.begin(), bc.flux.end(), [&](const SideCondition &side) {
-          return vanishes(side.value);
+        bc.dirichlet.size() != 2 || !is_zero(scene.initial_and_source.source) ||
+        !std::all_of(bc.transfers.begin(), bc.transfers.end(), [](const SurfaceTransfer &side) {
+          return side.insulates();
         }))
       return {};
     const SideCondition &a = bc.dirichlet[0], &b = bc.dirichlet[1];

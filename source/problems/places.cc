@@ -44,12 +44,7 @@ namespace PeriDeal
         if (!box || id >= 2 * dim)
           names.emplace(id, name);
       };
-      for (const auto *list : {&conditions.dirichlet, &conditions.flux, &conditions.convection})
-        for (const SideCondition &c : *list)
-          add(c.id, c.name);
-      for (const auto *list : {&conditions.displacement, &conditions.traction})
-        for (const VectorCondition &c : *list)
-          add(c.id, c.name);
+      conditions.for_each([&](const auto &, const auto &c) { add(c.id, c.name); });
       for (const auto side : conditions.symmetry)
         add(side, conditions.name_of(side));
       return names;

@@ -98,10 +98,8 @@ namespace PeriDeal
         add(c.name, "traction " + text_of(c));
       for (const SideCondition &c : conditions.dirichlet)
         add(c.name, "temperature " + c.value.text());
-      for (const SideCondition &c : conditions.flux)
-        add(c.name, "heat flux " + c.value.text());
-      for (const SideCondition &c : conditions.convection)
-        add(c.name, "convection " + c.coefficient.text() + ", " + c.value.text());
+      for (const SurfaceTransfer &c : conditions.transfers)
+        add(c.name, (c.fixes_level() ? "" : "heat ") + c.text());
       return sides;
     }
 

@@ -10,24 +10,23 @@ namespace PeriDeal
 {
   namespace
   {
-    bool depends_on_time(const SideCondition &condition)
+    /** As many formulas as there are names, separated by commas. */
+    std::vector<Expression> parse_formulas(const std::string              &text,
+                                           const std::vector<std::string> &names,
+                                           const std::string              &where)
     {
-      return condition.value.depends_on_time();
-    }
-
-
-    bool depends_on_time(const VectorCondition &condition)
-    {
-      return condition.depends_on_time();
-    }
-
-
-    template <typename Condition>
-    bool any_depends_on_time(const std::vector<Condition> &list)
-    {
-      return std::any_of(list.begin(), list.end(), [](const Condition &condition) {
-        return PeriDeal::depends_on_time(condition);
-      });
+      const std::vector<std::string> pieces = split_list(text, ',');
+      const std::size_t              n      = names.size();
+      if (pieces.size() != n)
+        entry_error(where,
+                    "found '" + text + "', needs " +
+                      (n == 1 ? "one formula." :
+                                (n == 2 ? "two" : std::to_string(n)) +
+                                  " formulas: " + join_names(names) + "."));
+      std::vector<Expression> formulas;
+      for (const std::string &piece : pieces)
+        formulas.emplace_back(piece, where);
+      return formulas;
     }
 
 
@@ -92,20 +91,8 @@ namespace PeriDeal
       "Given temperatures: `side: formula of x, y, z, t`, several separated by `;`. Where two "
       "sides meet, the one named first holds." +
         sides);
-    declare("Flux",
-            EntryType::list,
-            "",
-            "power/area",
-            "Given heat fluxes, positive into the body: `side: formula of x, y, z, t`, several "
-            "separated by `;`. A side named nowhere is insulated.");
-    declare(
-      "Convection",
-      EntryType::list,
-      "",
-      "power/(area temperature), temperature",
-      "`side: coefficient, ambient temperature`, several separated by `;`: the flux "
-      "coefficient x (ambient - T) enters. The coefficient may depend on x, y, z, the ambient temperature on t, too. "
-      "Adds to a Flux on the same side.");
+    for (const TransferKind &kind : transfer_kinds())
+      declare(kind.entry, EntryType::list, "", kind.unit, kind.documentation);
     declare(
       "Symmetry",
       EntryType::list,
@@ -155,22 +142,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  const SideCondition *BoundaryConditions<dim>::find(const std::vector<SideCondition> &list,
-                                                     const dealii::types::boundary_id  id)
+  bool BoundaryConditions<dim>::depends_on_time() const
   {
-    for (const SideCondition &condition : list)
-      if (condition.id == id)
-        return &condition;
-    return nullptr;
+    bool any = false;
+    for_each([&](const auto &, const auto &condition) { any |= condition.depends_on_time(); });
+    return any;
   }
 
 
   template <int dim>
-  bool BoundaryConditions<dim>::depends_on_time() const
+  bool BoundaryConditions<dim>::transfers_fix_level() const
   {
-    return any_depends_on_time(dirichlet) || any_depends_on_time(flux) ||
-           any_depends_on_time(convection) || any_depends_on_time(displacement) ||
-           any_depends_on_time(traction);
+    return std::any_of(transfers.begin(), transfers.end(), [](const SurfaceTransfer &transfer) {
+      return transfer.fixes_level();
+    });
   }
 
 
@@ -215,6 +200,41 @@ namespace PeriDeal
 
 
   template <int dim>
+  void BoundaryConditions<dim>::parse_parts()
+  {
+    parts.clear();
+    const std::string entry = "Parts";
+    for (const std::string &piece : split_list(text(entry), ';'))
+      {
+        const auto [name, value] = name_and_value(piece, where(entry));
+        const std::string at     = where(entry) + ", part '" + name + "'";
+        const auto        known  = side_names();
+        if (std::find(known.begin(), known.end(), name) != known.end() ||
+            name.find_first_not_of("0123456789") == std::string::npos)
+          entry_error(at, "is the name of a side. Give the part another one.");
+        if (std::any_of(parts.begin(), parts.end(), [&](const Part &p) { return p.name == name; }))
+          error(entry, "the part '" + name + "' is named twice.");
+        const PartText of = split_part(value, at);
+        Part           part;
+        part.name = name;
+        part.kind = of.kind;
+        part.id   = first_part_id + parts.size();
+        if (part.kind == Part::point)
+          {
+            const dealii::Point<dim> p = parse_point<dim>(of.rest, at);
+            for (unsigned int d = 0; d < dim; ++d)
+              part.place[d] = p[d];
+          }
+        else
+          part.inside = part_formula(of.rest, at);
+        if (part.kind == Part::of_side)
+          part.side = side_id(of.side, entry, false);
+        parts.push_back(part);
+      }
+  }
+
+
+  template <int dim>
   std::string BoundaryConditions<dim>::name_of(const dealii::types::boundary_id id) const
   {
     if (const Part *const of = part(id))
@@ -229,38 +249,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<SideCondition> BoundaryConditions<dim>::parse_list(const std::string &entry)
+  template <typename Condition, typename Read>
+  std::vector<Condition> BoundaryConditions<dim>::parse_list(const std::string &entry,
+                                                             const Read        &read)
   {
-    std::vector<SideCondition> list;
+    std::vector<Condition> list;
     for (const std::string &piece : split_list(text(entry), ';'))
       {
-        const auto    name_value = name_and_value(piece, where(entry));
-        SideCondition condition;
-        condition.id         = side_id(name_value.first, entry);
-        condition.name       = name_of(condition.id);
-        const std::string at = where(entry) + ", side '" + condition.name + "'";
-        if (find(list, condition.id) != nullptr)
+        const auto [name, value] = name_and_value(piece, where(entry));
+        Condition condition;
+        condition.id   = side_id(name, entry);
+        condition.name = name_of(condition.id);
+        if (find_condition(list, condition.id) != nullptr)
           error(entry, "the side '" + condition.name + "' is named twice.");
-        const std::vector<std::string> formulas = split_list(name_value.second, ',');
-        const unsigned int             n_values = entry == "Convection" ? 2 : 1;
-        if (formulas.size() != n_values)
-          entry_error(
-            at,
-            "found '" + name_value.second + "', needs " +
-              (n_values == 2 ? "two formulas: coefficient, ambient value." : "one formula."));
-        condition.value = Expression(formulas.back(), at);
-        if (n_values == 2)
-          {
-            condition.coefficient = Expression(formulas.front(), at);
-            if (condition.coefficient.depends_on_time())
-              entry_error(
-                at,
-                "the coefficient " + formulas.front() +
-                  " depends on t; it may vary in space only. The ambient temperature may depend on t.");
-            if (condition.coefficient.is_constant() &&
-                condition.coefficient.value(dealii::Point<dim>()) < 0.)
-              entry_error(at, "the coefficient " + formulas.front() + " is negative.");
-          }
+        read(condition, value, where(entry) + ", side '" + condition.name + "'");
         list.push_back(condition);
       }
     return list;
@@ -268,15 +270,28 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BoundaryConditions<dim>::refuse_both(const std::string                &entry,
-                                            const std::vector<SideCondition> &list,
-                                            const std::string                &other_entry,
-                                            const dealii::types::boundary_id  id) const
+  void BoundaryConditions<dim>::parse_transfers()
   {
-    if (const SideCondition *const condition = find(list, id))
-      error(entry,
-            (part(id) != nullptr ? "the part '" : "the side '") + condition->name +
-              "' is also named in '" + other_entry + "', which contradicts it.");
+    transfers.clear();
+    for (const TransferKind &kind : transfer_kinds())
+      for (const SurfaceTransfer &transfer : parse_list<SurfaceTransfer>(
+             kind.entry,
+             [&](SurfaceTransfer &read, const std::string &text, const std::string &at) {
+               read.set(kind, parse_formulas(text, kind.formulas, at), at);
+             }))
+        transfers.push_back(transfer);
+  }
+
+
+  template <int dim>
+  template <typename Condition>
+  void BoundaryConditions<dim>::refuse_both(const std::string &entry,
+                                            const Condition   &condition,
+                                            const std::string &other_entry) const
+  {
+    error(entry,
+          (part(condition.id) != nullptr ? "the part '" : "the side '") + condition.name +
+            "' is also named in '" + other_entry + "', which contradicts it.");
   }
 
 
@@ -308,18 +323,42 @@ namespace PeriDeal
   void BoundaryConditions<dim>::check_scalar_conditions() const
   {
     for (const SideCondition &condition : dirichlet)
-      {
-        refuse_both("Flux", flux, "Dirichlet", condition.id);
-        refuse_both("Convection", convection, "Dirichlet", condition.id);
-      }
+      for (const SurfaceTransfer &transfer : transfers)
+        if (transfer.id == condition.id)
+          refuse_both(transfer.kind->entry, transfer, "Dirichlet");
     for (const dealii::types::boundary_id id : symmetry)
       {
-        refuse_both("Dirichlet", dirichlet, "Symmetry", id);
-        refuse_both("Convection", convection, "Symmetry", id);
-        const SideCondition *const given = find(flux, id);
-        if (given != nullptr && !is_zero(given->value))
-          refuse_both("Flux", flux, "Symmetry", id);
+        if (const SideCondition *const condition = find_condition(dirichlet, id))
+          refuse_both("Dirichlet", *condition, "Symmetry");
+        for (const SurfaceTransfer &transfer : transfers)
+          if (transfer.id == id && !transfer.insulates())
+            refuse_both(transfer.kind->entry, transfer, "Symmetry");
       }
+  }
+
+
+  template <int dim>
+  void BoundaryConditions<dim>::check_parts() const
+  {
+    const auto check_symmetry = [&](const std::string &entry, const auto &condition) {
+      if (part(condition.id) != nullptr &&
+          std::find(symmetry.begin(), symmetry.end(), side_of(condition.id)) != symmetry.end())
+        error(entry,
+              "the part '" + condition.name + "' lies on the side '" +
+                name_of(side_of(condition.id)) +
+                "', which is also named in 'Symmetry', which contradicts it.");
+    };
+    for (const SideCondition &condition : dirichlet)
+      check_symmetry("Dirichlet", condition);
+    for (const SurfaceTransfer &transfer : transfers)
+      check_symmetry(transfer.kind->entry, transfer);
+    for (const SurfaceTransfer &transfer : transfers)
+      if (const Part *const of = part(transfer.id);
+          of != nullptr && of->kind != Part::of_side && transfer.fixes_level())
+        error(transfer.kind->entry,
+              "the part '" + transfer.name +
+                "' is no part of a side and has no area that a coefficient could refer to. Use "
+                "'Flux' (the power that enters there in all), or a part 'SIDE if FORMULA'.");
   }
 
 
@@ -334,9 +373,12 @@ namespace PeriDeal
     used_names.clear();
     refuse_other_physics(physics, with_heat);
     parse_parts();
-    dirichlet    = parse_list("Dirichlet");
-    flux         = parse_list("Flux");
-    convection   = parse_list("Convection");
+    dirichlet = parse_list<SideCondition>(
+      "Dirichlet",
+      [](SideCondition &condition, const std::string &text, const std::string &at) {
+        condition.value = parse_formulas(text, {"value"}, at)[0];
+      });
+    parse_transfers();
     displacement = parse_vectors("Displacement");
     for (const VectorCondition &rate : parse_vectors("Velocity"))
       displacement.push_back(rate);
@@ -366,24 +408,12 @@ namespace PeriDeal
   template <int dim>
   std::vector<VectorCondition> BoundaryConditions<dim>::parse_vectors(const std::string &entry)
   {
-    std::vector<VectorCondition> list;
-    for (const std::string &piece : split_list(text(entry), ';'))
-      {
-        const auto      name_value = name_and_value(piece, where(entry));
-        VectorCondition condition;
-        condition.id   = side_id(name_value.first, entry);
-        condition.name = name_of(condition.id);
+    return parse_list<VectorCondition>(
+      entry,
+      [&](VectorCondition &condition, const std::string &text, const std::string &at) {
         condition.rate = entry == "Velocity";
-        if (find_condition(list, condition.id) != nullptr)
-          error(entry, "the side '" + condition.name + "' is named twice.");
-        parse_components(name_value.second,
-                         dim,
-                         entry != "Traction",
-                         where(entry) + ", side '" + condition.name + "'",
-                         condition);
-        list.push_back(condition);
-      }
-    return list;
+        parse_components(text, dim, entry != "Traction", at, condition);
+      });
   }
 
 
@@ -405,8 +435,8 @@ namespace PeriDeal
     if (elastic)
       {
         refuse("Dirichlet", "'Displacement'");
-        refuse("Flux", "'Traction'");
-        refuse("Convection", "'Displacement' or 'Traction'");
+        for (const TransferKind &kind : transfer_kinds())
+          refuse(kind.entry, kind.fixes_level ? "'Displacement' or 'Traction'" : "'Traction'");
         return;
       }
     refuse("Displacement", "'Dirichlet'");

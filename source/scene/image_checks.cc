@@ -94,9 +94,13 @@ namespace PeriDeal
               held[id / 2] = true;
         }
       else
-        for (const auto *const list : {&conditions.dirichlet, &conditions.convection})
-          for (const SideCondition &condition : *list)
+        {
+          for (const SideCondition &condition : conditions.dirichlet)
             held[0] = held[0] || conditions.side_of(condition.id) == side;
+          for (const SurfaceTransfer &transfer : conditions.transfers)
+            held[0] = held[0] ||
+                      (transfer.fixes_level() && conditions.side_of(transfer.id) == side);
+        }
       return held;
     }
 

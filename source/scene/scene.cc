@@ -159,23 +159,25 @@ namespace PeriDeal
       const FluxTreatment            treatment = scene.peridynamics.flux_treatment;
       if (runs(scene, ModelKind::peridynamics) && treatment != FluxTreatment::natural)
         {
-          for (const SideCondition &condition : bc.flux)
-            if (const Part *const part = bc.part(condition.id);
-                part != nullptr &&
+          for (const SurfaceTransfer &given : bc.transfers)
+            if (const Part *const part = bc.part(given.id);
+                !given.fixes_level() && part != nullptr &&
                 (part->kind != Part::of_side || treatment == FluxTreatment::layer_extrapolation))
-              entry_error(bc.where("Flux"),
-                          "the part '" + condition.name +
+              entry_error(bc.where(given.kind->entry),
+                          "the part '" + given.name +
                             "' is not for 'Flux treatment' in section 'Peridynamics' = " +
                             (part->kind != Part::of_side ?
                                "extrapolation, which is for sides and their parts." :
                                "layer extrapolation, which is for whole sides.") +
                             " Use 'natural'.");
-            else if (BoundaryConditions<dim>::find(bc.convection, condition.id) != nullptr)
-              entry_error(
-                bc.where("Convection"),
-                "the side '" + condition.name +
-                  "' is named in 'Flux', too, and with 'Flux treatment' in section 'Peridynamics' = extrapolation its values "
-                  "follow from the flux alone. Use 'natural' to have both.");
+            else
+              for (const SurfaceTransfer &other : bc.transfers)
+                if (!given.fixes_level() && other.fixes_level() && other.id == given.id)
+                  entry_error(
+                    bc.where(other.kind->entry),
+                    "the side '" + given.name + "' is named in '" + given.kind->entry +
+                      "', too, and with 'Flux treatment' in section 'Peridynamics' = extrapolation its values "
+                      "follow from the flux alone. Use 'natural' to have both.");
         }
       if (scene.general.physics != Physics::elasticity && !bc.symmetry.empty() &&
           scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty() &&
@@ -218,17 +220,16 @@ namespace PeriDeal
       refuse_time(scene.cracks.transmission, scene.cracks.where("Transmission"));
       for (const SideCondition &condition : bc.dirichlet)
         refuse_time(condition.value, bc.where("Dirichlet"));
-      for (const SideCondition &condition : bc.flux)
-        refuse_time(condition.value, bc.where("Flux"));
-      for (const SideCondition &condition : bc.convection)
-        {
-          refuse_time(condition.value, bc.where("Convection"));
-          refuse_time(condition.coefficient, bc.where("Convection"));
-        }
-      if (bc.dirichlet.empty() && bc.convection.empty())
+      for (const SurfaceTransfer &transfer : bc.transfers)
+        for (const Expression &formula : transfer.formulas)
+          refuse_time(formula, bc.where(transfer.kind->entry));
+      std::string entries = "'Dirichlet'";
+      for (const TransferKind &kind : transfer_kinds())
+        entries += kind.fixes_level ? " or '" + kind.entry + "'" : "";
+      if (bc.dirichlet.empty() && !bc.transfers_fix_level())
         entry_error(scene.time.where("Steady"),
-                    "without a side in 'Dirichlet' or 'Convection' (section 'Boundary conditions') "
-                    "the steady state is not determined.");
+                    "without a side in " + entries +
+                      " (section 'Boundary conditions') the steady state is not determined.");
     }
 
 

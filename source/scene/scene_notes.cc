@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <sstream>
 
 namespace PeriDeal
@@ -147,15 +148,10 @@ namespace PeriDeal
     {
       const BoundaryConditions<dim> &conditions = scene.boundary_conditions;
       std::vector<std::string>       unused;
-      const auto                     named_in = [](const auto &list, const types::boundary_id id) {
-        return std::any_of(list.begin(), list.end(), [id](const auto &condition) {
-          return condition.id == id;
-        });
-      };
+      std::set<types::boundary_id>   used;
+      conditions.for_each([&](const auto &, const auto &condition) { used.insert(condition.id); });
       for (const Part &part : conditions.parts)
-        if (!named_in(conditions.dirichlet, part.id) && !named_in(conditions.flux, part.id) &&
-            !named_in(conditions.convection, part.id) &&
-            !named_in(conditions.displacement, part.id) && !named_in(conditions.traction, part.id))
+        if (used.count(part.id) == 0)
           unused.push_back("'" + part.name + "'");
       if (!unused.empty())
         scene.domain.notes.push_back(

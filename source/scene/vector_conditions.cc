@@ -40,6 +40,19 @@ namespace PeriDeal
   } // namespace
 
 
+  VectorCondition::VectorCondition(const std::string                            &name,
+                                   const dealii::types::boundary_id              id,
+                                   const std::vector<std::optional<Expression>> &values)
+    : name(name)
+    , id(id)
+    , values(values)
+    , held(values.size())
+  {
+    for (const auto &value : values)
+      texts.push_back(value ? value->text() : free_word);
+  }
+
+
   bool VectorCondition::depends_on_time() const
   {
     return rate || std::any_of(values.begin(), values.end(), [](const auto &value) {
@@ -52,16 +65,6 @@ namespace PeriDeal
   bool VectorCondition::holds(const unsigned int component, const dealii::Point<dim> &p) const
   {
     return values[component] && (!held[component] || held[component]->value(p) > 0.);
-  }
-
-
-  const VectorCondition *find_condition(const std::vector<VectorCondition> &list,
-                                        const dealii::types::boundary_id    id)
-  {
-    for (const VectorCondition &condition : list)
-      if (condition.id == id)
-        return &condition;
-    return nullptr;
   }
 
 

@@ -98,10 +98,11 @@ TEST(BodyParameters, of_heat)
   body.boundary_conditions.prescribe(
     0,
     Expression([](const dealii::Point<3> &, const double t) { return 1. + t; }, true));
-  body.boundary_conditions.add_flux(
+  body.boundary_conditions.let_in(
+    "Flux",
     3,
-    Expression([](const dealii::Point<3> &p, const double) { return p[1]; }, false));
-  body.boundary_conditions.add_convection(1, 2., 3.);
+    {Expression([](const dealii::Point<3> &p, const double) { return p[1]; }, false)});
+  body.boundary_conditions.let_in("Convection", 1, {2., 3.});
 
   const auto residual = [](const auto &op, Vector &r, const Vector &x, const double t) {
     Vector u(x);

@@ -160,10 +160,10 @@ namespace PeriDeal
       }
     const Vector u = body.field([](const Point<2> &p) { return 1. + p[0] + p[1]; });
     Vector       y(body.nodes.partitioner());
-    EXPECT_NEAR(sum_of_all(loads.through_convection(u)), -5., 1e-12);
+    EXPECT_NEAR(sum_of_all(loads.through_transfer(u)), -5., 1e-12);
     const unsigned int n = body.nodes.n_owned();
     for (const auto &[begin, end] : {std::make_pair(0u, n / 3), std::make_pair(n / 3, n)})
-      loads.add_convection(y, u, begin, end);
+      loads.add_transfer(y, u, begin, end);
     EXPECT_NEAR(sum_of_entries(y), 5., 1e-12);
     Balance balance;
     loads.add_to(balance, u, 3.);

@@ -87,7 +87,7 @@ namespace PeriDeal
       Settings{{"Boundary conditions/Convection", "right: 2, 4 + y ; top: 3, 1"}});
     const Vector u = body.problem.values([](const Point<2> &p) { return 1. + p[0] + p[1]; });
     // Of h u: on the right 2 (2 + y), at the top 3 (2 + x).
-    EXPECT_NEAR(sum(body.loads.through_convection(u)), -5. - 7.5, 1e-12);
+    EXPECT_NEAR(sum(body.loads.through_transfer(u)), -5. - 7.5, 1e-12);
     double                                       total = 0.;
     dealii::FullMatrix<double>                   matrix(4, 4);
     std::vector<dealii::types::global_dof_index> indices(4);
@@ -95,7 +95,7 @@ namespace PeriDeal
     for (const auto &cell : body.problem.handler.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          body.loads.find_convection(cell, matrix);
+          body.loads.find_transfer(cell, matrix);
           cell->get_dof_indices(indices);
           for (unsigned int a = 0; a < 4; ++a)
             for (unsigned int b = 0; b < 4; ++b)
@@ -123,6 +123,6 @@ namespace PeriDeal
     for (const auto &[name, value] : balance.sides)
       all += value;
     body.loads.at(2.);
-    EXPECT_NEAR(sum(body.loads.sum() + body.loads.through_convection(u)), sum(all), 1e-12);
+    EXPECT_NEAR(sum(body.loads.sum() + body.loads.through_transfer(u)), sum(all), 1e-12);
   }
 } // namespace PeriDeal

@@ -43,7 +43,7 @@ namespace PeriDeal
       EXPECT_TRUE(scene.heat->time.steady);
       EXPECT_TRUE(scene.heat->boundary_conditions.displacement.empty());
       EXPECT_EQ(scene.heat->boundary_conditions.dirichlet.size(), 1);
-      EXPECT_EQ(scene.heat->boundary_conditions.convection.size(), 1);
+      EXPECT_EQ(scene.heat->boundary_conditions.transfers.size(), 1);
       EXPECT_EQ(scene.heat->material.conductivity.value(Point<2>(1., 0.)), 4.);
       EXPECT_EQ(scene.heat->peridynamics.kernel_exponent, 2);
       EXPECT_EQ(scene.peridynamics.kernel_exponent, 0);

@@ -104,10 +104,10 @@ end
     EXPECT_EQ(bc.dirichlet[0].id, 3u);
     EXPECT_EQ(bc.dirichlet[1].id, 2u);
     EXPECT_DOUBLE_EQ(bc.dirichlet[0].value.value(Point<2>(0.5, 2.)), 50.);
-    ASSERT_NE(bc.find(bc.convection, 0), nullptr);
-    EXPECT_DOUBLE_EQ(bc.find(bc.convection, 0)->coefficient.value(Point<2>()), 25.);
-    EXPECT_DOUBLE_EQ(bc.find(bc.convection, 0)->value.value(Point<2>()), 20.);
-    EXPECT_EQ(bc.find(bc.dirichlet, 1), nullptr);
+    ASSERT_NE(find_condition(bc.transfers, 0), nullptr);
+    EXPECT_DOUBLE_EQ(find_condition(bc.transfers, 0)->coefficient.value(Point<2>()), 25.);
+    EXPECT_DOUBLE_EQ(find_condition(bc.transfers, 0)->ambient.value(Point<2>()), 20.);
+    EXPECT_EQ(find_condition(bc.dirichlet, 1), nullptr);
     EXPECT_TRUE(bc.depends_on_time());
     ASSERT_EQ(scene.cracks.cracks.size(), 2u);
     EXPECT_EQ(scene.cracks.cracks[1][1], Point<2>(0.4, 0.5));

@@ -30,11 +30,11 @@ namespace PeriDeal
       explicit Matrices(const unsigned int n)
         : stiffness(n, n)
         , mass(n, n)
-        , convection(n, n)
+        , transfer(n, n)
         , indices(n)
       {}
 
-      dealii::FullMatrix<double>                   stiffness, mass, convection;
+      dealii::FullMatrix<double>                   stiffness, mass, transfer;
       std::vector<dealii::types::global_dof_index> indices;
     };
 
@@ -56,7 +56,7 @@ namespace PeriDeal
     }
 
     /**
-     * Stiffness, mass and indices of an own cell as it is now; convection is left to the caller.
+     * Stiffness, mass and indices of an own cell as it is now; transfer is left to the caller.
      * They stay until any other function is called that is not about cuts. Not collective.
      *
      * @param with_bonds else as if there were no coupling

@@ -84,7 +84,7 @@ namespace PeriDeal
 
     bool has_steady_state() const override
     {
-      return prescribed.any() || !body.boundary_conditions.convection.empty();
+      return prescribed.any() || body.boundary_conditions.transfers_fix_level();
     }
 
     void surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;

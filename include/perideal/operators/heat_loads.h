@@ -13,14 +13,13 @@
 namespace PeriDeal
 {
   /**
-   * What enters a body of finite elements from outside, by quadrature: the source q, the flux g
-   * through sides, and convection with the coefficient h to the ambient value a. All are positive
-   * into the body:
+   * What enters a body of finite elements from outside, by quadrature: the source s, and through
+   * sides f + h (a - u) (SurfaceTransfer). All are positive into the body:
    *
-   *   f_i = int q N_i + int_flux g N_i + int_convection h a N_i,
+   *   f_i = int s N_i + int_sides (f + h a) N_i,
    *
-   * and convection adds int h N_i N_j to K. Unknowns in regions and at points have their shares of
-   * the flux there. What hanging nodes have belongs to their masters.
+   * and sides add int h N_i N_j to K. Unknowns in regions and at points have their shares of the f
+   * there. What hanging nodes have belongs to their masters.
    *
    * The arguments of the constructor must outlive this.
    */
@@ -42,22 +41,31 @@ namespace PeriDeal
               const HangingNodes<dim>                                          &hanging);
 
     /** Loads, or prescribed values of the conditions, change with time. Not collective. */
-    bool depends_on_time() const;
+    bool depends_on_time() const
+    {
+      return varies;
+    }
 
     /** The unknowns in regions and at points. */
-    const std::vector<PartUnknown<dim>> &part_unknowns() const;
+    const std::vector<PartUnknown<dim>> &part_unknowns() const
+    {
+      return of_parts;
+    }
 
     /** f(t), which stays until the next call. Collective. */
     const Vector &at(const double t) const;
 
     /** Sum of this process's entries of the last at(). */
-    double sum() const;
+    double sum() const
+    {
+      return sum_of_loads;
+    }
 
-    /** Set the matrix of a cell to what convection through its faces adds to it. */
-    void find_convection(const Cell &cell, dealii::FullMatrix<double> &matrix) const;
+    /** Set the matrix of a cell to what transfer through its faces adds to it. */
+    void find_transfer(const Cell &cell, dealii::FullMatrix<double> &matrix) const;
 
-    /** What enters this process's unknowns by convection with the ambient value 0, per time. */
-    double through_convection(const Vector &u) const;
+    /** What enters this process's unknowns where f and a are 0, per time. */
+    double through_transfer(const Vector &u) const;
 
     /**
      * Add this process's share of what enters through sides and from sources, with the field u.
@@ -65,22 +73,25 @@ namespace PeriDeal
      */
     void add_to(Balance &balance, const Vector &u, const double t) const;
 
-    std::size_t memory_consumption() const;
+    std::size_t memory_consumption() const
+    {
+      return loads.memory_consumption();
+    }
 
   private:
     /**
-     * Call on_source(values), on_flux(condition, values) and on_convection(condition, values) with
-     * the quadrature points of each own cell in turn, whose `indices` are set, and at last
-     * on_part(unknown, flux).
+     * Call on_source(values) and on_side(transfer, values) with the quadrature points of each own
+     * cell in turn, whose `indices` are set, and at last on_part(unknown, transfer).
      */
-    template <typename OnSource, typename OnFlux, typename OnConvection, typename OnPart>
-    void for_each(const OnSource     &on_source,
-                  const OnFlux       &on_flux,
-                  const OnConvection &on_convection,
-                  const OnPart       &on_part) const;
+    template <typename OnSource, typename OnSide, typename OnPart>
+    void for_each(const OnSource &on_source, const OnSide &on_side, const OnPart &on_part) const;
+
+    /** Call visit(transfer, values) with the quadrature points on the sides of a cell. */
+    template <typename Visit>
+    void on_faces(const Cell &cell, const Visit &visit) const;
 
     void assemble(const double t) const;
-    void find_convection_sums();
+    void find_coefficients();
 
     const dealii::DoFHandler<dim>                       &dofs;
     const BoundaryConditions<dim>                       &conditions;
@@ -95,7 +106,7 @@ namespace PeriDeal
     mutable Vector                                       loads;
     mutable double                                       sum_of_loads = 0.;
 
-    // Coefficient times area of each owned unknown that has some.
-    std::vector<std::pair<unsigned int, double>> convection_sums;
+    // h times area of each owned unknown that has some.
+    std::vector<std::pair<unsigned int, double>> coefficients;
   };
 } // namespace PeriDeal

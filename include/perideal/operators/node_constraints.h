@@ -70,9 +70,9 @@ namespace PeriDeal
   private:
     struct SlaveFlux
     {
-      const SideCondition *condition;
-      double               coefficient; // multiplies the flux into the body
-      dealii::Point<dim>   place;
+      const SurfaceTransfer *transfer;
+      double                 coefficient; // multiplies the flux into the body
+      dealii::Point<dim>     place;
     };
 
     struct Slave
@@ -93,7 +93,7 @@ namespace PeriDeal
     // These two return what is wrong, or nothing: only some processes may see it.
     std::string extrapolate(const DiffusionBonds<dim> &bonds,
                             const unsigned int         side,
-                            const std::string         &name,
+                            const SurfaceTransfer     &transfer,
                             Slave                     &slave) const;
 
     /** The fluxes of the side and of its parts at a slave. */
@@ -102,6 +102,7 @@ namespace PeriDeal
                            Slave                         &slave) const;
     std::string extrapolate_layer(const DiffusionBonds<dim> &bonds,
                                   const unsigned int         side,
+                                  const int                  n_layers,
                                   const BodyParameters<dim> &body);
     void        couple_slaves(const Nodes<dim> &nodes);
     void        set_slaves(Vector &u, const double t, const bool homogeneous) const;

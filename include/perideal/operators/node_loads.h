@@ -11,15 +11,14 @@
 namespace PeriDeal
 {
   /**
-   * What enters peridynamic nodes from outside: the source q, the natural flux g through the area A
-   * of a node on a side, and convection with the coefficient h to the ambient value a. All are
-   * positive into the body:
+   * What enters peridynamic nodes from outside: the source s, and through the area A of a node on a
+   * side f + h (a - u) (SurfaceTransfer). All are positive into the body:
    *
-   *   f_i = q V_i + sum_flux g A_i + sum_convection h A_i a,
+   *   f_i = s V_i + sum_sides (f A_i + h A_i a),
    *
-   * and convection adds h A_i to the diagonal of K. Prescribed nodes have no equation, but what
-   * enters there counts in the balance of heat; slaves follow the flux through their sides. What
-   * their nodes are does not change (NodeConstraints).
+   * and sides add h A_i to the diagonal of K. Prescribed nodes have no equation, but what enters
+   * there counts in the balance of heat; slaves follow the flux through their sides. What their
+   * nodes are does not change (NodeConstraints).
    *
    * The arguments of the constructor must outlive this. No function is collective.
    */
@@ -29,10 +28,18 @@ namespace PeriDeal
   public:
     struct SideLoad
     {
-      unsigned int         node;
-      double               factor; // A, with convection h A
-      const SideCondition *condition;
-      dealii::Point<dim>   place; // where the condition's formulas are taken
+      unsigned int           node;
+      double                 area, coefficient; // A, h A
+      const SurfaceTransfer *transfer;
+      dealii::Point<dim>     place; // where formulas are taken
+
+      /** What enters where u is the value of the node. */
+      double entering(const double t, const double u) const
+      {
+        const double given = area * transfer->flux.value(place, t);
+        return coefficient == 0. ? given :
+                                   given + coefficient * (transfer->ambient.value(place, t) - u);
+      }
     };
 
     NodeLoads(const Nodes<dim>           &nodes,
@@ -60,20 +67,20 @@ namespace PeriDeal
     /** Add f(t). Returns the sum of what free nodes have got. */
     double add_to(Vector &f, const double t) const;
 
-    /** With convection; in the order of nodes. */
-    const std::vector<SideLoad> &convections() const
+    /** In the order of nodes. */
+    const std::vector<SideLoad> &with_coefficient() const
     {
-      return with_convection;
+      return relaxing;
     }
 
-    /** Add to y what convection adds to K x in the rows [begin, end). */
-    void add_convection(Vector            &y,
-                        const Vector      &x,
-                        const unsigned int begin,
-                        const unsigned int end) const;
+    /** Add to y what sides add to K x in the rows [begin, end). */
+    void add_transfer(Vector            &y,
+                      const Vector      &x,
+                      const unsigned int begin,
+                      const unsigned int end) const;
 
-    /** What enters this process's nodes by convection with the ambient value 0, per time. */
-    double through_convection(const Vector &u) const;
+    /** What enters this process's nodes where f and a are 0, per time. */
+    double through_transfer(const Vector &u) const;
 
     /** What enters through the sides of slaves. */
     double through_slaves(const double t) const;
@@ -91,7 +98,7 @@ namespace PeriDeal
     const NodeConstraints<dim> &constraints;
     const Expression           &source;
     const bool                  varies;
-    std::vector<SideLoad>       fluxes, of_slaves, with_convection;
+    std::vector<SideLoad>       fluxes, of_slaves, relaxing;
     Vector                      kept;
     double                      kept_sum = 0.;
   };

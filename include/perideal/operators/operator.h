@@ -170,7 +170,7 @@ namespace PeriDeal
     virtual bool depends_on_time() const = 0;
 
     /**
-     * Some unknown is prescribed or held by convection, so that a steady state is determined. Not
+     * Some unknown is prescribed or held by transfer, so that a steady state is determined. Not
      * collective.
      */
     virtual bool has_steady_state() const = 0;

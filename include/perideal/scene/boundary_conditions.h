@@ -9,6 +9,7 @@
 #include <perideal/scene/parts.h>
 #include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
+#include <perideal/scene/surface_transfer.h>
 #include <perideal/scene/vector_conditions.h>
 
 #include <map>
@@ -28,15 +29,19 @@ namespace PeriDeal
   std::string name_of_side(const dealii::types::boundary_id id, const bool box_sides);
 
   /**
-   * One condition on one side or part: `name` as the user wrote it, `id` the deal.II boundary id
+   * A given value on one side or part: `name` as the user wrote it, `id` the deal.II boundary id
    * (box: 0 left, 1 right, 2 bottom, 3 top, 4 back, 5 front) or that of the part.
    */
   struct SideCondition
   {
     std::string                name;
     dealii::types::boundary_id id = 0;
-    Expression value;       // Dirichlet value, flux into the body, or ambient value of a convection
-    Expression coefficient; // convection only
+    Expression                 value;
+
+    bool depends_on_time() const
+    {
+      return value.depends_on_time();
+    }
   };
 
   /**
@@ -49,7 +54,8 @@ namespace PeriDeal
   public:
     BoundaryConditions();
 
-    std::vector<SideCondition> dirichlet, flux, convection;
+    std::vector<SideCondition>   dirichlet;
+    std::vector<SurfaceTransfer> transfers; // fluxes, convection, ...: kind by kind
     std::vector<dealii::types::boundary_id>
       symmetry; // elasticity: no displacement normal to the side
 
@@ -61,45 +67,100 @@ namespace PeriDeal
     std::map<std::string, dealii::types::boundary_id> physical_names;
 
     /**
-     * For programs: a value, a flux into the body or a convection on the side with this boundary id
-     * of what diffuses; a displacement (components without a value are free) or a traction of a
-     * solid. Where two sides with values meet, the one given first holds.
+     * For programs: a value, or what enters by the kind with this entry (`Flux`, `Convection`, ...)
+     * and its formulas, on the side with this boundary id of what diffuses; a displacement
+     * (components without a value are free) or a traction of a solid. Where two sides with values
+     * meet, the one given first holds.
      */
-    void prescribe(const dealii::types::boundary_id id, const Expression &value);
-    void add_flux(const dealii::types::boundary_id id, const Expression &value);
-    void add_convection(const dealii::types::boundary_id id,
-                        const Expression                &coefficient,
-                        const Expression                &ambient);
+    void prescribe(const dealii::types::boundary_id id, const Expression &value)
+    {
+      dirichlet.push_back({name_of(id), id, value});
+    }
+
+    void let_in(const std::string               &entry,
+                const dealii::types::boundary_id id,
+                const std::vector<Expression>   &formulas)
+    {
+      SurfaceTransfer transfer;
+      transfer.name = name_of(id);
+      transfer.id   = id;
+      transfer.set(transfer_kind(entry), formulas, where(entry));
+      transfers.push_back(transfer);
+    }
+
     void displace(const dealii::types::boundary_id              id,
-                  const std::vector<std::optional<Expression>> &values);
-    void pull(const dealii::types::boundary_id id, const std::vector<Expression> &values);
+                  const std::vector<std::optional<Expression>> &values)
+    {
+      AssertDimension(values.size(), dim);
+      displacement.emplace_back(name_of(id), id, values);
+    }
+
+    void pull(const dealii::types::boundary_id id, const std::vector<Expression> &values)
+    {
+      AssertDimension(values.size(), dim);
+      traction.emplace_back(name_of(id),
+                            id,
+                            std::vector<std::optional<Expression>>(values.begin(), values.end()));
+    }
 
     /** Sides have no names of a box. */
-    void name_sides_by_number();
+    void name_sides_by_number()
+    {
+      box_sides = false;
+    }
 
-    /** The condition of the given list on a side or part, by its own id, or nullptr. */
-    static const SideCondition *find(const std::vector<SideCondition> &list,
-                                     const dealii::types::boundary_id  id);
+    /** Call visit(entry, condition) for all conditions, of each kind in turn, but Symmetry. */
+    template <typename Visit>
+    void for_each(const Visit &visit) const
+    {
+      for (const SideCondition &condition : dirichlet)
+        visit("Dirichlet", condition);
+      for (const SurfaceTransfer &transfer : transfers)
+        visit(transfer.kind->entry, transfer);
+      for (const VectorCondition &condition : displacement)
+        visit(condition.rate ? "Velocity" : "Displacement", condition);
+      for (const VectorCondition &condition : traction)
+        visit("Traction", condition);
+    }
+
+    /** Some transfer determines a steady state. */
+    bool transfers_fix_level() const;
 
     /**
-     * The first condition of the list that holds at a place on a side, on the whole side or on a
-     * part of it; or nullptr.
+     * The first given value that holds at a place on a side, on the whole side or on a part of it;
+     * or nullptr.
      */
-    const SideCondition *first_at(const std::vector<SideCondition> &list,
-                                  const dealii::types::boundary_id  side,
-                                  const dealii::Point<dim>         &p) const;
+    const SideCondition *value_at(const dealii::types::boundary_id side,
+                                  const dealii::Point<dim>        &p) const
+    {
+      for (const SideCondition &condition : dirichlet)
+        if (side_of(condition.id) == side && holds_at(condition.id, p))
+          return &condition;
+      return nullptr;
+    }
 
     /** The part with this id, nullptr for a side. */
-    const Part *part(const dealii::types::boundary_id id) const;
+    const Part *part(const dealii::types::boundary_id id) const
+    {
+      return id >= first_part_id && id - first_part_id < parts.size() ? &parts[id - first_part_id] :
+                                                                        nullptr;
+    }
 
     /** The side that a condition of this id is on; invalid_boundary_id for regions and points. */
-    dealii::types::boundary_id side_of(const dealii::types::boundary_id id) const;
+    dealii::types::boundary_id side_of(const dealii::types::boundary_id id) const
+    {
+      return part(id) != nullptr ? part(id)->side : id;
+    }
 
     /**
      * Whether a condition of this id holds at a place (of its side, for a part of one): true for
      * sides, false for points.
      */
-    bool holds_at(const dealii::types::boundary_id id, const dealii::Point<dim> &p) const;
+    bool holds_at(const dealii::types::boundary_id id, const dealii::Point<dim> &p) const
+    {
+      const Part *const of = part(id);
+      return of == nullptr || (of->kind != Part::point && of->holds(p));
+    }
 
     /**
      * How messages and results name a side or part: as the user did, else by its name in the mesh
@@ -139,7 +200,14 @@ namespace PeriDeal
     /** What parts cannot carry. */
     void check_parts() const;
 
-    std::vector<SideCondition> parse_list(const std::string &entry);
+    /**
+     * The pieces `side: text` of an entry as conditions with name and id, of which
+     * read(condition, text, where) makes the rest.
+     */
+    template <typename Condition, typename Read>
+    std::vector<Condition> parse_list(const std::string &entry, const Read &read);
+
+    void parse_transfers();
 
     void parse_symmetry();
 
@@ -156,11 +224,11 @@ namespace PeriDeal
     void check_scalar_conditions() const;
     void check_vector_conditions() const;
 
-    /** An error if the list of an entry names a side that another entry names, too. */
-    void refuse_both(const std::string                &entry,
-                     const std::vector<SideCondition> &list,
-                     const std::string                &other_entry,
-                     const dealii::types::boundary_id  id) const;
+    /** The error that a condition is on a side that another entry names, too. */
+    template <typename Condition>
+    [[noreturn]] void refuse_both(const std::string &entry,
+                                  const Condition   &condition,
+                                  const std::string &other_entry) const;
 
     bool box_sides = true, has_hole = false;
     std::map<dealii::types::boundary_id, std::string>

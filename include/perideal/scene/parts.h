@@ -41,11 +41,20 @@ namespace PeriDeal
 
     /** Whether a place, on the side for a part of one, belongs to the part; not for points. */
     template <int dim>
-    bool holds(const dealii::Point<dim> &p) const;
+    bool holds(const dealii::Point<dim> &p) const
+    {
+      return inside.value(p) > 0.;
+    }
 
     /** The point. */
     template <int dim>
-    dealii::Point<dim> position() const;
+    dealii::Point<dim> position() const
+    {
+      dealii::Point<dim> p;
+      for (unsigned int d = 0; d < dim; ++d)
+        p[d] = place[d];
+      return p;
+    }
   };
 
 

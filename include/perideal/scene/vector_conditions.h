@@ -21,6 +21,13 @@ namespace PeriDeal
    */
   struct VectorCondition
   {
+    VectorCondition() = default;
+
+    /** For programs. */
+    VectorCondition(const std::string                            &name,
+                    const dealii::types::boundary_id              id,
+                    const std::vector<std::optional<Expression>> &values);
+
     std::string                            name;
     dealii::types::boundary_id             id = 0;
     std::vector<std::optional<Expression>> values;
@@ -35,9 +42,16 @@ namespace PeriDeal
     bool holds(const unsigned int component, const dealii::Point<dim> &p) const;
   };
 
-  /** The condition of the given list on a side, or nullptr. */
-  const VectorCondition *find_condition(const std::vector<VectorCondition> &list,
-                                        const dealii::types::boundary_id    id);
+  /** The condition of the given list on a side or part, by its own id, or nullptr. */
+  template <typename Condition>
+  const Condition *find_condition(const std::vector<Condition>    &list,
+                                  const dealii::types::boundary_id id)
+  {
+    for (const Condition &condition : list)
+      if (condition.id == id)
+        return &condition;
+    return nullptr;
+  }
 
   /**
    * `formula, free`: one formula of x, y, z, t for each of @p dim components, into values, held and

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Kinds that the program does not have, known to all of it by their lines in the list.
+
+#include <perideal/problems/check_sides.h>
+#include <perideal/problems/diffusion_problem.h>
+#include <perideal/scene/lists.h>
+
+#include <nlohmann/json.hpp>
+
+#include "elastic_scene_tools.h"
+#include "operator_test_tools.h"
+
+namespace PeriDeal
+{
+  using namespace OperatorTests;
+  using namespace SceneTests;
+  using dealii::Point;
+
+  namespace
+  {
+    using Body = OperatorTests::Problem<2>;
+
+    const std::string bc = "Boundary conditions";
+
+    double number(const Expression &formula)
+    {
+      return formula.value(Point<1>());
+    }
+
+
+    class SurfaceTransfers : public testing::Test
+    {
+    protected:
+      SurfaceTransfers()
+      {
+        transfer_kinds().push_back({"Contact layer",
+                                    "",
+                                    "",
+                                    {"conductivity", "thickness", "ambient value"},
+                                    "contact layer",
+                                    true,
+                                    [](SurfaceTransfer &transfer, const std::string &where) {
+                                      const auto &given = transfer.formulas;
+                                      if (!(number(given[1]) > 0.))
+                                        entry_error(where, "the layer has no thickness.");
+                                      transfer.coefficient = number(given[0]) / number(given[1]);
+                                      transfer.ambient     = given[2];
+                                    }});
+        transfer_kinds().push_back({"Lamp",
+                                    "",
+                                    "",
+                                    {"power", "area"},
+                                    "lamp",
+                                    false,
+                                    [](SurfaceTransfer &transfer, const std::string &) {
+                                      const auto &given = transfer.formulas;
+                                      transfer.flux     = number(given[0]) / number(given[1]);
+                                    }});
+      }
+
+      ~SurfaceTransfers() override
+      {
+        transfer_kinds().pop_back();
+        transfer_kinds().pop_back();
+      }
+    };
+
+
+    /** The same loads, matrix and balance, to the last bit. */
+    void expect_same(const Settings &settings, const Settings &other, const ModelKind model)
+    {
+      const Settings plate{{"Domain/Cells", "12, 10"},
+                           {bc + "/Dirichlet", "left: 1"},
+                           {bc + "/Parts", "half: top if x < 0.53 ; core: region x > 0.7"}};
+      const Body     a(plate + settings, model), b(plate + other, model);
+      Vector         u = a.values(bumpy<2>), r = a.vector(), s = r;
+      a.op().distribute(u, 0.3);
+      a.op().residual(r, u, 0.3);
+      b.op().residual(s, u, 0.3);
+      EXPECT_GT(r.l2_norm(), 0.);
+      EXPECT_EQ(largest_difference(r, s), 0.);
+      EXPECT_EQ(largest_difference(a.op().diagonal(), b.op().diagonal()), 0.);
+      EXPECT_EQ(a.op().entering(), b.op().entering());
+      EXPECT_EQ(a.op().balance(u, 0.3, false).sides, b.op().balance(u, 0.3, false).sides);
+    }
+  } // namespace
+
+
+  TEST_F(SurfaceTransfers, both_models_and_the_balance)
+  {
+    const Settings layer{{bc + "/Contact layer", "right: 2, 0.5, 3*t ; half: 1, 4, y"}},
+      convection{{bc + "/Convection", "right: 4, 3*t ; half: 0.25, y"}},
+      lamp{{bc + "/Lamp", "bottom: 6, 2 ; core: 10, 2"}},
+      flux{{bc + "/Flux", "bottom: 3 ; core: 5"}},
+      extrapolated{{"Peridynamics/Flux treatment", "extrapolation"}};
+    for (const ModelKind model : {ModelKind::finite_elements, ModelKind::peridynamics})
+      expect_same(layer + lamp, convection + flux, model);
+    expect_same(extrapolated + Settings{{bc + "/Lamp", "bottom: 6, 2"}},
+                extrapolated + Settings{{bc + "/Flux", "bottom: 3"}},
+                ModelKind::peridynamics);
+    HeatParameters<2> body;
+    body.boundary_conditions.let_in("Contact layer", 1, {2., 0.5, 3.});
+    EXPECT_EQ(body.boundary_conditions.transfers[0].entering(Point<2>(), 0., 1.), 8.);
+  }
+
+
+  TEST_F(SurfaceTransfers, summary)
+  {
+    const Body             body(Settings{{"Domain/Cells", "4, 4"},
+                             {bc + "/Contact layer", "right: 2, 0.5, 3*t"},
+                             {bc + "/Lamp", "bottom: 6, 2 ; right: 0, 1"}},
+                    ModelKind::finite_elements);
+    nlohmann::ordered_json summary;
+    make_diffusion_problem(ModelKind::finite_elements, *body.mesh, body.scene)
+      ->describe_scene(summary, true);
+    EXPECT_EQ(summary["sides"]["right"], "contact layer 2, 0.5, 3*t");
+    EXPECT_EQ(summary["sides"]["bottom"], "lamp 6, 2");
+    EXPECT_EQ(summary["sides"]["top"], "insulated");
+  }
+
+
+  TEST_F(SurfaceTransfers, checks)
+  {
+    const std::string steady = "subsection Time\nset Steady = true\nend\nsubsection " + bc + "\n";
+    EXPECT_EQ(fault(steady + "set Contact layer = left: 2, 0.5, 3\nend\n"), "");
+    expect_fault(fault(steady + "set Contact layer = left: 2, 0.5, t\nend\n"),
+                 bc,
+                 "Contact layer",
+                 {"depends on t"});
+    expect_fault(fault(steady + "set Lamp = left: 2, 1\nend\n"),
+                 "Time",
+                 "Steady",
+                 {"'Dirichlet' or 'Convection' or 'Contact layer' (section"});
+    expect_fault(fault(bc, "Contact layer = left: 2, 1"),
+                 bc,
+                 "Contact layer",
+                 {"needs 3 formulas: conductivity, thickness, ambient value."});
+    expect_fault(fault(bc, "Contact layer = left: 2, 0, 1"), bc, "Contact layer", {"no thickness"});
+    expect_fault(fault(bc, "Contact layer = left: -2, 4, 1"),
+                 bc,
+                 "Contact layer",
+                 {"the coefficient -0.5 is negative"});
+    for (const std::string other : {"Dirichlet = left: 1", "Symmetry = left"})
+      for (const std::string kind : {"Contact layer", "Lamp"})
+        expect_fault(
+          fault(bc, other + " & " + kind + " = left: 2, 4" + (kind == "Lamp" ? "" : ", 1")),
+          bc,
+          kind,
+          {"which contradicts it"});
+    const std::string parts = "Parts = core: region x > 0.5 & ";
+    EXPECT_EQ(fault(bc, parts + "Lamp = core: 2, 4"), "");
+    expect_fault(fault(bc, parts + "Contact layer = core: 2, 4, 1"), bc, "Contact layer", {"area"});
+    expect(elastic_fault({bc + "/Lamp=top: 1, 2"}), bc + "/Lamp", {"Use 'Traction'"});
+    expect(elastic_fault({bc + "/Contact layer=top: 1, 2, 3"}),
+           bc + "/Contact layer",
+           {"'Displacement' or 'Traction'"});
+    const Body body(Settings{{"Domain/Cells", "4, 4"},
+                             {bc + "/Parts", "a: top if x < 0.7 ; b: top if x > 0.3"},
+                             {bc + "/Contact layer", "a: 2, 0.5, 3 ; b: 2, 0.5, 1"}},
+                    ModelKind::finite_elements);
+    expect_parts(message_of([&] { check_sides(body.scene, *body.mesh); }),
+                 {"'Contact layer'", "'b' overlaps 'a'", "loads are not added"});
+  }
+} // namespace PeriDeal
