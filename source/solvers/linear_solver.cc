@@ -5,6 +5,7 @@
 #include <deal.II/lac/solver_gmres.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/scene/scene.h>
 #include <perideal/solvers/floating_part.h>
 #include <perideal/solvers/linear_solver.h>
 
@@ -149,6 +150,36 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void require_steady_state(const Scene<dim> &scene)
+  {
+    const BoundaryConditions<dim> &bc = scene.boundary_conditions;
+    const auto                     refuse =
+      [](const Expression &expression, const SceneSection &section, const std::string &entry) {
+        section.refuse(expression.depends_on_time(),
+                       entry,
+                       "'" + expression.text() +
+                         "' depends on t, but 'Steady' in section 'Time' is true.");
+      };
+    if (!scene.cracks.tips.empty())
+      scene.cracks.tip_error(scene.cracks.tips.front(),
+                             "moves, but 'Steady' in section 'Time' is true.");
+    refuse(scene.initial_and_source.source, scene.initial_and_source, "Source");
+    refuse(scene.cracks.transmission, scene.cracks, "Transmission");
+    for (const SideCondition &condition : bc.dirichlet)
+      refuse(condition.value, bc, "Dirichlet");
+    for (const SideCondition &condition : bc.flux)
+      refuse(condition.value, bc, "Flux");
+    for (const SideCondition &condition : bc.convection)
+      refuse(condition.value, bc, "Convection");
+    scene.time.refuse(
+      bc.dirichlet.empty() && bc.convection.empty(),
+      "Steady",
+      "without a side in 'Dirichlet' or 'Convection' (section 'Boundary conditions') "
+      "the steady state is not determined.");
+  }
+
+
   unsigned int solve_steady(Operator          &op,
                             Vector            &u,
                             const double       t,
@@ -198,4 +229,9 @@ namespace PeriDeal
       UserError("The steady solution is not finite. Check the material and the boundary values."));
     return n_iterations;
   }
+
+
+  template void require_steady_state(const Scene<1> &);
+  template void require_steady_state(const Scene<2> &);
+  template void require_steady_state(const Scene<3> &);
 } // namespace PeriDeal

@@ -118,6 +118,10 @@ namespace PeriDeal
   template <int dim>
   void set_start(DiffusionProblem<dim> &run);
 
+  /** Throws UserError for what its models cannot compute. Not collective. */
+  template <int dim>
+  void require_diffusion(const Scene<dim> &scene);
+
   /** Builds a model's unknowns and operator. The time goes into the run's timings. */
   template <int dim>
   std::unique_ptr<DiffusionProblem<dim>> make_diffusion_problem(
