@@ -8,6 +8,7 @@
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/field_writer.h>
+#include <perideal/problems/problem_factory.h>
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
@@ -58,7 +59,7 @@ namespace
                const bool       quiet)
   {
     Scene<dim> scene;
-    parse_scene(text, scene);
+    parse_computable(text, scene);
     if (action == Action::estimate || (action == Action::check && is_large(scene, communicator)))
       return print_estimate(scene, communicator, quiet);
     Simulation<dim> simulation(scene, text, communicator, quiet);

@@ -306,6 +306,7 @@ namespace ScalarWave
     require(!scene.material.depends_on_temperature(),
             "Section 'Material': waves need properties that do not depend on T.");
     require(!scene.cracks.change(), "Section 'Cracks': waves need cracks that stay as they are.");
+    require_diffusion(scene);
   }
 
 

@@ -87,6 +87,33 @@ namespace PeriDeal
 
 
   template <int dim>
+  void require_fictitious_nodes(const BodyParameters<dim> &body)
+  {
+    const Peridynamics            &pd = body.peridynamics;
+    const BoundaryConditions<dim> &bc = body.boundary_conditions;
+    pd.refuse(body.domain.shape != Shape::box &&
+                (pd.treatment == BoundaryTreatment::fictitious_mirror ||
+                 pd.treatment == BoundaryTreatment::fictitious_constant),
+              "Boundary treatment",
+              "fictitious nodes need the sides of a box ('Shape' in section 'Domain' = box).");
+    body.domain.require_lattice(pd.treatment == BoundaryTreatment::layer,
+                                pd.where("Boundary treatment"),
+                                "'layer'");
+    bc.refuse(
+      !body.domain.has_lattice() && !bc.symmetry.empty(),
+      "Symmetry",
+      "mirrors peridynamics in the sides of a box; this body is from a mesh file. Leave the entry out: "
+      "a side that is named nowhere is insulated, which is what a plane of symmetry is.");
+    bc.refuse(
+      !bc.symmetry.empty() && body.cracks.mesh == CrackMesh::faces && !body.cracks.cracks.empty() &&
+        body.domain.nodes == NodePlacement::vertices,
+      "Symmetry",
+      "is not for cracks with 'Mesh = faces' in section 'Cracks', where two nodes are at one place. Use 'Mesh = pairs', or leave the entry out: a side that is named nowhere "
+      "is insulated.");
+  }
+
+
+  template <int dim>
   std::vector<FictitiousNode<dim>> make_fictitious_nodes(const Nodes<dim>              &nodes,
                                                          const BoundaryConditions<dim> &conditions,
                                                          const BoundaryTreatment        treatment,
@@ -149,6 +176,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template void                             require_fictitious_nodes(const BodyParameters<dim> &); \
   template std::vector<FictitiousNode<dim>> make_fictitious_nodes(const Nodes<dim> &,              \
                                                                   const BoundaryConditions<dim> &, \
                                                                   const BoundaryTreatment,         \

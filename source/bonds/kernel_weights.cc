@@ -4,6 +4,8 @@
 #include <perideal/bonds/kernel_weights.h>
 #include <perideal/laws/kernel.h>
 #include <perideal/laws/volume_fraction.h>
+#include <perideal/scene/body_parameters.h>
+#include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +13,50 @@
 namespace PeriDeal
 {
   using namespace dealii;
+
+  template <int dim>
+  void KernelWeights<dim>::require(const BodyParameters<dim> &body)
+  {
+    const Domain<dim>  &domain = body.domain;
+    const Peridynamics &pd     = body.peridynamics;
+    domain.require_lattice(pd.volume_fraction == VolumeFraction::exact,
+                           pd.where("Volume fraction"),
+                           "'exact'");
+    domain.require_lattice(pd.self_term == SelfTerm::paper, pd.where("Self term"), "'paper'");
+    domain.require_lattice(pd.form == OperatorForm::lattice,
+                           pd.where("Operator form"),
+                           "'lattice'");
+    if (!domain.has_lattice())
+      {
+        pd.refuse(
+          !(pd.horizon > 0.),
+          "Horizon",
+          "is empty; a mesh file has no node spacing that 'Horizon ratio' could refer to: give a length.");
+        return;
+      }
+    const std::string    entry   = pd.horizon > 0. ? "Horizon" : "Horizon ratio";
+    const Tensor<1, dim> h       = domain.spacing();
+    const double         horizon = body.horizon();
+    double               longest = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        pd.refuse(horizon < h[d] * (1. - 1e-9),
+                  entry,
+                  "the horizon, " + number_text(horizon) +
+                    ", is shorter than the node spacing in " + std::string(1, "xyz"[d]) + ", " +
+                    number_text(h[d]) + ": nodes have no neighbours there.");
+        longest = std::max(longest, domain.upper[d] - domain.lower[d]);
+      }
+    pd.refuse(horizon > longest * (1. + 1e-9),
+              entry,
+              "the horizon, " + number_text(horizon) + ", is longer than the body, " +
+                number_text(longest) + ". " +
+                (pd.horizon > 0. ?
+                   "Choose a shorter one: three spacings of the nodes are " +
+                     number_text(3. * *std::max_element(h.begin_raw(), h.end_raw())) + "." :
+                   "Choose a smaller one, or more 'Cells' in section 'Domain'."));
+  }
+
 
   template <int dim>
   KernelWeights<dim>::KernelWeights(const KernelParameters              &parameters,

@@ -6,8 +6,10 @@
 
 #include <perideal/base/node_loops.h>
 #include <perideal/base/user_error.h>
+#include <perideal/bonds/fictitious_nodes.h>
 #include <perideal/operators/bond_operator.h>
 #include <perideal/operators/heat_content.h>
+#include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +17,22 @@
 namespace PeriDeal
 {
   using namespace dealii;
+
+  template <int dim>
+  void BondOperator<dim>::require(const BodyParameters<dim> &body)
+  {
+    DiffusionOperatorBase<dim>::require(body);
+    if (const auto obstacle = body.obstacle_to_bonds_on_elements();
+        body.peridynamics.treatment == BoundaryTreatment::exchange && !obstacle.first.empty())
+      entry_error(
+        obstacle.first,
+        obstacle.second +
+          ", for 'Boundary treatment = exchange'. Use 'Boundary treatment = none' (section 'Peridynamics') for bonds alone.");
+    KernelWeights<dim>::require(body);
+    require_fictitious_nodes(body);
+    NodeConstraints<dim>::require(body);
+  }
+
 
   template <int dim>
   BondOperator<dim>::BondOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body)

@@ -4,10 +4,14 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/bonds/fictitious_nodes.h>
 #include <perideal/operators/lattice_exchange.h>
 #include <perideal/operators/mesh_exchange.h>
 #include <perideal/operators/state_coupling.h>
 #include <perideal/operators/weighted_bonds.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
 
 namespace PeriDeal
 {
@@ -18,6 +22,44 @@ namespace PeriDeal
       UserError(
         "'Zone' in section 'Coupling': no node of the mesh lies in the zone. Choose a wider zone or a finer "
         "mesh, or 'Models = finite elements'."));
+  }
+
+
+  template <int dim>
+  void Coupling<dim>::require(const BodyParameters<dim> &body)
+  {
+    const CouplingControl &control  = body.coupling;
+    const auto             obstacle = body.obstacle_to_bonds_on_elements();
+    if (!obstacle.first.empty())
+      entry_error(obstacle.first, obstacle.second + ", for 'Models = coupled'.");
+    control.refuse(
+      dim == 1 && control.zone == ZoneKind::near_cracks,
+      "Zone",
+      "'" + control.zone_text() +
+        "' needs a crack, and bodies of 'Dimension' 1 have none. Give a formula of x, or 'everywhere'.");
+    control.refuse(
+      (control.zone == ZoneKind::near_cracks || control.zone == ZoneKind::adaptive) &&
+        body.cracks.cracks.empty(),
+      "Zone",
+      "'" + control.zone_text() +
+        "' lies around cracks, but section 'Cracks' has none: the zone is empty. Give a formula, or 'everywhere'.");
+    double widest = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      widest = std::max(widest, body.domain.upper[d] - body.domain.lower[d]);
+    const double overlap =
+      body.domain.has_lattice() && control.overlap > 0. ? control.overlap * body.horizon() : 0.;
+    control.refuse(overlap > widest,
+                   "Overlap",
+                   "is " + number_text(control.overlap) + " horizons, " + number_text(overlap) +
+                     ", wider than the body, " + number_text(widest) + ".");
+    body.finite_elements.refuse(
+      body.finite_elements.degree > 1,
+      "Degree",
+      "found " + std::to_string(body.finite_elements.degree) +
+        "; bonds and elements share the nodes of elements of degree 1 ('Models = coupled').");
+    KernelWeights<dim>::require(body);
+    if (!body.deforms)
+      require_fictitious_nodes(body);
   }
 
 
@@ -94,16 +136,17 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                           \
-  template std::vector<bool>              hanging_nodes(const Nodes<dim> &);                \
-  template double                         Coupling<dim>::zone_share() const;                \
-  template std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim> &,                       \
-                                                        const BodyParameters<dim> &,        \
-                                                        const Zone<dim> &,                  \
-                                                        const CouplingScheme);              \
-  template std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim> &,                 \
-                                                              const BodyParameters<dim> &); \
-  template std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim> &,            \
+#define PERIDEAL_INSTANTIATE(dim)                                                              \
+  template void                           Coupling<dim>::require(const BodyParameters<dim> &); \
+  template std::vector<bool>              hanging_nodes(const Nodes<dim> &);                   \
+  template double                         Coupling<dim>::zone_share() const;                   \
+  template std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim> &,                          \
+                                                        const BodyParameters<dim> &,           \
+                                                        const Zone<dim> &,                     \
+                                                        const CouplingScheme);                 \
+  template std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim> &,                    \
+                                                              const BodyParameters<dim> &);    \
+  template std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim> &,               \
                                                                    const BodyParameters<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -7,6 +7,7 @@
 #include <perideal/operators/condition_faces.h>
 #include <perideal/operators/displacement_conditions.h>
 #include <perideal/scene/beyond_sides.h>
+#include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <limits>
@@ -67,6 +68,45 @@ namespace PeriDeal
              body.boundary_conditions.holds_at(id, p);
     }
   } // namespace
+
+
+  template <int dim>
+  void require_layer(const BodyParameters<dim>          &body,
+                     const std::vector<VectorCondition> &list,
+                     const std::string                  &name,
+                     const double                        depth)
+  {
+    const BoundaryConditions<dim> &conditions = body.boundary_conditions;
+    for (const VectorCondition &condition : list)
+      {
+        const types::boundary_id side = conditions.side_of(condition.id);
+        conditions.refuse(side >= 2 * dim,
+                          name + " layer",
+                          "needs flat sides, and '" + name + "' names '" + condition.name +
+                            "'. Leave it empty.");
+        const double width = body.domain.upper[side / 2] - body.domain.lower[side / 2];
+        conditions.refuse(depth > width,
+                          name + " layer",
+                          "found " + number_text(depth) +
+                            ", wider than the body behind the side '" + condition.name + "', " +
+                            number_text(width) +
+                            (body.domain.has_extra_layers() ? " with its extra layers." : "."));
+      }
+  }
+
+
+  template <int dim>
+  void DisplacementConditions<dim>::require(const BodyParameters<dim> &body)
+  {
+    const BoundaryConditions<dim> &conditions = body.boundary_conditions;
+    if (conditions.displacement_layer <= 0.)
+      return;
+    conditions.refuse(
+      !body.domain.has_lattice(),
+      "Displacement layer",
+      "is for the sides of a box, and 'Shape' in section 'Domain' is 'mesh file'. Leave it empty.");
+    require_layer(body, conditions.displacement, "Displacement", conditions.displacement_layer);
+  }
 
 
   template <int dim>
@@ -277,6 +317,10 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                           \
+  template void require_layer(const BodyParameters<dim> &,                                  \
+                              const std::vector<VectorCondition> &,                         \
+                              const std::string &,                                          \
+                              const double);                                                \
   template class DisplacementConditions<dim>;                                               \
   template ForceBalance gather_forces(const std::map<types::boundary_id, Tensor<1, dim>> &, \
                                       const BodyParameters<dim> &,                          \

@@ -23,6 +23,20 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
+  void ElasticElements<dim>::require(const BodyParameters<dim> &body, const bool coupled)
+  {
+    SolidOperator<dim>::require(body);
+    if (coupled)
+      return SolidBondsBesideElements<dim>::require(body);
+    body.elasticity.refuse(
+      body.elasticity.kinematics == Kinematics::full,
+      "Kinematics",
+      "'full' is for 'Models = peridynamics' alone; finite elements have small displacements. "
+      "Leave them out, or use 'linear'.");
+  }
+
+
+  template <int dim>
   ElasticElements<dim>::ElasticElements(const DoFHandler<dim>         &dof_handler,
                                         const BodyParameters<dim>     &body,
                                         std::unique_ptr<Coupling<dim>> coupling)

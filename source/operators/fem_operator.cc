@@ -17,6 +17,21 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
+  void FEMOperator<dim>::require(const BodyParameters<dim> &body, const bool coupled)
+  {
+    DiffusionOperatorBase<dim>::require(body);
+    if (coupled)
+      return Coupling<dim>::require(body);
+    body.finite_elements.refuse(
+      body.finite_elements.degree > 1 && !body.cracks.cracks.empty() &&
+        body.cracks.mesh == CrackMesh::pairs,
+      "Degree",
+      "found " + std::to_string(body.finite_elements.degree) +
+        "; cracks with 'Mesh' in section 'Cracks' = pairs need degree 1.");
+  }
+
+
+  template <int dim>
   FEMOperator<dim>::FEMOperator(const DoFHandler<dim>         &dof_handler,
                                 const BodyParameters<dim>     &body,
                                 std::unique_ptr<Coupling<dim>> coupling,

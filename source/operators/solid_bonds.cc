@@ -3,10 +3,13 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/operators/solid_bonds.h>
+#include <perideal/operators/surface_factors.h>
 #include <perideal/scene/beyond_sides.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "state_lattice.h"
 
 namespace PeriDeal
 {
@@ -51,6 +54,32 @@ namespace PeriDeal
       return beyond;
     }
   } // namespace
+
+
+  template <int dim>
+  void SolidBonds<dim>::require(const BodyParameters<dim> &body)
+  {
+    const Peridynamics &pd = body.peridynamics;
+    if (pd.completes_families())
+      FictitiousBonds<dim>::require(body);
+    if (pd.corrects_elastic_bonds())
+      require_surface_factors(body);
+    const std::string not_lattice = StateLattice<dim>::obstacle(body);
+    pd.refuse(pd.form == OperatorForm::lattice && !not_lattice.empty(),
+              "Operator form",
+              "'lattice' is not defined here: " + not_lattice + "; use 'auto'.");
+    KernelWeights<dim>::require(body);
+    if (body.elasticity.micromodulus != Micromodulus::constant)
+      return;
+    body.elasticity.refuse(
+      !body.domain.has_lattice(),
+      "Micromodulus",
+      "'constant' is that of the complete family of a lattice, which 'Shape = mesh file' has not. Leave the entry out.");
+    body.elasticity.refuse(
+      pd.corrects_elastic_bonds() || pd.completes_families(),
+      "Micromodulus",
+      "'constant' leaves surfaces soft, which 'Surface correction' and fictitious nodes (section 'Peridynamics') mend. Leave one of them out.");
+  }
 
 
   template <int dim>

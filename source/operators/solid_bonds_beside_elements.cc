@@ -6,6 +6,7 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/operators/solid_bonds_beside_elements.h>
+#include <perideal/operators/state_coupling.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,32 @@
 namespace PeriDeal
 {
   using namespace dealii;
+
+  template <int dim>
+  void SolidBondsBesideElements<dim>::require(const BodyParameters<dim> &body)
+  {
+    const Material &material = body.material;
+    body.coupling.refuse(
+      body.coupling.zone == ZoneKind::adaptive,
+      "Zone",
+      "'adaptive' is for what diffuses; with 'Physics = elasticity' use 'cracks: 1' or a formula.");
+    body.elasticity.refuse(
+      body.elasticity.kinematics == Kinematics::full,
+      "Kinematics",
+      "'full' is not for 'Models = coupled', whose coefficients are those of the undeformed body.");
+    material.refuse(
+      material.fracture_energy || material.critical_stretch,
+      material.fracture_energy ? "Fracture energy" : "Critical stretch",
+      "is not for 'Models = coupled', whose bonds do not break; use 'peridynamics', or leave the entry out.");
+    if (body.coupling.scheme != CouplingScheme::exchange)
+      StateCoupling<dim>::require(body);
+    body.peridynamics.refuse(
+      body.peridynamics.completes_families() && body.coupling.scheme == CouplingScheme::exchange,
+      "Surface correction",
+      "'fictitious nodes' is not for 'Scheme = exchange', whose bonds need no correction. Use 'none', or 'splice' or 'blending'.");
+    Coupling<dim>::require(body);
+  }
+
 
   template <int dim>
   SolidBondsBesideElements<dim>::SolidBondsBesideElements(std::unique_ptr<Coupling<dim>> coupling)

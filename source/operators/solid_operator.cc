@@ -35,6 +35,35 @@ namespace PeriDeal
 
 
   template <int dim>
+  void SolidOperator<dim>::require(const BodyParameters<dim> &body)
+  {
+    const Domain<dim>       &domain    = body.domain;
+    const MaterialProperty  &expansion = body.material.thermal_expansion;
+    const ElasticityControl &control   = body.elasticity;
+    control.refuse((control.computes_temperature || !is_zero(control.temperature_change)) &&
+                     expansion.is_constant() && expansion.value(Point<dim>()) == 0.,
+                   "Temperature change",
+                   "has no effect: 'Thermal expansion' in section 'Material' is 0.");
+    domain.refuse(
+      domain.has_extra_layers() && control.computes_temperature,
+      "Extra layers",
+      "cannot be used with 'Temperature change = computed' in section 'Elasticity', whose heat would flow through them. Use 0, or a formula there.");
+    for (const CrackPiece<dim> &piece : body.cracks.pieces(body.cracks.end_time))
+      for (const Point<dim> &p : piece.corners)
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double slack = 1e-9 * (domain.body_upper[d] - domain.body_lower[d]);
+            domain.refuse(
+              (domain.extra_layers[2 * d] > 0 && p[d] < domain.body_lower[d] + slack) ||
+                (domain.extra_layers[2 * d + 1] > 0 && p[d] > domain.body_upper[d] - slack),
+              "Extra layers",
+              "a crack ends at a side of the body that has some, and would be closed by them. Leave them out at that side.");
+          }
+    DisplacementConditions<dim>::require(body);
+  }
+
+
+  template <int dim>
   SolidOperator<dim>::SolidOperator(const BodyParameters<dim> &body, const Layout &of_nodes)
     : body(body)
     , history(body.crack_history())

@@ -44,15 +44,9 @@ namespace PeriDeal
     template <int dim>
     bool may_leave_out_bonds(const Families<dim> &families, const BodyParameters<dim> &body)
     {
-      std::string reason;
-      if (!families.neighbors().has_unique_sites())
-        reason = "the nodes are not on a lattice with one node per site";
-      else if (body.elasticity.kinematics == Kinematics::full)
-        reason = "with 'Kinematics = full' each bond has its own direction";
-      else if (body.material.fracture_energy || body.material.critical_stretch)
-        reason = "bonds may break";
-      else if (body.peridynamics.corrects_elastic_bonds())
-        reason = "with 'Surface correction' bonds have factors of their own";
+      const std::string reason = families.neighbors().has_unique_sites() ?
+                                   StateLattice<dim>::obstacle(body) :
+                                   "the nodes are not on a lattice with one node per site";
       // Bonds of bars take little, and differences of displacements round less than convolutions.
       return takes_lattice_form(body.peridynamics.form, reason, dim > 1);
     }

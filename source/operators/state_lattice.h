@@ -41,6 +41,9 @@ namespace PeriDeal
       std::vector<double> dilatations;                     // c d/q^2, owned; empty: none
     };
 
+    /** Why the bonds of a body have no such form, or empty. */
+    static std::string obstacle(const BodyParameters<dim> &body);
+
     /** @param computed the owned nodes that have no bond cut, whose sums are computed */
     StateLattice(const Families<dim>     &families,
                  const Coefficients      &coefficients,

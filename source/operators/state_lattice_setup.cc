@@ -46,6 +46,19 @@ namespace PeriDeal
 
 
   template <int dim>
+  std::string StateLattice<dim>::obstacle(const BodyParameters<dim> &body)
+  {
+    return body.elasticity.kinematics == Kinematics::full ?
+             "with 'Kinematics = full' each bond has its own direction" :
+           body.material.fracture_energy || body.material.critical_stretch ?
+             "bonds may break" :
+           body.peridynamics.corrects_elastic_bonds() ?
+             "with 'Surface correction' bonds have factors of their own" :
+             "";
+  }
+
+
+  template <int dim>
   StateLattice<dim>::StateLattice(const Families<dim>     &families,
                                   const Coefficients      &coefficients,
                                   const std::vector<bool> &computed)
@@ -343,6 +356,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                   \
+  template std::string StateLattice<dim>::obstacle(const BodyParameters<dim> &);    \
   template StateLattice<dim>::StateLattice(const Families<dim> &,                   \
                                            const StateLattice<dim>::Coefficients &, \
                                            const std::vector<bool> &);              \

@@ -426,6 +426,22 @@ namespace PeriDeal
 
 
   template <int dim>
+  void require_surface_factors(const BodyParameters<dim> &body)
+  {
+    body.peridynamics.refuse(
+      body.material.fracture_energy.has_value(),
+      "Surface correction",
+      "with 'Fracture energy' in section 'Material' bonds at surfaces would break at another energy "
+      "with 'Physics = elasticity'; use 'none', or give 'Critical stretch'.");
+    body.peridynamics.refuse(
+      !body.cracks.tips.empty(),
+      "Surface correction",
+      "does not follow cracks that grow ('Growth', 'Paths' in section 'Cracks') in a "
+      "body that deforms. Use 'none' or 'fictitious nodes'.");
+  }
+
+
+  template <int dim>
   SurfaceFactors surface_factors(const Families<dim> &bonds,
                                  const Peridynamics  &parameters,
                                  const StoredBonds   &stored)
@@ -455,9 +471,10 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                     \
-  template SurfaceFactors surface_factors<dim>(const Families<dim> &, \
-                                               const Peridynamics &,  \
+#define PERIDEAL_INSTANTIATE(dim)                                               \
+  template void           require_surface_factors(const BodyParameters<dim> &); \
+  template SurfaceFactors surface_factors<dim>(const Families<dim> &,           \
+                                               const Peridynamics &,            \
                                                const StoredBonds &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/operators/displacement_conditions.h>
 #include <perideal/operators/traction_layer.h>
 
 #include <algorithm>
@@ -136,6 +137,27 @@ namespace PeriDeal
 
 
   template <int dim>
+  void require_traction_layer(const BodyParameters<dim> &body)
+  {
+    const BoundaryConditions<dim> &conditions = body.boundary_conditions;
+    const double                   depth      = conditions.traction_layer;
+    if (depth <= 0.)
+      return;
+    conditions.refuse(
+      !body.domain.has_lattice(),
+      "Traction layer",
+      "needs nodes in rows along the side, which 'Shape = mesh file' in section 'Domain' does not have. Leave it empty.");
+    require_layer(body, conditions.traction, "Traction", depth);
+    for (const VectorCondition &condition : conditions.traction)
+      conditions.refuse(
+        body.cracks.distance_to_side(conditions.side_of(condition.id)) < depth,
+        "Traction layer",
+        "a crack lies within it at the side '" + condition.name +
+          "', and what is behind the crack would be pulled. Leave it empty, or make it thinner.");
+  }
+
+
+  template <int dim>
   std::vector<TractionShare<dim>> traction_shares(const Nodes<dim>              &nodes,
                                                   const BoundaryConditions<dim> &conditions)
   {
@@ -155,8 +177,9 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                              \
-  template std::vector<TractionShare<dim>> traction_shares(const Nodes<dim> &, \
+#define PERIDEAL_INSTANTIATE(dim)                                                               \
+  template void                            require_traction_layer(const BodyParameters<dim> &); \
+  template std::vector<TractionShare<dim>> traction_shares(const Nodes<dim> &,                  \
                                                            const BoundaryConditions<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/operators/bond_operator.h>
+#include <perideal/operators/fem_operator.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/with_formulas.h>
+#include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
 
@@ -13,6 +16,19 @@
 namespace PeriDeal
 {
   using namespace dealii;
+
+  template <int dim>
+  void require_diffusion(const Scene<dim> &scene)
+  {
+    for (const ModelKind model : scene.general.models)
+      if (model == ModelKind::peridynamics)
+        BondOperator<dim>::require(scene);
+      else
+        FEMOperator<dim>::require(scene, model == ModelKind::coupled);
+    if (scene.time.steady)
+      require_steady_state(scene);
+  }
+
 
   /** Of cracks that grow, and entries that have no effect. */
   template <int dim>
@@ -36,6 +52,11 @@ namespace PeriDeal
     class DiffusionFactory : public ProblemFactory<dim>
     {
     public:
+      void require_computable(const Scene<dim> &scene) const override
+      {
+        require_diffusion(scene);
+      }
+
       void note_scene(const Scene<dim> &scene,
                       const Triangulation<dim> &,
                       std::vector<std::string> &notes) const override
@@ -64,6 +85,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                               \
+  template void require_diffusion(const Scene<dim> &);                          \
   template void note_diffusion(const Scene<dim> &, std::vector<std::string> &); \
   template std::unique_ptr<ProblemFactory<dim>> make_diffusion_factory();
   PERIDEAL_INSTANTIATE(1)

@@ -2,6 +2,8 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/user_error.h>
+#include <perideal/mesh/grading.h>
+#include <perideal/solvers/motion_stepper.h>
 
 #include <nlohmann/json.hpp>
 
@@ -50,6 +52,17 @@ namespace PeriDeal
 
 
   template <int dim>
+  void require_computable(const Scene<dim> &scene, const SceneText &text)
+  {
+    with_location(text, [&] {
+      Grading<dim>::require(scene);
+      require_stepper(scene);
+      problem_factory(scene).require_computable(scene);
+    });
+  }
+
+
+  template <int dim>
   void set_problem_factory(const Physics physics, std::unique_ptr<ProblemFactory<dim>> factory)
   {
     factories<dim>()[physics] = std::move(factory);
@@ -78,9 +91,10 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                         \
-  template const ProblemFactory<dim> &problem_factory<dim>(const Physics);                \
-  template void set_problem_factory(const Physics, std::unique_ptr<ProblemFactory<dim>>); \
+#define PERIDEAL_INSTANTIATE(dim)                                                                \
+  template void                       require_computable(const Scene<dim> &, const SceneText &); \
+  template const ProblemFactory<dim> &problem_factory<dim>(const Physics);                       \
+  template void set_problem_factory(const Physics, std::unique_ptr<ProblemFactory<dim>>);        \
   template void describe_physics(const Scene<dim> &, nlohmann::ordered_json &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -5,10 +5,13 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/laws/elasticity.h>
+#include <perideal/operators/elastic_elements.h>
+#include <perideal/operators/state_operator.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/solid_problem.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/with_formulas.h>
+#include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
 
@@ -21,23 +24,46 @@ namespace PeriDeal
 
   namespace
   {
-    /** What cannot be computed, so that no scene is silently taken for another. */
+    /** What only bonds have, or only those of one model, in a scene in which there are none. */
     template <int dim>
-    void refuse_what_is_not_computed(const Scene<dim> &scene)
+    void refuse_what_no_model_has(const Scene<dim> &scene)
     {
-      const auto require = [](const bool ok, const std::string &what) {
-        AssertThrow(ok, UserError(what));
-      };
-      const auto &models = scene.general.models;
-      require(
-        scene.elasticity.kinematics == Kinematics::linear ||
-          std::find(models.begin(), models.end(), ModelKind::finite_elements) == models.end(),
-        "'Kinematics' in section 'Elasticity': 'full' is for 'Models = peridynamics' alone; finite elements have small displacements. "
-        "Leave them out, or use 'linear'.");
-      if (!scene.cracks.tips.empty() && scene.peridynamics.corrects_elastic_bonds())
-        entry_error(scene.peridynamics.where("Surface correction"),
-                    "does not follow cracks that grow ('Growth', 'Paths' in section 'Cracks') in a "
-                    "body that deforms. Use 'none' or 'fictitious nodes'.");
+      const Peridynamics &pd       = scene.peridynamics;
+      const Material     &material = scene.material;
+      const bool          bonds    = runs(scene, ModelKind::peridynamics),
+                 none              = !bonds && !runs(scene, ModelKind::coupled);
+      pd.refuse(
+        none && pd.completes_families(),
+        "Surface correction",
+        "'fictitious nodes' has no effect without 'Models = peridynamics' or 'coupled'. Use 'none'.");
+      pd.refuse(
+        !runs(scene, ModelKind::coupled) &&
+          pd.surface_correction == SurfaceCorrection::crack_scaling,
+        "Surface correction",
+        "'crack scaling' without 'Models = coupled' has no effect with 'Physics = elasticity'; use 'none', 'volume', 'energy' or 'moments'.");
+      material.refuse(
+        none && (material.fracture_energy || material.critical_stretch),
+        material.fracture_energy ? "Fracture energy" : "Critical stretch",
+        "has no effect: finite elements do not break. Add 'peridynamics' to 'Models', or leave the entry out.");
+      if (bonds)
+        return;
+      pd.refuse(
+        pd.corrects_elastic_bonds(),
+        "Surface correction",
+        "without 'Models = peridynamics' has no effect with 'Physics = elasticity'; use 'none'.");
+      pd.refuse(
+        pd.form == OperatorForm::lattice,
+        "Operator form",
+        "'lattice' is not defined without 'Models = peridynamics' with 'Physics = elasticity'; use 'auto'.");
+      scene.boundary_conditions.refuse(
+        scene.boundary_conditions.traction_layer > 0.,
+        "Traction layer",
+        "has no effect without 'Models = peridynamics': finite elements have "
+        "tractions on their faces. Leave it empty.");
+      scene.elasticity.refuse(
+        scene.elasticity.micromodulus == Micromodulus::constant,
+        "Micromodulus",
+        "'constant' is for peridynamics in the whole body: add 'peridynamics' to 'Models', or leave the entry out.");
     }
 
 
@@ -81,7 +107,25 @@ namespace PeriDeal
     public:
       void require_computable(const Scene<dim> &scene) const override
       {
-        refuse_what_is_not_computed(scene);
+        for (const ModelKind model : scene.general.models)
+          if (model == ModelKind::peridynamics)
+            StateOperator<dim>::require(scene);
+          else
+            ElasticElements<dim>::require(scene, model == ModelKind::coupled);
+        refuse_what_no_model_has(scene);
+        if (scene.elasticity.is_static())
+          require_equilibrium(scene);
+        if (scene.heat)
+          try
+            {
+              require_diffusion(*scene.heat);
+            }
+          catch (const UserError &fault)
+            {
+              AssertThrow(false,
+                          UserError("The heat problem of 'Temperature change = computed': " +
+                                    fault.message()));
+            }
       }
 
       unsigned int n_components() const override

@@ -34,6 +34,31 @@ namespace PeriDeal
 
 
   template <int dim>
+  std::pair<std::string, std::string> BodyParameters<dim>::obstacle_to_bonds_on_elements() const
+  {
+    if (domain.nodes != NodePlacement::vertices)
+      return {domain.where("Nodes"),
+              std::string(domain.shape == Shape::image ?
+                            "is 'cell centers', which is what 'auto' means with 'Shape = image'" :
+                            "is 'cell centers'") +
+                "; bonds and elements share the nodes on the vertices: set 'Nodes = vertices'"};
+    if (!peridynamics.natural_fluxes())
+      return {peridynamics.where("Flux treatment"), "makes slaves of nodes; use 'natural'"};
+    if (peridynamics.self_term != SelfTerm::none)
+      return {peridynamics.where("Self term"), "is not 'none'"};
+    if (peridynamics.corrects_elastic_bonds())
+      return {peridynamics.where("Surface correction"),
+              "is for bonds without finite elements; use 'none' or 'crack scaling'"};
+    if (peridynamics.nodal_volume != NodalVolume::partial)
+      return {peridynamics.where("Nodal volume"), "is 'full'; use 'partial'"};
+    if (!deforms && material.depends_on_temperature())
+      return {material.where("Conductivity"),
+              "or the heat capacity depends on T, which bonds beside elements do not follow"};
+    return {};
+  }
+
+
+  template <int dim>
   CrackHistory<dim> BodyParameters<dim>::crack_history() const
   {
     double step = cracks.growth_step;

@@ -22,8 +22,8 @@ namespace PeriDeal
                                unit.empty() && number == 0. ? 1. :
                                                               -1.;
     const std::string digits(plain.c_str(), static_cast<const char *>(end));
-    const bool        has_digits =
-      !digits.empty() && digits.find_first_not_of("0123456789.eE+-") == std::string::npos;
+    const bool        has_digits = !digits.empty() &&
+                            digits.find_first_not_of("0123456789.eE+-") == std::string::npos;
     return has_digits && std::isfinite(number) && number >= 0. && size > 0. ? number * size : -1.;
   }
 
@@ -82,8 +82,7 @@ namespace PeriDeal
       error("Wall time limit",
             "found '" + text("Wall time limit") + "', needs more than 0, or nothing.");
     n_kept = whole_number("Keep");
-    if (n_kept == 0)
-      error("Keep", "found 0, needs 1 or more.");
+    refuse(n_kept == 0, "Keep", "found 0, needs 1 or more.");
     times.clear();
     const std::vector<std::string> pieces = split_list(text("Times"), ',');
     if (steady && !pieces.empty())

@@ -114,11 +114,9 @@ namespace PeriDeal
     tolerance      = fraction("Tolerance");
     max_iterations = whole_number("Maximum iterations");
     limit_given    = is_given("Maximum iterations");
-    if (max_iterations == 0)
-      error("Maximum iterations", "found 0, needs 1 or more.");
+    refuse(max_iterations == 0, "Maximum iterations", "found 0, needs 1 or more.");
     direct_up_to = whole_number("Direct solver up to");
-    if (direct_up_to == 0)
-      error("Direct solver up to", "found 0, needs 1 or more.");
+    refuse(direct_up_to == 0, "Direct solver up to", "found 0, needs 1 or more.");
   }
 
 
@@ -187,8 +185,7 @@ namespace PeriDeal
     for (const std::string &piece : split_list(at, ','))
       {
         const double time = parse_number(piece, where("Write at"));
-        if (time < 0.)
-          error("Write at", "the time " + piece + " is negative.");
+        refuse(time < 0., "Write at", "the time " + piece + " is negative.");
         if (time > end_time * (1. + time_slack))
           error("Write at",
                 "the time " + piece + " is beyond 'End time' in section 'Time', which is " +
@@ -198,8 +195,7 @@ namespace PeriDeal
     if (!every.empty())
       {
         const double step = parse_number(every, where("Write every"));
-        if (!(step > 0.))
-          error("Write every", "found " + every + ", needs a number greater than 0.");
+        refuse(!(step > 0.), "Write every", "found " + every + ", needs a number greater than 0.");
         if (end_time / step > max_n_writes)
           error("Write every",
                 "found " + every + ", which gives more than " + std::to_string(max_n_writes) +
@@ -243,10 +239,8 @@ namespace PeriDeal
     const dealii::Point<dim> start = parse_point<dim>(pieces[0], where("Line"));
     const dealii::Point<dim> end   = parse_point<dim>(pieces[1], where("Line"));
     const unsigned int       n     = parse_whole_number(pieces[2], where("Line"), max_n_points);
-    if (n < 2)
-      error("Line", "found " + pieces[2] + " points, needs 2 or more.");
-    if (start == end)
-      error("Line", "start and end are the same point.");
+    refuse(n < 2, "Line", "found " + pieces[2] + " points, needs 2 or more.");
+    refuse(start == end, "Line", "start and end are the same point.");
     for (unsigned int i = 0; i < n; ++i)
       {
         // the ends exactly as given
@@ -268,8 +262,7 @@ namespace PeriDeal
       {
         vtu  = vtu || format == 0;
         hdf5 = hdf5 || format == 1;
-        if (format == 2 && formats.size() > 1)
-          error("Fields", "'none' stands alone.");
+        refuse(format == 2 && formats.size() > 1, "Fields", "'none' stands alone.");
       }
     parse_write_times(end_time, steady);
     parse_points_of_output();

@@ -58,8 +58,7 @@ namespace PeriDeal
     adaptive_tolerance = positive_number("Adaptive tolerance");
     if (is_given("Adaptive tolerance") && trimmed(text("Zone")) != "adaptive")
       error("Adaptive tolerance", "is for 'Zone = adaptive'; 'Zone' is '" + text("Zone") + "'.");
-    if (overlap < 0.)
-      error("Overlap", "found " + text("Overlap") + ", needs 0 or more horizons.");
+    refuse(overlap < 0., "Overlap", "found " + text("Overlap") + ", needs 0 or more horizons.");
     parse_zone();
     if (zone == ZoneKind::adaptive && scheme != CouplingScheme::exchange)
       error("Zone",
@@ -95,8 +94,7 @@ namespace PeriDeal
       {
         zone  = ZoneKind::near_cracks;
         width = parse_number(given.substr(colon + 1), where("Zone"));
-        if (width < 0.)
-          error("Zone", "found '" + given + "', needs 0 or more horizons.");
+        refuse(width < 0., "Zone", "found '" + given + "', needs 0 or more horizons.");
       }
     else if (colon != std::string::npos || given == "cracks")
       error(

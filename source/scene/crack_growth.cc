@@ -125,14 +125,11 @@ namespace PeriDeal
           velocity[d] = x[d + 1];
         const Point<dim> start = cracks[tip.crack][tip.corner];
         tip.path               = {{x[0], start}};
-        if (x[0] < 0.)
-          error("Growth", "'" + item + "' starts before t = 0.");
-        if (velocity.norm() == 0.)
-          error("Growth", "'" + item + "' has no velocity.");
+        refuse(x[0] < 0., "Growth", "'" + item + "' starts before t = 0.");
+        refuse(velocity.norm() == 0., "Growth", "'" + item + "' has no velocity.");
         if (n_given == dim + 2)
           {
-            if (!(x[dim + 1] > x[0]))
-              error("Growth", "'" + item + "' stops before it starts.");
+            refuse(!(x[dim + 1] > x[0]), "Growth", "'" + item + "' stops before it starts.");
             tip.path.emplace_back(x[dim + 1], start + (x[dim + 1] - x[0]) * velocity);
           }
         else

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -222,8 +223,7 @@ namespace PeriDeal
         if constexpr (dim == 3)
           {
             const std::string fault = polygon_fault(corners);
-            if (!fault.empty())
-              error("Polygons", name + " " + fault + ".");
+            refuse(!fault.empty(), "Polygons", name + " " + fault + ".");
           }
         cracks.push_back(corners);
       }
@@ -258,6 +258,12 @@ namespace PeriDeal
                           "with 'removed' the cells along the crack conduct nothing") +
               "; with '" + (contact_conductance > 0. ? "Contact conductance" : "Transmission") +
               "' greater than 0 use 'pairs'.");
+    refuse(physics == Physics::elasticity && mesh == CrackMesh::pairs && !cracks.empty(),
+           "Mesh",
+           "'pairs' conduct what diffuses; with 'Physics = elasticity' use 'removed' or 'faces'.");
+    refuse(physics == Physics::elasticity && conduct(),
+           contact_conductance < 0. ? "Transmission" : "Contact conductance",
+           "is for what diffuses; cracks transmit no force with 'Physics = elasticity'.");
     if (mesh == CrackMesh::faces && !tips.empty())
       error("Mesh",
             std::string(
@@ -288,6 +294,19 @@ namespace PeriDeal
     if (contact_conductance < 0.)
       error("Contact conductance",
             "found " + text("Contact conductance") + ", needs a number of 0 or more.");
+  }
+
+
+  template <int dim>
+  double Cracks<dim>::distance_to_side(const types::boundary_id side) const
+  {
+    const unsigned int axis    = side / 2;
+    double             nearest = std::numeric_limits<double>::max();
+    for (const CrackPiece<dim> &piece : pieces(end_time))
+      for (const Point<dim> &p : piece.corners)
+        nearest =
+          std::min(nearest, side % 2 == 0 ? p[axis] - lowest[axis] : highest[axis] - p[axis]);
+    return nearest;
   }
 
 

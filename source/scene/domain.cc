@@ -172,6 +172,19 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Domain<dim>::require_lattice(const bool         chosen,
+                                    const std::string &where,
+                                    const std::string &choice) const
+  {
+    if (chosen && !has_lattice())
+      entry_error(
+        where,
+        choice +
+          " needs a lattice of cells ('Shape' in section 'Domain' = box or plate with hole), not a mesh file.");
+  }
+
+
+  template <int dim>
   void Domain<dim>::require_countable(const std::string &entry) const
   {
     double n_nodes = 1.;
@@ -198,14 +211,12 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           {
             cells[d] = parse_whole_number(pieces[d], where("Cells"), 1000000000u);
-            if (cells[d] == 0)
-              error("Cells", "found 0, needs at least one cell in each direction.");
+            refuse(cells[d] == 0, "Cells", "found 0, needs at least one cell in each direction.");
           }
         require_countable("Cells");
         return;
       }
-    if (is_given("Cells"))
-      error("Node spacing", "'Cells' is given, too: give one of the two.");
+    refuse(is_given("Cells"), "Node spacing", "'Cells' is given, too: give one of the two.");
     const double wanted = parse_number(text("Node spacing"), where("Node spacing"));
     if (!(wanted > 0.))
       error("Node spacing",
@@ -281,8 +292,7 @@ namespace PeriDeal
     holes.angle  = number("Hole angle");
     if (shape != Shape::plate_with_hole)
       return;
-    if (dim == 1)
-      error("Shape", "a plate with a hole needs 'Dimension' 2 or 3.");
+    refuse(dim == 1, "Shape", "a plate with a hole needs 'Dimension' 2 or 3.");
     positive_number("Hole radius");
     if (!contains(holes.center))
       error("Hole center", "(" + text("Hole center") + ") lies outside the body.");
@@ -299,8 +309,7 @@ namespace PeriDeal
       error("Holes",
             "is for 'Shape = box' and 'plate with hole'; this body has its holes in the " +
               std::string(shape == Shape::image ? "image." : "mesh file."));
-    if (dim == 1)
-      error("Holes", "needs 'Dimension' 2 or 3.");
+    refuse(dim == 1, "Holes", "needs 'Dimension' 2 or 3.");
     holes.has_one = shape == Shape::plate_with_hole &&
                     (is_given("Hole center") || is_given("Hole radius"));
     shape                  = Shape::plate_with_hole;

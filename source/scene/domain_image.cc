@@ -138,15 +138,13 @@ namespace PeriDeal
   template <int dim>
   void Domain<dim>::parse_image()
   {
-    if (dim != 2)
-      error("Shape", "'image' needs 'Dimension' 2.");
+    refuse(dim != 2, "Shape", "'image' needs 'Dimension' 2.");
     for (const std::string entry : {"Cells", "Node spacing"})
       if (is_given(entry))
         error(
           entry,
           "is given, but with 'Shape = image' the pixels are the cells; use 'Pixels per cell' or 'Cells per pixel'.");
-    if (text("Image").empty())
-      error("Image", "is empty, but 'Shape' is 'image'.");
+    refuse(text("Image").empty(), "Image", "is empty, but 'Shape' is 'image'.");
     const double tolerance = number("Color tolerance");
     if (tolerance < 0.)
       error("Color tolerance", "found " + text("Color tolerance") + ", needs 0 or more.");
@@ -310,8 +308,7 @@ namespace PeriDeal
     if (shape == Shape::mesh_file)
       error("Extra layers",
             "found " + text("Extra layers") + ", but a mesh file has no rows of cells. Use 0.");
-    if (whole_number("Coarsening") > 0)
-      error("Extra layers", "goes with 'Coarsening = 0' only.");
+    refuse(whole_number("Coarsening") > 0, "Extra layers", "goes with 'Coarsening = 0' only.");
     const Tensor<1, dim> h = spacing();
     for (unsigned int d = 0; d < dim; ++d)
       {

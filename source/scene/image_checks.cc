@@ -106,7 +106,7 @@ namespace PeriDeal
 
 
     /** One of the connected parts. */
-    struct Part
+    struct ImagePart
     {
       std::vector<std::size_t> cells;
       Point<2>                 center;
@@ -114,9 +114,9 @@ namespace PeriDeal
     };
 
 
-    std::vector<Part> find_parts(const PhaseMap &map, const std::vector<int> &part_of)
+    std::vector<ImagePart> find_parts(const PhaseMap &map, const std::vector<int> &part_of)
     {
-      std::vector<Part> parts;
+      std::vector<ImagePart> parts;
       for (std::size_t c = 0; c < part_of.size(); ++c)
         if (part_of[c] >= 0)
           {
@@ -124,7 +124,7 @@ namespace PeriDeal
               parts.emplace_back();
             parts[part_of[c]].cells.push_back(c);
           }
-      for (Part &part : parts)
+      for (ImagePart &part : parts)
         {
           for (const std::size_t c : part.cells)
             part.center += (map.center(c) - Point<2>()) / static_cast<double>(part.cells.size());
@@ -150,7 +150,7 @@ namespace PeriDeal
           held[side] = held_on_side(scene, side);
       }
 
-      bool holds(const Part &part) const
+      bool holds(const ImagePart &part) const
       {
         if (!is_elastic(scene))
           return any_value(part);
@@ -166,7 +166,7 @@ namespace PeriDeal
        * Call visit(side, face number, place of the cell) for the faces of a part that end the body.
        */
       template <typename Visit>
-      void for_each_face(const Part &part, const Visit &visit) const
+      void for_each_face(const ImagePart &part, const Visit &visit) const
       {
         for (const std::size_t c : part.cells)
           {
@@ -184,7 +184,7 @@ namespace PeriDeal
           }
       }
 
-      bool any_value(const Part &part) const
+      bool any_value(const ImagePart &part) const
       {
         bool any = false;
         for_each_face(part, [&](const unsigned int side, unsigned int, int, int) {
@@ -194,7 +194,7 @@ namespace PeriDeal
       }
 
       /** @param centers nodes are at the centres of cells, else at their corners */
-      bool is_held(const Part &part, const bool centers) const
+      bool is_held(const ImagePart &part, const bool centers) const
       {
         Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
         for_each_face(
@@ -232,7 +232,7 @@ namespace PeriDeal
     };
 
 
-    std::string describe(const std::vector<Part> &islands)
+    std::string describe(const std::vector<ImagePart> &islands)
     {
       constexpr std::size_t n_named = 5;
       std::string           text;
@@ -250,7 +250,7 @@ namespace PeriDeal
      * Hold an island at points that no other part shares: one of them in both directions, and
      * against turning the one farthest from it.
      */
-    void pin(Scene<2> &scene, const std::vector<int> &part_of, const Part &island)
+    void pin(Scene<2> &scene, const std::vector<int> &part_of, const ImagePart &island)
     {
       const PhaseMap &map    = *scene.domain.image;
       const int       own    = part_of[island.cells.front()];
@@ -306,9 +306,9 @@ namespace PeriDeal
         return;
       const std::vector<int> part_of = map.parts(connections(scene));
       const Holding          holding(scene);
-      std::vector<Part>      islands;
+      std::vector<ImagePart> islands;
       std::size_t            n_cells = 0, n_solid = 0;
-      for (const Part &part : find_parts(map, part_of))
+      for (const ImagePart &part : find_parts(map, part_of))
         {
           n_solid += part.cells.size();
           if (!holding.holds(part))
@@ -319,7 +319,7 @@ namespace PeriDeal
         }
       if (islands.empty())
         return;
-      std::stable_sort(islands.begin(), islands.end(), [](const Part &a, const Part &b) {
+      std::stable_sort(islands.begin(), islands.end(), [](const ImagePart &a, const ImagePart &b) {
         return a.cells.size() > b.cells.size();
       });
       const std::string parts =
@@ -337,7 +337,7 @@ namespace PeriDeal
                     "'remove' would take away " + percent(double(n_cells) / n_solid) +
                       " of the body, because no side holds " + parts + " of it (" + what +
                       "). Give conditions on a side that the body touches.");
-      for (const Part &island : islands)
+      for (const ImagePart &island : islands)
         if (domain.islands == IslandRule::pin)
           pin(scene, part_of, island);
         else

@@ -140,7 +140,7 @@ namespace PeriDeal
   }
 
 
-  void Peridynamics::parse(const Physics physics)
+  void Peridynamics::parse(const Physics physics, const unsigned int dim)
   {
     horizon_ratio = number("Horizon ratio");
     if (horizon_ratio < 1.)
@@ -170,8 +170,7 @@ namespace PeriDeal
     nodal_volume    = choice<NodalVolume>("Nodal volume");
     treatment       = choice<BoundaryTreatment>("Boundary treatment");
     layer_rows      = whole_number("Layer rows");
-    if (layer_rows == 0)
-      error("Layer rows", "found 0, needs 1 or more.");
+    refuse(layer_rows == 0, "Layer rows", "found 0, needs 1 or more.");
     flux_treatment       = choice<FluxTreatment>("Flux treatment");
     surface_correction   = choice<SurfaceCorrection>("Surface correction");
     correction_direction = choice<CorrectionDirection>("Correction direction");
@@ -183,8 +182,44 @@ namespace PeriDeal
       error("Surface correction",
             "'" + text("Surface correction") +
               "' is for 'Physics = elasticity'; use 'none', 'crack scaling' or 'energy'.");
-    across_voids = choice<BondsAcrossVoids>("Bonds across voids");
-    form         = choice<OperatorForm>("Operator form");
+    across_voids                = choice<BondsAcrossVoids>("Bonds across voids");
+    form                        = choice<OperatorForm>("Operator form");
+    const auto refuse_in_solids = [&](const bool         given,
+                                      const std::string &entry,
+                                      const std::string &remedy,
+                                      const std::string &what = "has no effect") {
+      refuse(physics == Physics::elasticity && given,
+             entry,
+             what + " with 'Physics = elasticity'; " + remedy);
+    };
+    refuse_in_solids(self_term != SelfTerm::none, "Self term", "use 'none'.");
+    refuse_in_solids(!natural_fluxes(), "Flux treatment", "use 'natural'.");
+    refuse_in_solids(correction_direction != CorrectionDirection::both,
+                     "Correction direction",
+                     "use 'both'.");
+    // On square cells any factor cancels; on others the factors of `discrete` make theta exact
+    // (doc/elasticity.md).
+    refuse_in_solids(calibration != Calibration::discrete,
+                     "Calibration",
+                     "bonds are scaled by the sums over their own families. Leave the entry out.",
+                     "'analytic' is not for use");
+    refuse_in_solids(
+      treatment != BoundaryTreatment::none && treatment != BoundaryTreatment::automatic,
+      "Boundary treatment",
+      "use 'none'; 'Surface correction' and 'Traction layer' are for the surfaces of elastic bodies.",
+      treatment == BoundaryTreatment::exchange ?
+        "'exchange' has no place for a nonlocal dilatation" :
+        "fictitious nodes and layers are not defined");
+    refuse(dim > 1 && flux_treatment == FluxTreatment::layer_extrapolation,
+           "Flux treatment",
+           "'layer extrapolation' is for 'Dimension' 1 only; use 'extrapolation'.");
+    refuse(dim > 2 && self_term == SelfTerm::paper,
+           "Self term",
+           "'paper' is defined for 'Dimension' 1 and 2 only.");
+    refuse(correction_direction != CorrectionDirection::both &&
+             static_cast<unsigned int>(correction_direction) >= dim,
+           "Correction direction",
+           "there is no such direction with 'Dimension' = " + std::to_string(dim) + ".");
   }
 
 
@@ -220,11 +255,13 @@ namespace PeriDeal
   }
 
 
-  void FiniteElements::parse()
+  void FiniteElements::parse(const Physics physics, const bool with_heat)
   {
     degree = whole_number("Degree");
-    if (degree < 1 || degree > 3)
-      error("Degree", "found " + text("Degree") + ", needs 1, 2 or 3.");
+    refuse(degree < 1 || degree > 3, "Degree", "found " + text("Degree") + ", needs 1, 2 or 3.");
     consistent_capacity = choice<int>("Capacity") == 1;
+    refuse(consistent_capacity && physics == Physics::elasticity && !with_heat,
+           "Capacity",
+           "'consistent' is for what diffuses; masses are lumped with 'Physics = elasticity'.");
   }
 } // namespace PeriDeal

@@ -72,167 +72,6 @@ namespace PeriDeal
 
   namespace
   {
-    /** What a choice needs of the shape of the body. */
-    template <int dim>
-    void check_shape_for_peridynamics(const Scene<dim> &scene)
-    {
-      const Peridynamics &pd    = scene.peridynamics;
-      const Shape         shape = scene.domain.shape;
-      const auto require = [&](const bool ok, const std::string &entry, const std::string &what) {
-        if (!ok)
-          entry_error(pd.where(entry), what);
-      };
-      const std::string needs_lattice = " needs a lattice of cells ('Shape' in section 'Domain' = "
-                                        "box or plate with hole), not a mesh file.";
-
-      require(shape == Shape::box || (pd.treatment != BoundaryTreatment::fictitious_mirror &&
-                                      pd.treatment != BoundaryTreatment::fictitious_constant),
-              "Boundary treatment",
-              "fictitious nodes need the sides of a box ('Shape' in section 'Domain' = box).");
-      require(dim == 1 || pd.flux_treatment != FluxTreatment::layer_extrapolation,
-              "Flux treatment",
-              "'layer extrapolation' is for 'Dimension' 1 only; use 'extrapolation'.");
-      require(dim < 3 || pd.self_term != SelfTerm::paper,
-              "Self term",
-              "'paper' is defined for 'Dimension' 1 and 2 only.");
-      require(pd.correction_direction == CorrectionDirection::both ||
-                static_cast<int>(pd.correction_direction) < dim,
-              "Correction direction",
-              "there is no such direction with 'Dimension' = " + std::to_string(dim) + ".");
-      if (shape != Shape::mesh_file)
-        return;
-      require(pd.treatment != BoundaryTreatment::layer,
-              "Boundary treatment",
-              "'layer'" + needs_lattice);
-      require(pd.volume_fraction != VolumeFraction::exact,
-              "Volume fraction",
-              "'exact'" + needs_lattice);
-      require(pd.self_term != SelfTerm::paper, "Self term", "'paper'" + needs_lattice);
-      require(pd.form != OperatorForm::lattice, "Operator form", "'lattice'" + needs_lattice);
-      if (scene.general.physics != Physics::elasticity &&
-          !scene.boundary_conditions.symmetry.empty())
-        entry_error(
-          scene.boundary_conditions.where("Symmetry"),
-          "mirrors peridynamics in the sides of a box; this body is from a mesh file. Leave the entry out: "
-          "a side that is named nowhere is insulated, which is what a plane of symmetry is.");
-      require(pd.horizon > 0.,
-              "Horizon",
-              "is empty; a mesh file has no node spacing that 'Horizon ratio' could refer to: give "
-              "a length.");
-    }
-
-
-    template <int dim>
-    void check_horizon(const Scene<dim> &scene)
-    {
-      if (!scene.domain.has_lattice())
-        return;
-      const Tensor<1, dim> h       = scene.domain.spacing();
-      const double         horizon = scene.horizon();
-      for (unsigned int d = 0; d < dim; ++d)
-        if (horizon < h[d] * (1. - 1e-9))
-          entry_error(
-            scene.peridynamics.where(scene.peridynamics.horizon > 0. ? "Horizon" : "Horizon ratio"),
-            "the horizon, " + number_text(horizon) + ", is shorter than the node spacing in " +
-              std::string(1, "xyz"[d]) + ", " + number_text(h[d]) +
-              ": nodes have no neighbours there.");
-      double longest = 0.;
-      for (unsigned int d = 0; d < dim; ++d)
-        longest = std::max(longest, scene.domain.upper[d] - scene.domain.lower[d]);
-      if (horizon > longest * (1. + 1e-9))
-        entry_error(
-          scene.peridynamics.where(scene.peridynamics.horizon > 0. ? "Horizon" : "Horizon ratio"),
-          "the horizon, " + number_text(horizon) + ", is longer than the body, " +
-            number_text(longest) + ". " +
-            (scene.peridynamics.horizon > 0. ?
-               "Choose a shorter one: three spacings of the nodes are " +
-                 number_text(3. * *std::max_element(h.begin_raw(), h.end_raw())) + "." :
-               "Choose a smaller one, or more 'Cells' in section 'Domain'."));
-    }
-
-
-    /** What conditions, cracks and mesh need of each other. */
-    template <int dim>
-    void check_combinations(const Scene<dim> &scene)
-    {
-      const BoundaryConditions<dim> &bc        = scene.boundary_conditions;
-      const FluxTreatment            treatment = scene.peridynamics.flux_treatment;
-      if (runs(scene, ModelKind::peridynamics) && treatment != FluxTreatment::natural)
-        {
-          for (const SurfaceTransfer &given : bc.transfers)
-            if (const Part *const part = bc.part(given.id);
-                !given.fixes_level() && part != nullptr &&
-                (part->kind != Part::of_side || treatment == FluxTreatment::layer_extrapolation))
-              entry_error(bc.where(given.kind->entry),
-                          "the part '" + given.name +
-                            "' is not for 'Flux treatment' in section 'Peridynamics' = " +
-                            (part->kind != Part::of_side ?
-                               "extrapolation, which is for sides and their parts." :
-                               "layer extrapolation, which is for whole sides.") +
-                            " Use 'natural'.");
-            else
-              for (const SurfaceTransfer &other : bc.transfers)
-                if (!given.fixes_level() && other.fixes_level() && other.id == given.id)
-                  entry_error(
-                    bc.where(other.kind->entry),
-                    "the side '" + given.name + "' is named in '" + given.kind->entry +
-                      "', too, and with 'Flux treatment' in section 'Peridynamics' = extrapolation its values "
-                      "follow from the flux alone. Use 'natural' to have both.");
-        }
-      if (scene.general.physics != Physics::elasticity && !bc.symmetry.empty() &&
-          scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty() &&
-          scene.domain.nodes == NodePlacement::vertices &&
-          (runs(scene, ModelKind::peridynamics) || runs(scene, ModelKind::coupled)))
-        entry_error(
-          bc.where("Symmetry"),
-          "is not for cracks with 'Mesh = faces' in section 'Cracks', where two nodes are at one place. Use 'Mesh = pairs', or leave the entry out: a side that is named nowhere "
-          "is insulated.");
-      if (!scene.domain.has_lattice() && !(scene.peridynamics.horizon > 0.) &&
-          scene.cracks.conduct() && scene.cracks.contact_conductance < 0.)
-        entry_error(
-          scene.peridynamics.where("Horizon"),
-          "is empty; 'Transmission' in section 'Cracks' is the fraction that bonds of one horizon keep, in finite "
-          "elements too, and a mesh file has no node spacing that 'Horizon ratio' could refer to: give a length, "
-          "or 'Contact conductance' in its place.");
-    }
-
-
-    /** A steady state needs conditions that do not change in time and that fix the level of the
-     * temperature. */
-    template <int dim>
-    void check_steady(const Scene<dim> &scene)
-    {
-      const BoundaryConditions<dim> &bc = scene.boundary_conditions;
-      if (!scene.time.steady)
-        return;
-      if (!scene.cracks.tips.empty())
-        scene.cracks.tip_error(scene.cracks.tips.front(),
-                               "moves, but 'Steady' in section 'Time' is true.");
-      if (scene.general.physics == Physics::elasticity)
-        return; // the rest: check_elasticity()
-      const auto refuse_time = [](const Expression &expression, const std::string &where) {
-        if (expression.depends_on_time())
-          entry_error(where,
-                      "'" + expression.text() +
-                        "' depends on t, but 'Steady' in section 'Time' is true.");
-      };
-      refuse_time(scene.initial_and_source.source, scene.initial_and_source.where("Source"));
-      refuse_time(scene.cracks.transmission, scene.cracks.where("Transmission"));
-      for (const SideCondition &condition : bc.dirichlet)
-        refuse_time(condition.value, bc.where("Dirichlet"));
-      for (const SurfaceTransfer &transfer : bc.transfers)
-        for (const Expression &formula : transfer.formulas)
-          refuse_time(formula, bc.where(transfer.kind->entry));
-      std::string entries = "'Dirichlet'";
-      for (const TransferKind &kind : transfer_kinds())
-        entries += kind.fixes_level ? " or '" + kind.entry + "'" : "";
-      if (bc.dirichlet.empty() && !bc.transfers_fix_level())
-        entry_error(scene.time.where("Steady"),
-                    "without a side in " + entries +
-                      " (section 'Boundary conditions') the steady state is not determined.");
-    }
-
-
     /**
      * Whether a place of a box is in a cell that no hole has taken; of cells that meet there, in
      * any.
@@ -369,10 +208,9 @@ namespace PeriDeal
                               elasticity.computes_temperature);
     cracks.parse(general.physics);
     keep_cracks_off_nodes(*this);
-    peridynamics.parse(general.physics);
+    peridynamics.parse(general.physics, dim);
     coupling.parse();
-    finite_elements.parse();
-    check_elasticity(*this);
+    finite_elements.parse(general.physics, elasticity.computes_temperature);
     make_heat_problem(*this);
     // a conductor without capacitance is always in its steady state, and an equilibrium has a time
     // only where its loads have
@@ -404,25 +242,15 @@ namespace PeriDeal
           domain.notes.push_back(note);
         cracks.check_tips_inside(domain.lower, domain.upper, cracks.end_time);
       }
-    if (runs(*this, ModelKind::finite_elements) && finite_elements.degree > 1 &&
-        !cracks.cracks.empty() && cracks.mesh == CrackMesh::pairs)
-      entry_error(finite_elements.where("Degree"),
-                  "found " + std::to_string(finite_elements.degree) +
-                    "; cracks with 'Mesh' in section 'Cracks' = pairs need degree 1.");
-    resolve_boundary_treatment(*this);
-    check_coupling(*this);
-    check_coarsening(*this);
-    if (runs(*this, ModelKind::peridynamics) || runs(*this, ModelKind::coupled))
-      {
-        check_shape_for_peridynamics(*this);
-        check_horizon(*this);
-      }
+    if (peridynamics.treatment == BoundaryTreatment::automatic)
+      peridynamics.treatment = this->deforms ||
+                                   !this->obstacle_to_bonds_on_elements().first.empty() ?
+                                 BoundaryTreatment::none :
+                                 BoundaryTreatment::exchange;
     if (domain.has_lattice() && material.phases.all().need_mesh())
       entry_error(
         material.phases.where("Regions"),
         "mesh(id) refers to the material ids of a mesh file, but 'Shape' in section 'Domain' is another.");
-    check_combinations(*this);
-    check_steady(*this);
     this->crack_history(); // for its errors
     check_image(*this);
     check_points_of_output(*this);

@@ -16,25 +16,9 @@ namespace PeriDeal
   template <int dim>
   void keep_cracks_off_nodes(Scene<dim> &scene);
 
-  /** What elasticity needs of the other sections. */
-  template <int dim>
-  void check_elasticity(const Scene<dim> &scene);
-
   /** Finds Scene::heat. */
   template <int dim>
   void make_heat_problem(Scene<dim> &scene);
-
-  /** What `Boundary treatment = auto` means here, and whether `exchange` is possible. */
-  template <int dim>
-  void resolve_boundary_treatment(Scene<dim> &scene);
-
-  /** `Models = coupled` and its zone. */
-  template <int dim>
-  void check_coupling(const Scene<dim> &scene);
-
-  /** `Coarsening`. */
-  template <int dim>
-  void check_coarsening(const Scene<dim> &scene);
 
   /** Islands and thin voids of an image: takes them out, holds them, or notes them. */
   template <int dim>

@@ -119,42 +119,6 @@ namespace PeriDeal
     }
 
 
-    /** Do something, and put file and line of the entry that a UserError names in front of its
-     * message. */
-    template <typename Action>
-    void with_location(const SceneText &text, const Action &action)
-    {
-      std::string message;
-      try
-        {
-          action();
-          return;
-        }
-      catch (const UserError &error)
-        {
-          message = error.message();
-        }
-      // messages of the scan begin with their location already
-      if (message.compare(0, 6, "Entry ") == 0)
-        {
-          std::string at    = text.file_name;
-          std::size_t first = std::string::npos;
-          for (const SceneLine &line : scan_lines(text.text, text.file_name).entries)
-            {
-              const std::size_t position =
-                message.find("'" + line.entry + "' " + in_section(line.section));
-              if (position < first)
-                {
-                  first = position;
-                  at    = location(text.file_name, line);
-                }
-            }
-          message = at + ": " + message;
-        }
-      AssertThrow(false, UserError(message));
-    }
-
-
     /**
      * The path as it is, or beside the scene file if there is nothing at that path but something
      * there.
@@ -220,6 +184,39 @@ namespace PeriDeal
   } // namespace
 
 
+  void with_location(const SceneText &text, const std::function<void()> &action)
+  {
+    std::string message;
+    try
+      {
+        action();
+        return;
+      }
+    catch (const UserError &error)
+      {
+        message = error.message();
+      }
+    // messages of the scan begin with their location already
+    if (message.compare(0, 6, "Entry ") == 0)
+      {
+        std::string at    = text.file_name;
+        std::size_t first = std::string::npos;
+        for (const SceneLine &line : scan_lines(text.text, text.file_name).entries)
+          {
+            const std::size_t position =
+              message.find("'" + line.entry + "' " + in_section(line.section));
+            if (position < first)
+              {
+                first = position;
+                at    = location(text.file_name, line);
+              }
+          }
+        message = at + ": " + message;
+      }
+    AssertThrow(false, UserError(message));
+  }
+
+
   SceneText read_scene(const std::string              &file_name,
                        const std::vector<std::string> &overrides,
                        const MPI_Comm                  communicator)
@@ -228,7 +225,7 @@ namespace PeriDeal
     scene_text.file_name    = file_name;
     scene_text.communicator = communicator;
     const std::string text  = read_on_root(file_name, communicator);
-    scene_text.text = apply_overrides(text, file_name, overrides);
+    scene_text.text         = apply_overrides(text, file_name, overrides);
     switch (dimension_of(scene_text))
       {
         case 1:
@@ -240,10 +237,12 @@ namespace PeriDeal
         default:
           check_text<3>(scene_text);
       }
-    AssertThrow(!scan_lines(text, file_name).entries.empty(),
-                UserError("The scene file '" + file_name +
-                          "' has no entry, only comments or sections: nothing in it says what to compute. Entries are lines "
-                          "'set entry = value'; `perideal parameters` lists them all."));
+    AssertThrow(
+      !scan_lines(text, file_name).entries.empty(),
+      UserError(
+        "The scene file '" + file_name +
+        "' has no entry, only comments or sections: nothing in it says what to compute. Entries are lines "
+        "'set entry = value'; `perideal parameters` lists them all."));
     return scene_text;
   }
 

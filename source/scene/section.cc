@@ -81,6 +81,15 @@ namespace PeriDeal
   }
 
 
+  void SceneSection::refuse(const bool         fault,
+                            const std::string &entry,
+                            const std::string &what) const
+  {
+    if (fault)
+      error(entry, what);
+  }
+
+
   void SceneSection::declare(const std::string              &name,
                              const EntryType                 type,
                              const std::string              &default_text,

@@ -137,7 +137,7 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::run(const RunMode mode)
   {
-    problem_factory(scene).require_computable(scene);
+    require_computable(scene, text);
     require_memory(scene, communicator);
     output->open(text, communicator, mode);
     nlohmann::ordered_json summary;
@@ -342,7 +342,7 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::dry_run()
   {
-    problem_factory(scene).require_computable(scene);
+    require_computable(scene, text);
     const double before = Utilities::MPI::sum(resident_memory(), communicator);
     build();
     begin();

@@ -5,6 +5,7 @@
 #include <deal.II/lac/solver_gmres.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/scene/scene.h>
 #include <perideal/solvers/floating_part.h>
 #include <perideal/solvers/linear_solver.h>
 
@@ -165,6 +166,37 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void require_steady_state(const Scene<dim> &scene)
+  {
+    const BoundaryConditions<dim> &bc = scene.boundary_conditions;
+    const auto                     refuse =
+      [](const Expression &expression, const SceneSection &section, const std::string &entry) {
+        section.refuse(expression.depends_on_time(),
+                       entry,
+                       "'" + expression.text() +
+                         "' depends on t, but 'Steady' in section 'Time' is true.");
+      };
+    if (!scene.cracks.tips.empty())
+      scene.cracks.tip_error(scene.cracks.tips.front(),
+                             "moves, but 'Steady' in section 'Time' is true.");
+    refuse(scene.initial_and_source.source, scene.initial_and_source, "Source");
+    refuse(scene.cracks.transmission, scene.cracks, "Transmission");
+    for (const SideCondition &condition : bc.dirichlet)
+      refuse(condition.value, bc, "Dirichlet");
+    for (const SurfaceTransfer &transfer : bc.transfers)
+      for (const Expression &formula : transfer.formulas)
+        refuse(formula, bc, transfer.kind->entry);
+    std::string entries = "'Dirichlet'";
+    for (const TransferKind &kind : transfer_kinds())
+      entries += kind.fixes_level ? " or '" + kind.entry + "'" : "";
+    scene.time.refuse(bc.dirichlet.empty() && !bc.transfers_fix_level(),
+                      "Steady",
+                      "without a side in " + entries +
+                        " (section 'Boundary conditions') the steady state is not determined.");
+  }
+
+
   unsigned int solve_steady(Operator          &op,
                             Vector            &u,
                             const double       t,
@@ -214,4 +246,9 @@ namespace PeriDeal
       UserError("The steady solution is not finite. Check the material and the boundary values."));
     return n_iterations;
   }
+
+
+  template void require_steady_state(const Scene<1> &);
+  template void require_steady_state(const Scene<2> &);
+  template void require_steady_state(const Scene<3> &);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
+#include <perideal/scene/scene.h>
 #include <perideal/solvers/motion_stepper.h>
 #include <perideal/solvers/step_tools.h>
 
@@ -229,6 +230,35 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void require_stepper(const Scene<dim> &scene)
+  {
+    const TimeControl       &time    = scene.time;
+    const ElasticityControl &solid   = scene.elasticity;
+    const auto              &names   = motion_stepper_names();
+    const bool               is_auto = time.stepper == "auto", moves = !solid.is_static();
+    const bool for_motion = !is_auto && std::count(names.begin(), names.end(), time.stepper) > 0;
+    time.refuse(for_motion && !scene.deforms,
+                "Stepper",
+                "'" + time.stepper + "' is for motion ('Physics = elasticity'); 'Physics' is '" +
+                  names_of(scene.general.physics).physics + "'. Use 'auto'.");
+    time.refuse(
+      !is_auto && !for_motion && scene.deforms && !solid.computes_temperature,
+      "Stepper",
+      "'" + time.stepper +
+        "' is for what diffuses; with 'Physics = elasticity' the 'Solver' in section 'Elasticity' decides. Use 'auto', with "
+        "'dynamics' also 'verlet' or 'newmark', and with 'Temperature change = computed' those of heat.");
+    time.refuse(for_motion && !moves,
+                "Stepper",
+                "'" + time.stepper + "' is for motion, but 'Solver' in section 'Elasticity' is '" +
+                  solid.solver_name() + "'. Use 'Solver = dynamics'.");
+    time.refuse(
+      moves && time.steady,
+      "Steady",
+      "is true, but 'Solver' in section 'Elasticity' is 'dynamics'. Use another solver for the equilibrium.");
+  }
+
+
   const std::vector<std::string> &motion_stepper_names()
   {
     static const std::vector<std::string> names{"auto", "verlet", "newmark"};
@@ -273,4 +303,9 @@ namespace PeriDeal
       stepper->set_limit(std::make_unique<StepLimit>(op, chosen.time_step, options.time_step < 0.));
     return stepper;
   }
+
+
+  template void require_stepper(const Scene<1> &);
+  template void require_stepper(const Scene<2> &);
+  template void require_stepper(const Scene<3> &);
 } // namespace PeriDeal

@@ -2,6 +2,8 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/user_error.h>
+#include <perideal/scene/rigid_motions.h>
+#include <perideal/scene/scene.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/static_solver.h>
 
@@ -28,6 +30,39 @@ namespace PeriDeal
       return list;
     }
   } // namespace
+
+
+  template <int dim>
+  void require_equilibrium(const Scene<dim> &scene)
+  {
+    const InitialAndSource        &loads      = scene.initial_and_source;
+    const BoundaryConditions<dim> &conditions = scene.boundary_conditions;
+    const std::string              solver     = "'Solver' in section 'Elasticity' is '" +
+                               scene.elasticity.solver_name() +
+                               "', which finds an equilibrium. Use 'dynamics', or ";
+    loads.refuse(!loads.initial_displacement.empty(),
+                 "Initial displacement",
+                 "has no effect: " + solver + "leave the entry out.");
+    loads.refuse(!loads.initial_velocity.empty(),
+                 "Initial velocity",
+                 "has no effect: " + solver + "leave the entry out.");
+    for (const VectorCondition &condition : conditions.displacement)
+      conditions.refuse(condition.rate,
+                        "Velocity",
+                        "is for motion, but " + solver + "'Displacement' with t in its formula.");
+    // With a computed temperature it is the heat problem that is steady.
+    scene.time.refuse(
+      scene.is_loaded_slowly() && scene.time.steady && !scene.elasticity.computes_temperature,
+      "Steady",
+      scene.cracks.tips.empty() ?
+        "is true, but there are loads that depend on t." :
+        "is true, but there are cracks that grow ('Growth' or 'Paths' in section 'Cracks').");
+    const std::vector<std::string> motions = free_rigid_motions(scene);
+    conditions.refuse(!motions.empty(),
+                      "Displacement",
+                      "nothing holds the body against: " + join_names(motions) +
+                        ". Give displacements, or 'Symmetry', on sides that do.");
+  }
 
 
   const std::vector<std::string> &static_solver_names()
@@ -124,4 +159,9 @@ namespace PeriDeal
     AssertThrow(message.str().empty(), UserError(message.str()));
     return false;
   }
+
+
+  template void require_equilibrium(const Scene<1> &);
+  template void require_equilibrium(const Scene<2> &);
+  template void require_equilibrium(const Scene<3> &);
 } // namespace PeriDeal

@@ -13,16 +13,16 @@ namespace PeriDeal
 {
   namespace
   {
-    struct Entry
+    struct Method
     {
       std::string                                                                 name;
       std::function<std::unique_ptr<Stepper>(Operator &, const StepperOptions &)> make;
       bool                                                                        is_explicit;
     };
 
-    const std::vector<Entry> &entries()
+    const std::vector<Method> &methods()
     {
-      static const std::vector<Entry> list = {{"euler", make_euler, true},
+      static const std::vector<Method> list = {{"euler", make_euler, true},
                                               {"rk4", make_rk4, true},
                                               {"rkc2", make_rkc2, true},
                                               {"chebyshev", make_chebyshev, true},
@@ -95,7 +95,7 @@ namespace PeriDeal
   {
     static const std::vector<std::string> names = []() {
       std::vector<std::string> list{"auto"};
-      for (const Entry &entry : entries())
+      for (const Method &entry : methods())
         list.push_back(entry.name);
       return list;
     }();
@@ -128,7 +128,7 @@ namespace PeriDeal
                                         const StepperOptions &options)
   {
     const std::string wanted = name == "auto" ? choose_stepper(op) : name;
-    for (const Entry &entry : entries())
+    for (const Method &entry : methods())
       if (entry.name == wanted)
         {
           AssertThrow(

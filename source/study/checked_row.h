@@ -4,7 +4,7 @@
 #pragma once
 
 #include <perideal/base/user_error.h>
-#include <perideal/scene/scene.h>
+#include <perideal/problems/problem_factory.h>
 #include <perideal/study/study_file.h>
 
 #include <map>
@@ -44,7 +44,8 @@ namespace PeriDeal
                        const MPI_Comm     communicator);
 
   /**
-   * Call action(scene) with the Scene<dim> that the text describes, the only scene alive then.
+   * Call action(scene) with the Scene<dim> that the text describes, which can be computed, the only
+   * scene alive then.
    * Throws UserError.
    */
   template <typename Action>
@@ -55,7 +56,7 @@ namespace PeriDeal
   void with_scene(const SceneText &text, const Action &action)
   {
     const auto parse = [&](auto &&scene) {
-      parse_scene(text, scene);
+      parse_computable(text, scene);
       action(scene);
     };
     switch (dimension_of(text))

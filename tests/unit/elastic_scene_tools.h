@@ -41,7 +41,7 @@ subsection Boundary conditions
     {
       return message_of([&] {
         Scene<dim> scene;
-        parse_scene<dim>(elastic_scene<dim>(overrides), scene);
+        parse_computable<dim>(elastic_scene<dim>(overrides), scene);
       });
     }
 

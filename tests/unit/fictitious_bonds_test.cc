@@ -327,7 +327,7 @@ TEST(FictitiousBonds, no_scene_is_refused)
     {"Domain/Nodes=cell centers"},
     {"Peridynamics/Nodal volume=full"},
     {"Cracks/Segments=0.2,0.5 ; 0.5,0.5", "Cracks/Mesh=faces"},
-    {e + "Kinematics=full", e + "Solver=conjugate gradients"},
+    {"Models=peridynamics", e + "Kinematics=full", e + "Solver=conjugate gradients"},
     {"Material/Fracture energy=0.1"},
     {b + "Traction=right: 1, 0", b + "Traction layer=0.1"},
     {e + "Model=bond-based", e + "Micromodulus=constant"},

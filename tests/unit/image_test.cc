@@ -76,13 +76,13 @@ namespace PeriDeal
       scene.general.set("Dimension", "2");
       for (const auto &[path, text] : settings)
         {
-          const auto        slash   = path.rfind('/');
-          const std::string section = slash == std::string::npos ? "" : path.substr(0, slash);
+          const std::string section = path.substr(0, path.rfind('/') + 1); // and a slash
           for (SceneSection *s : scene.sections())
-            if (s->name() == section)
-              s->set(slash == std::string::npos ? path : path.substr(slash + 1), text);
+            if ((s->name().empty() ? "" : s->name() + "/") == section)
+              s->set(path.substr(section.size()), text);
         }
       scene.parse_and_validate();
+      require_computable(scene, {});
     }
 
 

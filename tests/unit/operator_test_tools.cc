@@ -3,6 +3,8 @@
 
 #include "operator_test_tools.h"
 
+#include <perideal/problems/problem_factory.h>
+
 #include <Eigen/Eigenvalues>
 
 namespace PeriDeal
@@ -28,6 +30,7 @@ namespace PeriDeal
           ASSERT_TRUE(found) << path;
         }
       scene.parse_and_validate();
+      require_computable(scene, {});
     }
 
 

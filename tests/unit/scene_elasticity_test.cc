@@ -381,7 +381,9 @@ end
     expect(elastic_fault<1>({e + "Plane=strain"}), e + "Plane", {"a bar"});
     expect(elastic_fault<3>({e + "Plane=strain"}), e + "Plane", {"'Dimension' is 3"});
     expect(elastic_fault({e + "Kinematics=full"}), e + "Kinematics", {"'conjugate gradients'"});
-    EXPECT_EQ(elastic_fault({e + "Kinematics=full", e + "Solver=conjugate gradients"}), "");
+    const Overrides full{"Models=peridynamics", e + "Kinematics=full", e + "Solver=dynamics"};
+    EXPECT_EQ(elastic_fault(full), "");
+    expect(elastic_fault({full[1], full[2]}), e + "Kinematics", {"small displacements"});
     expect(elastic_fault({t + "Steady=true", e + "Solver=dynamics"}), t + "Steady", {"'dynamics'"});
     EXPECT_EQ(elastic_fault({t + "Steady=true"}), "");
     expect(elastic_fault({t + "Stepper=rk4"}), t + "Stepper", {"'Solver' in section 'Elasticity'"});
@@ -393,7 +395,6 @@ end
     expect(elastic_fault({"Cracks/Segments=0.2,0.5 ; 0.5,0.5", "Cracks/Transmission=0.5"}),
            "Cracks/Transmission",
            {"no force"});
-
     expect(elastic_fault({pd + "Calibration=analytic"}),
            pd + "Calibration",
            {"not for use", "own families"});
@@ -416,9 +417,7 @@ end
            pd + "Boundary treatment",
            {"dilatation", "use 'none'"});
     EXPECT_EQ(elastic_fault({pd + "Operator form=lattice"}), "");
-    expect(elastic_fault({pd + "Operator form=lattice",
-                          "Elasticity/Kinematics=full",
-                          "Elasticity/Solver=conjugate gradients"}),
+    expect(elastic_fault({pd + "Operator form=lattice", full[0], full[1], full[2]}),
            pd + "Operator form",
            {"'Kinematics = full'", "'auto'"});
     expect(elastic_fault({pd + "Operator form=lattice", "Material/Critical stretch=0.1"}),
@@ -446,7 +445,8 @@ end
       {{"Domain/Nodes=cell centers"}, "'cell centers'"},
       {{"Peridynamics/Nodal volume=full"}, "'Nodal volume = partial'"},
       {{"Cracks/Segments=0.2,0.5 ; 0.5,0.5", "Cracks/Mesh=faces"}, "'removed'"},
-      {{e + "Kinematics=full", e + "Solver=conjugate gradients"}, "'Kinematics = full'"},
+      {{"Models=peridynamics", e + "Kinematics=full", e + "Solver=dynamics"},
+       "'Kinematics = full'"},
       {{"Material/Critical stretch=0.1"}, "may break"},
       {{b + "Traction=right: 1, 0", b + "Traction layer=0.1"}, "'Traction layer'"},
       {{e + "Model=bond-based"}, "'Model = state-based'"},

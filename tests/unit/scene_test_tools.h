@@ -3,8 +3,8 @@
 
 #pragma once
 
+#include <perideal/problems/problem_factory.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/scene.h>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -41,7 +41,7 @@ namespace PeriDeal
       const std::string head = "set Dimension = " + std::to_string(dim) + "\n";
       return message_of([&] {
         Scene<dim> scene;
-        parse_scene<dim>({"a.prm", head + text}, scene);
+        parse_computable<dim>({"a.prm", head + text}, scene);
       });
     }
 

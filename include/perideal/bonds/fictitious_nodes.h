@@ -4,7 +4,7 @@
 #pragma once
 
 #include <perideal/mesh/nodes.h>
-#include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <vector>
 
@@ -49,6 +49,13 @@ namespace PeriDeal
     }
   };
 
+
+  /**
+   * Throws UserError for a body whose sides have no fictitious nodes, or no layer in their place,
+   * though `Boundary treatment` or `Symmetry` asks for them. Not collective.
+   */
+  template <int dim>
+  void require_fictitious_nodes(const BodyParameters<dim> &body);
 
   /**
    * All fictitious nodes that local nodes of this process may be bonded to.

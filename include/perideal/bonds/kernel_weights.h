@@ -10,6 +10,9 @@
 
 namespace PeriDeal
 {
+  template <int dim>
+  struct BodyParameters;
+
   /** What the weight of a bond follows from. */
   struct KernelParameters
   {
@@ -30,6 +33,9 @@ namespace PeriDeal
   class KernelWeights
   {
   public:
+    /** Throws UserError for a body in which there are none. Not collective. */
+    static void require(const BodyParameters<dim> &body);
+
     /**
      * Throws UserError as lattice_family() does.
      * @param spacing           of the lattice; none: nodes of any places

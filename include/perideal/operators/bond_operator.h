@@ -25,6 +25,9 @@ namespace PeriDeal
   public:
     using RowsAction = Operator::RowsAction;
 
+    /** Throws UserError for a body that it cannot compute. Not collective. */
+    static void require(const BodyParameters<dim> &body);
+
     /**
      * Collective. Throws UserError, among others for isolated nodes, a storage that is not
      * positive, a form that does not suit.

@@ -42,6 +42,9 @@ namespace PeriDeal
 
     virtual ~Coupling() = default;
 
+    /** Throws UserError for a body that cannot have any. */
+    static void require(const BodyParameters<dim> &body);
+
     /**
      * What the row of an owned node has of bonds, in a fixed order: `weight` W_ij, and `intact` as
      * if no crack were there, broken bonds included. @p bonds is overwritten.

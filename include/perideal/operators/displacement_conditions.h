@@ -24,6 +24,16 @@ namespace PeriDeal
 
 
   /**
+   * Throws UserError for a layer behind sides of a list, `Displacement` or `Traction`, that are not
+   * flat, or behind which the body is not as wide. Not collective.
+   */
+  template <int dim>
+  void require_layer(const BodyParameters<dim>          &body,
+                     const std::vector<VectorCondition> &list,
+                     const std::string                  &name,
+                     const double                        depth);
+
+  /**
    * Which components of the displacement are not free: those that `Displacement` names, and the
    * normal one on sides of `Symmetry`. Where sides meet, each component is that of the side named
    * first; symmetry comes last. Unknowns are interleaved (ElasticOperator).
@@ -32,6 +42,9 @@ namespace PeriDeal
   class DisplacementConditions
   {
   public:
+    /** Throws UserError for a body with a layer in which nothing can be held. Not collective. */
+    static void require(const BodyParameters<dim> &body);
+
     /**
      * @param nodes on the sides
      * @param positions of this process's own nodes, for those in `Displacement layer`

@@ -48,6 +48,9 @@ namespace PeriDeal
   class ElasticElements : public SolidOperator<dim>
   {
   public:
+    /** Throws UserError for a body that it cannot deform, with its coupling or without. */
+    static void require(const BodyParameters<dim> &body, const bool coupled);
+
     /** @param dof_handler FE_Q(p) with dofs distributed. Collective. Throws UserError. */
     ElasticElements(const dealii::DoFHandler<dim> &dof_handler,
                     const BodyParameters<dim>     &body,

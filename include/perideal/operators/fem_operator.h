@@ -40,6 +40,9 @@ namespace PeriDeal
   public:
     using RowsAction = Operator::RowsAction;
 
+    /** Throws UserError for a body that it cannot compute, with its coupling or without. */
+    static void require(const BodyParameters<dim> &body, const bool coupled);
+
     /**
      * With the cracks of time @p start, whatever the coupling has had before. Collective. Throws
      * UserError for material values that are not positive and for nodes that `removed` isolates.

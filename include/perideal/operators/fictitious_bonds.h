@@ -48,6 +48,9 @@ namespace PeriDeal
       bool                   whole;
     };
 
+    /** Throws UserError for a body that has none beyond its sides. Not collective. */
+    static void require(const BodyParameters<dim> &body);
+
     /** Families have to outlive this object, with the cracks that they have now. Not collective. */
     FictitiousBonds(const Families<dim> &families, const std::array<BeyondSide, 2 * dim> &beyond);
 

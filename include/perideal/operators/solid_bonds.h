@@ -17,6 +17,9 @@ namespace PeriDeal
   template <int dim>
   struct SolidBonds
   {
+    /** Throws UserError for a body that cannot have them. Not collective. */
+    static void require(const BodyParameters<dim> &body);
+
     /** Adds the halo to the nodes. Collective. Throws UserError, among others: isolated nodes. */
     SolidBonds(Nodes<dim> &nodes, const BodyParameters<dim> &body);
 

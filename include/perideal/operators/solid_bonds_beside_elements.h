@@ -31,6 +31,9 @@ namespace PeriDeal
   public:
     using ThermalStrain = typename NodeFamilies<dim>::ThermalStrain;
 
+    /** Throws UserError for a body that cannot have them. Not collective. */
+    static void require(const BodyParameters<dim> &body);
+
     explicit SolidBondsBesideElements(std::unique_ptr<Coupling<dim>> coupling);
 
     const Coupling<dim> &coupling() const

@@ -23,6 +23,9 @@ namespace PeriDeal
   class SolidOperator : public ElasticOperator
   {
   public:
+    /** Throws UserError for a body that no model can deform. Not collective. */
+    static void require(const BodyParameters<dim> &body);
+
     void initialize_vector(Vector &vector) const override
     {
       vector.reinit(unknowns);

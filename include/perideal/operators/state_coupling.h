@@ -44,6 +44,9 @@ namespace PeriDeal
     using typename NodeFamilies<dim>::Family;
     using typename NodeFamilies<dim>::ThermalStrain;
 
+    /** Throws UserError for a body without such families. Not collective. */
+    static void require(const BodyParameters<dim> &body);
+
     /** As WeightedCoupling. */
     StateCoupling(Nodes<dim>                      &nodes,
                   const BodyParameters<dim>       &body,

@@ -37,6 +37,14 @@ namespace PeriDeal
   class StateOperator : public SolidOperator<dim>
   {
   public:
+    /** Throws UserError for a body that it cannot deform. Not collective. */
+    static void require(const BodyParameters<dim> &body)
+    {
+      SolidOperator<dim>::require(body);
+      SolidBonds<dim>::require(body);
+      require_traction_layer(body);
+    }
+
     /** Adds the halo to the nodes. Collective. Throws UserError, among others: isolated nodes. */
     StateOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body);
 

@@ -54,6 +54,10 @@ namespace PeriDeal
     std::vector<double> ratio;
   };
 
+  /** Throws UserError for bodies whose bonds cannot be corrected so. Not collective. */
+  template <int dim>
+  void require_surface_factors(const BodyParameters<dim> &body);
+
   /** Collective. */
   template <int dim>
   SurfaceFactors surface_factors(const Families<dim> &bonds,

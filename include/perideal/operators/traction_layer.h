@@ -4,7 +4,7 @@
 #pragma once
 
 #include <perideal/mesh/nodes.h>
-#include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <vector>
 
@@ -30,6 +30,10 @@ namespace PeriDeal
    */
   double part_within(const double lower, const double upper, const double depth);
 
+
+  /** Throws UserError for a body in which `Traction layer` is not possible. Not collective. */
+  template <int dim>
+  void require_traction_layer(const BodyParameters<dim> &body);
 
   /**
    * The shares of all sides in `Traction`. Without a layer those of the nodes on the side. With one

@@ -125,6 +125,10 @@ namespace PeriDeal
   template <int dim>
   void set_start(DiffusionProblem<dim> &run);
 
+  /** Throws UserError for what its models cannot compute. Not collective. */
+  template <int dim>
+  void require_diffusion(const Scene<dim> &scene);
+
   /**
    * Builds the operator, and the model's nodes if they have not been made. The time goes into the
    * run's timings.

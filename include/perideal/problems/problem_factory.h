@@ -21,7 +21,10 @@ namespace PeriDeal
   public:
     virtual ~ProblemFactory() = default;
 
-    /** Throws UserError for what cannot be computed. Not collective. */
+    /**
+     * Throws UserError for what its problems cannot compute, as their components say (their
+     * functions `require...`). Not collective.
+     */
     virtual void require_computable(const Scene<dim> & /*scene*/) const {}
 
     /** Components of the unknown at each node. Not collective. */
@@ -65,6 +68,21 @@ namespace PeriDeal
   const ProblemFactory<dim> &problem_factory(const Scene<dim> &scene)
   {
     return problem_factory<dim>(scene.general.physics);
+  }
+
+  /**
+   * What says that a scene can be computed: mesh and models find nothing that they cannot do.
+   * Throws UserError, with its place in the text. Not collective.
+   */
+  template <int dim>
+  void require_computable(const Scene<dim> &scene, const SceneText &text);
+
+  /** parse_scene() and require_computable(): the scene is fine. Throws UserError. */
+  template <int dim>
+  void parse_computable(const SceneText &text, Scene<dim> &scene)
+  {
+    parse_scene(text, scene);
+    require_computable(scene, text);
   }
 
   /**

@@ -51,6 +51,12 @@ namespace PeriDeal
     double horizon() const;
 
     /**
+     * The entry that bonds which share nodes with finite elements (`coupled`, and the treatment
+     * `exchange`) cannot have, and why; empty if there is none.
+     */
+    std::pair<std::string, std::string> obstacle_to_bonds_on_elements() const;
+
+    /**
      * When the cracks change, and how they are in between. Throws UserError, among others where a
      * mesh file needs `Growth step`. The parameters must outlive it.
      */

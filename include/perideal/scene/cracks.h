@@ -96,6 +96,9 @@ namespace PeriDeal
      */
     std::vector<CrackPiece<dim>> pieces(const double t, const bool cut_at_tips = true) const;
 
+    /** Between a side of the box and the nearest corner of a crack at the end of the run. */
+    double distance_to_side(const dealii::types::boundary_id side) const;
+
     /** What `Bonds through tips` means for bonds with this correction. */
     bool cuts_bonds_at_tips(const SurfaceCorrection correction) const;
 

@@ -99,6 +99,11 @@ namespace PeriDeal
       return shape != Shape::mesh_file;
     }
 
+    /** Refuse what an entry of another section has chosen on a mesh from a file. */
+    void require_lattice(const bool         chosen,
+                         const std::string &where,
+                         const std::string &choice) const;
+
     /** Box and plate with a hole: edge length of a lattice cell in each direction. */
     dealii::Tensor<1, dim> spacing() const;
 

@@ -46,7 +46,7 @@ namespace PeriDeal
     bool completes_families() const;
 
     /** Throws UserError for values out of range and contradicting entries. */
-    void parse(const Physics physics = Physics::heat);
+    void parse(const Physics physics = Physics::heat, const unsigned int dim = 2);
 
   private:
     void declare_quadrature();
@@ -64,6 +64,7 @@ namespace PeriDeal
     unsigned int degree              = 1;
     bool         consistent_capacity = false;
 
-    void parse();
+    /** @param with_heat a body that deforms has a temperature that is computed */
+    void parse(const Physics physics = Physics::heat, const bool with_heat = false);
   };
 } // namespace PeriDeal

@@ -11,6 +11,7 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -96,7 +97,10 @@ namespace PeriDeal
     /** All sections in the order of a scene file. */
     std::vector<SceneSection *> sections();
 
-    /** Parse all sections and check them one by one and against each other. Throws UserError. */
+    /**
+     * Parse all sections and check them one by one. What the components that will compute the scene
+     * cannot do they say themselves: require_computable(). Throws UserError.
+     */
     void parse_and_validate();
 
     /** Check the sections against each other, once all have their values. Throws UserError. */
@@ -138,9 +142,14 @@ namespace PeriDeal
   /** First pass: the entry `Dimension`. Throws UserError unless 1, 2 or 3. */
   unsigned int dimension_of(const SceneText &text);
 
-  /** Second pass: the entries into the scene, then parse_and_validate(). */
+  /** Second pass: the entries into the scene, then parse_and_validate(); parse_computable(). */
   template <int dim>
   void parse_scene(const SceneText &text, Scene<dim> &scene);
+
+  /**
+   * Do something, and put file and line of the entry that a UserError names before its message.
+   */
+  void with_location(const SceneText &text, const std::function<void()> &action);
 
   /** The scene with all defaults, as .prm text (after parse_scene). */
   std::string scene_with_defaults();

@@ -81,6 +81,9 @@ namespace PeriDeal
     /** "'Cells' in section 'Domain'": how messages name an entry. */
     std::string where(const std::string &entry) const;
 
+    /** If there is a fault, throw the UserError "Entry '..' in section '..': <what>". */
+    void refuse(const bool fault, const std::string &entry, const std::string &what) const;
+
   protected:
     /** Declare an entry. Called in constructors. */
     void declare(const std::string              &name,

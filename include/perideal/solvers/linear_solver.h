@@ -68,6 +68,13 @@ namespace PeriDeal
   };
 
 
+  template <int dim>
+  struct Scene;
+
+  /** Throws UserError for a scene of what diffuses that has no steady state. Not collective. */
+  template <int dim>
+  void require_steady_state(const Scene<dim> &scene);
+
   /**
    * The steady state f(t) = K u; u holds the start on entry. Returns the number of iterations.
    * Throws UserError if nothing fixes the level of the solution in the body or in a part that

@@ -132,6 +132,16 @@ namespace PeriDeal
   };
 
 
+  template <int dim>
+  struct Scene;
+
+  /**
+   * Throws UserError for a `Stepper` for motion in a scene of any physics in which there is none,
+   * for others in one of a solid, and for a motion that shall be steady. Not collective.
+   */
+  template <int dim>
+  void require_stepper(const Scene<dim> &scene);
+
   /** `auto`, `verlet` and `newmark`. */
   const std::vector<std::string> &motion_stepper_names();
 

@@ -51,6 +51,13 @@ namespace PeriDeal
   };
 
 
+  template <int dim>
+  struct Scene;
+
+  /** Throws UserError for a body that has no equilibrium, or more than one. Not collective. */
+  template <int dim>
+  void require_equilibrium(const Scene<dim> &scene);
+
   /** All names that a scene may give. */
   const std::vector<std::string> &static_solver_names();
 
