@@ -287,16 +287,105 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                    \
-  template void assemble_matrix(const SolidBonds<dim> &,             \
-                                const BondState &,                   \
-                                const Utilities::MPI::Partitioner &, \
-                                TrilinosWrappers::SparseMatrix &);   \
-  template void assemble_surrogate(const SolidBonds<dim> &,          \
-                                   const BondState &,                \
-                                   const BodyParameters<dim> &,      \
-                                   const Vector &,                   \
-                                   const Vector &,                   \
+  namespace
+  {
+    /** @param factor of the dilatation of a node k, m = c d/(q^2 V) */
+    template <int dim, typename Factor>
+    void find_diagonal_of(const SolidBonds<dim> &bonds,
+                          const unsigned int     i,
+                          const Factor          &factor,
+                          Vector                &diagonal)
+    {
+      // The energy is 1/4 sum over directed bonds of s (p . eta)^2 + 1/2 sum m_k (sum p . eta)^2.
+      Tensor<1, dim> sum, own;
+      bonds.rows.for_each(i, [&](const auto &bond) {
+        const double factors = bond.spring + factor(bond.neighbor);
+        sum += bond.moment;
+        for (unsigned int d = 0; d < dim; ++d)
+          own[d] += factors * bond.moment[d] * bond.moment[d];
+      });
+      for (unsigned int d = 0; d < dim; ++d)
+        diagonal.local_element(dim * i + d) = own[d] + factor(i) * sum[d] * sum[d];
+    }
+
+
+    /** Nodes without bonds, all of them broken: any positive number. */
+    template <int dim>
+    void hold_diagonal(const SolidBonds<dim> &bonds, const unsigned int i, Vector &diagonal)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (double &entry = diagonal.local_element(dim * i + d); !(entry > 0.))
+          entry =
+            bonds.laws[i].extension * std::pow(bonds.families.nodes().volume(i), 1. - 2. / dim);
+    }
+  } // namespace
+
+
+  template <int dim>
+  void find_stiffness_diagonal(const SolidBonds<dim> &bonds, Vector &diagonal)
+  {
+    const Nodes<dim>   &nodes = bonds.families.nodes();
+    std::vector<double> factors(nodes.n_local(), 0.);
+    for (unsigned int i = 0; i < nodes.n_local() && bonds.laws.volumetric; ++i)
+      factors[i] = bonds.laws.tension(i, 1.);
+    unsigned int regular = numbers::invalid_unsigned_int; // the first of those that are all alike
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const bool is_regular = bonds.rows.is_regular(i);
+        if (is_regular && regular != numbers::invalid_unsigned_int)
+          {
+            for (unsigned int d = 0; d < dim; ++d)
+              diagonal.local_element(dim * i + d) = diagonal.local_element(dim * regular + d);
+            continue;
+          }
+        find_diagonal_of(
+          bonds,
+          i,
+          [&](const unsigned int k) { return factors[k]; },
+          diagonal);
+        if (is_regular)
+          regular = i;
+      }
+    if (bonds.beyond)
+      bonds.beyond->add_to_diagonal(diagonal, bonds.rows, factors);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      hold_diagonal(bonds, i, diagonal);
+  }
+
+
+  template <int dim>
+  void mend_stiffness_diagonal(const SolidBonds<dim>           &bonds,
+                               const std::vector<unsigned int> &of_nodes,
+                               Vector                          &diagonal)
+  {
+    for (const unsigned int i : of_nodes)
+      {
+        find_diagonal_of(
+          bonds,
+          i,
+          [&](const unsigned int k) {
+            return bonds.laws.volumetric ? bonds.laws.tension(k, 1.) : 0.;
+          },
+          diagonal);
+        hold_diagonal(bonds, i, diagonal);
+      }
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                           \
+  template void find_stiffness_diagonal(const SolidBonds<dim> &, Vector &); \
+  template void mend_stiffness_diagonal(const SolidBonds<dim> &,            \
+                                        const std::vector<unsigned int> &,  \
+                                        Vector &);                          \
+  template void assemble_matrix(const SolidBonds<dim> &,                    \
+                                const BondState &,                          \
+                                const Utilities::MPI::Partitioner &,        \
+                                TrilinosWrappers::SparseMatrix &);          \
+  template void assemble_surrogate(const SolidBonds<dim> &,                 \
+                                   const BondState &,                       \
+                                   const BodyParameters<dim> &,             \
+                                   const Vector &,                          \
+                                   const Vector &,                          \
                                    TrilinosWrappers::SparseMatrix &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

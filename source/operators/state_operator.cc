@@ -30,7 +30,8 @@ namespace PeriDeal
       mass.local_element(k) =
         nodes.volume(k / dim) *
         (body.elasticity.is_static() ? 1. : body.material.density.value(position(k / dim)));
-    find_diagonal();
+    find_stiffness_diagonal(solid, stiffness_diagonal);
+    conditions->mask(stiffness_diagonal, 1.);
     find_thermal_strains();
   }
 
@@ -106,78 +107,6 @@ namespace PeriDeal
           }
       }
     this->keep_constant_loads();
-  }
-
-
-  template <int dim>
-  template <typename Factor>
-  void StateOperator<dim>::find_diagonal_of(const unsigned int i, const Factor &factor)
-  {
-    // The energy is 1/4 sum over directed bonds of s (p . eta)^2 + 1/2 sum m_k (sum p . eta)^2 with
-    // m = c d/(q^2 V), the factor of node k.
-    Tensor<1, dim> sum, diagonal;
-    solid.rows.for_each(i, [&](const auto &bond) {
-      const double factors = bond.spring + factor(bond.neighbor);
-      sum += bond.moment;
-      for (unsigned int d = 0; d < dim; ++d)
-        diagonal[d] += factors * bond.moment[d] * bond.moment[d];
-    });
-    for (unsigned int d = 0; d < dim; ++d)
-      stiffness_diagonal.local_element(dim * i + d) = diagonal[d] + factor(i) * sum[d] * sum[d];
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::hold_diagonal(const unsigned int i)
-  {
-    // Nodes without bonds, all of them broken: any positive number.
-    for (unsigned int d = 0; d < dim; ++d)
-      if (double &entry = stiffness_diagonal.local_element(dim * i + d); !(entry > 0.))
-        entry = solid.laws[i].extension * std::pow(solid.families.nodes().volume(i), 1. - 2. / dim);
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::find_diagonal()
-  {
-    const Nodes<dim>   &nodes = solid.families.nodes();
-    std::vector<double> factors(nodes.n_local(), 0.);
-    for (unsigned int i = 0; i < nodes.n_local() && solid.laws.volumetric; ++i)
-      factors[i] = solid.laws.tension(i, 1.);
-    unsigned int regular = numbers::invalid_unsigned_int; // the first of those that are all alike
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        const bool is_regular = solid.rows.is_regular(i);
-        if (is_regular && regular != numbers::invalid_unsigned_int)
-          {
-            for (unsigned int d = 0; d < dim; ++d)
-              stiffness_diagonal.local_element(dim * i + d) =
-                stiffness_diagonal.local_element(dim * regular + d);
-            continue;
-          }
-        find_diagonal_of(i, [&](const unsigned int k) { return factors[k]; });
-        if (is_regular)
-          regular = i;
-      }
-    if (solid.beyond)
-      solid.beyond->add_to_diagonal(stiffness_diagonal, solid.rows, factors);
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      hold_diagonal(i);
-    conditions->mask(stiffness_diagonal, 1.);
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::mend_diagonal(const std::vector<unsigned int> &of_nodes)
-  {
-    for (const unsigned int i : of_nodes)
-      {
-        find_diagonal_of(i, [&](const unsigned int k) {
-          return solid.laws.volumetric ? solid.laws.tension(k, 1.) : 0.;
-        });
-        hold_diagonal(i);
-      }
-    conditions->mask(stiffness_diagonal, 1.);
   }
 
 
@@ -481,18 +410,18 @@ namespace PeriDeal
   {
     if (!change.damage)
       breakage.apply_change(change, loaded);
-    if (!change.damage || solid.beyond)
-      return follow_bonds();
-    mend_diagonal(change.nodes);
-    if (solid.thermal.any())
-      find_thermal_loads();
+    follow_bonds(change.damage && !solid.beyond ? &change.nodes : nullptr);
   }
 
 
   template <int dim>
-  void StateOperator<dim>::follow_bonds()
+  void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *of_nodes)
   {
-    find_diagonal();
+    if (of_nodes)
+      mend_stiffness_diagonal(solid, *of_nodes, stiffness_diagonal);
+    else
+      find_stiffness_diagonal(solid, stiffness_diagonal);
+    conditions->mask(stiffness_diagonal, 1.);
     if (solid.thermal.any())
       find_thermal_loads();
   }

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "damage_of_solid.h"
 #include "finite_results.h"
 #include "solid_cost.h"
 #include "solid_error.h"
@@ -29,7 +30,12 @@ namespace PeriDeal
   template <int dim>
   SolidProblem<dim>::SolidProblem(const Scene<dim> &scene)
     : scene(scene)
+    , damage(std::make_unique<DamageOfSolid<dim>>())
   {}
+
+
+  template <int dim>
+  SolidProblem<dim>::~SolidProblem() = default;
 
 
   template <int dim>
@@ -103,63 +109,6 @@ namespace PeriDeal
       change.local_element(i) =
         heat->solution.local_element(i) - scene.elasticity.reference_temperature;
     op().set_temperature_change(change);
-  }
-
-
-  template <int dim>
-  ChangeSet<dim> SolidProblem<dim>::damage_since_told()
-  {
-    ChangeSet<dim> change;
-    change.damage                     = true;
-    const MPI_Comm                all = this->dofs().get_communicator();
-    std::vector<NodePair>         own = op().broken_since(n_told);
-    std::vector<Point<dim>>       places;
-    const types::global_dof_index first = this->dofs().locally_owned_dofs().nth_index_in_set(0);
-    for (const NodePair &pair : own)
-      places.push_back(this->position(pair[0] - first));
-    for (const auto &list : Utilities::MPI::all_gather(all, own))
-      change.broken.insert(change.broken.end(), list.begin(), list.end());
-    for (const auto &list : Utilities::MPI::all_gather(all, places))
-      for (const Point<dim> &p : list)
-        change.cuts.push_back(BoundingBox<dim>({p, p}));
-    std::sort(change.broken.begin(), change.broken.end());
-    return change;
-  }
-
-
-  template <int dim>
-  bool SolidProblem<dim>::heat_follows() const
-  {
-    return heat != nullptr && heat->scene.broken_bonds_conduct < 1.;
-  }
-
-
-  template <int dim>
-  void SolidProblem<dim>::tell_damage()
-  {
-    if (!heat_follows())
-      return;
-    const ChangeSet<dim> damage = damage_since_told();
-    if (!damage.broken.empty() || heat_was_told)
-      heat->apply_change(damage);
-    heat_was_told = false;
-  }
-
-
-  template <int dim>
-  void SolidProblem<dim>::exchange_damage(Archive &archive)
-  {
-    if (!heat_follows())
-      return;
-    std::size_t n_marks = n_told;
-    bool        untold  = Utilities::MPI::max(op().broken_since(n_marks).empty() ? 0 : 1,
-                                      this->dofs().get_communicator()) > 0;
-    archive.exchange("damage that heat does not know", untold);
-    if (!archive.loads())
-      return;
-    heat_was_told = untold;
-    n_told        = 0;
-    heat->follow(damage_since_told());
   }
 
 
@@ -316,7 +265,7 @@ namespace PeriDeal
       loading->step(displacement, to, context.after_step);
     n_iterations = loading->n_iterations();
     tell_first_break(*this, to, context);
-    tell_damage();
+    damage->tell(*this);
   }
 
 
@@ -371,7 +320,7 @@ namespace PeriDeal
       }
     if (archive.loads())
       op().linearize(displacement);
-    exchange_damage(archive);
+    damage->exchange(archive, *this);
   }
 
 
@@ -471,7 +420,7 @@ namespace PeriDeal
     loading->begin(displacement, 0.);
     n_iterations = loading->n_iterations();
     tell_first_break(*this, 0., context);
-    tell_damage();
+    damage->tell(*this);
   }
 
 

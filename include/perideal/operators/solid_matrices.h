@@ -13,6 +13,23 @@ namespace dealii::TrilinosWrappers
 namespace PeriDeal
 {
   /**
+   * The diagonal of K without conditions; positive numbers where all bonds of a node have broken.
+   * Collective.
+   */
+  template <int dim>
+  void find_stiffness_diagonal(const SolidBonds<dim> &bonds, Vector &diagonal);
+
+  /**
+   * The same of some owned nodes, whose bonds have changed. Only where families end at the sides.
+   * Not collective.
+   */
+  template <int dim>
+  void mend_stiffness_diagonal(const SolidBonds<dim>           &bonds,
+                               const std::vector<unsigned int> &of_nodes,
+                               Vector                          &diagonal);
+
+
+  /**
    * K of these bonds without conditions; rows hold some (4m)^dim nodes (bond-based: (2m)^dim). @p
    * state is that of the stored bonds, @p unknowns the layout of displacements. Collective.
    */

@@ -117,16 +117,9 @@ namespace PeriDeal
     void find_conditions(const Nodes<dim> &nodes);
     void find_thermal_strains();
     void find_thermal_loads();
-    void find_diagonal();
 
-    /** Of nodes whose bonds have changed, where families end at the sides. */
-    void mend_diagonal(const std::vector<unsigned int> &of_nodes);
-    void hold_diagonal(const unsigned int i);
-
-    template <typename Factor>
-    void find_diagonal_of(const unsigned int i, const Factor &factor);
-
-    void follow_bonds(); // what is found of all of them
+    /** What is found of all bonds, or of those of nodes that have lost some. */
+    void follow_bonds(const std::vector<unsigned int> *of_nodes = nullptr);
 
     /** tau; the functions below leave ghosts of displacements as they are, up to date. */
     void find_tensions(const Vector &u, const bool strained) const;

@@ -24,6 +24,8 @@
 namespace PeriDeal
 {
   template <int dim>
+  class DamageOfSolid;
+  template <int dim>
   class DiffusionProblem;
 
   /**
@@ -35,6 +37,7 @@ namespace PeriDeal
   {
   public:
     explicit SolidProblem(const Scene<dim> &scene);
+    ~SolidProblem() override;
 
     std::string              field_name() const override;
     std::string              steady_name() const override;
@@ -104,12 +107,6 @@ namespace PeriDeal
     void set_start();
     void take_temperature();
 
-    /** The heat of the same nodes follows what breaks. */
-    bool           heat_follows() const;
-    ChangeSet<dim> damage_since_told();
-    void           tell_damage();
-    void           exchange_damage(Archive &archive);
-
     StepperOptions stepper_options() const;
     void           make_loading();
     void           begin_loading(const RunContext &context);
@@ -118,9 +115,8 @@ namespace PeriDeal
                         const std::function<void(const double)> &report,
                         const RunContext                        &context);
 
-    MotionParts moving;
-    std::size_t n_told        = 0;     // marks of bonds of this process that the heat knows of
-    bool        heat_was_told = false; // when the run was resumed, of what broke in this step
+    MotionParts                         moving;
+    std::unique_ptr<DamageOfSolid<dim>> damage; // told to the heat
   };
 
 
