@@ -14,6 +14,7 @@ import contextlib
 import functools
 import io
 import json
+import os
 import re
 import struct
 import sys
@@ -30,6 +31,7 @@ from matplotlib.mathtext import MathTextParser
 
 REPORT = Path(__file__).resolve().parent.parent / "applications" / "report"
 sys.path.insert(0, str(REPORT))
+os.environ.setdefault("PERIDEAL_DOTS_PER_INCH", "50")  # coarse pictures show whether they can be drawn
 import contours  # noqa: E402
 import curves  # noqa: E402
 import difference  # noqa: E402
@@ -51,8 +53,7 @@ from report_cases import (FEM, HEAT_NAMES, PD, box_mesh, make, make_cube,  # noq
 from units import Units  # noqa: E402
 from words import Words  # noqa: E402
 
-# Coarse pictures show whether they can be drawn; the labels of all are parsed once.
-pages.DOTS_PER_INCH, contours.PIXELS = 50, 150
+# The labels of all figures are parsed once.
 backend_agg.MathTextParser = functools.lru_cache(maxsize=None)(MathTextParser)
 EMPTY = b"\x89PNG\r\n\x1a\n" + struct.pack(">I4sII", 13, b"IHDR", 100, 100), "image/png"
 

@@ -31,7 +31,7 @@ try:
 except ImportError as fault:
     sys.exit(f"animate: a Python package is missing ({fault}); frames need numpy, matplotlib and h5py")
 
-DOTS_PER_INCH = 120
+DOTS_PER_INCH = min(120, style.DOTS_PER_INCH)
 
 
 class Film:

@@ -14,7 +14,7 @@ from difference import compared, difference_field
 from read_run import Mesh
 
 FEM, PD = "finite elements", "peridynamics"
-PIXELS = 600  # along the longer side of a picture
+PIXELS = 3 * style.DOTS_PER_INCH  # along the longer side of a picture
 
 
 class Maps:
