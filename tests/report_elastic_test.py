@@ -42,11 +42,11 @@ def rows_of(html):
 class Pages(ReportCase):
     """Whole pages of bodies of one, two and three dimensions."""
 
-    def report(self, **options):
+    def report(self, drawn=True, **options):
         """(page, rows of its tables, names of its figures)."""
         make_elastic(self.directory, **options)
         figures = self.directory.parent / "figures"
-        page = self.page("", "--figures", figures)
+        page = self.page("", "--figures", figures, drawn=drawn)
         html = (self.directory / "report.html").read_text(encoding="utf-8")
         return page, rows_of(html), sorted(p.stem for p in figures.iterdir())
 
@@ -101,7 +101,7 @@ class Pages(ReportCase):
         self.assertIn(["Von Mises stress of the mean stress", "0.2123", "0.2123"], rows)
 
     def test_materials(self):
-        _, rows, _ = self.report()
+        _, rows, _ = self.report(drawn=False)
         shear = 200 / 2.6
         self.assertIn(["Shear modulus", style.plain(shear, 6), style.plain(2 * shear, 6),
                        style.plain(shear, 6)], rows)
@@ -131,7 +131,7 @@ class Pages(ReportCase):
         self.assertIn("with a crack", "".join(page.text))
 
     def test_one_model(self):
-        page, _, _ = self.report(models=(PD,))
+        page, _, _ = self.report(models=(PD,), drawn=False)
         self.assertNotIn("Finite elements", page.cells)
 
     def test_later_fields(self):
@@ -221,7 +221,7 @@ class Shapes(ReportCase):
     def test_faces_of_a_crack(self):
         make_elastic(self.directory, crack=True)
         run = Run(self.directory)
-        maps = contours.Maps(run)
+        maps = contours.Maps(run, 600)
         maps.on_faces = True
         shapes = deformed.Shapes(maps, [0], [FEM], 100.0)
         upper, lower = shapes.faces(0, FEM)
@@ -368,7 +368,7 @@ class Broken(ReportCase):
         scale = contours.scale_at(run, 2, run.words.solution)
         self.assertLess(scale.levels[-1], 2 * OPENING)
         self.assertEqual(scale.extend, "max")
-        shapes = deformed.Shapes(contours.Maps(run, 200), [2], [PD], factor, n_pixels=200)
+        shapes = deformed.Shapes(contours.Maps(run, 200), [2], [PD], factor)
         left, right, bottom, top = shapes.view.extent
         self.assertLess(max(-left, right, -bottom, top), 1.3)
 
@@ -377,8 +377,7 @@ class Broken(ReportCase):
         for centers in (False, True):
             make_broken(self.directory, centers=centers)
             run = Run(self.directory)
-            shapes = deformed.Shapes(contours.Maps(run, 300), [2], [PD], deformed.magnification(run, [2]),
-                                     n_pixels=300)
+            shapes = deformed.Shapes(contours.Maps(run, 300), [2], [PD], deformed.magnification(run, [2]))
             inside = np.isfinite(shapes.shapes[2, PD].picture(run.solution(2, PD)))
             x, y = shapes.view.centers()
             row = int(np.argmin(np.abs(y)))

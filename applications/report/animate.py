@@ -31,7 +31,7 @@ try:
 except ImportError as fault:
     sys.exit(f"animate: a Python package is missing ({fault}); frames need numpy, matplotlib and h5py")
 
-DOTS_PER_INCH = 120
+DOTS_PER_INCH = min(120, style.DOTS_PER_INCH)
 
 
 class Film:
@@ -83,8 +83,7 @@ class Film:
         factor = deformed.magnification(run, self.indices) if run.words.elastic else None
         if factor is None:
             return None
-        shapes = deformed.Shapes(Maps(run, n_pixels), self.indices, [self.model], factor,
-                                 n_pixels=n_pixels)
+        shapes = deformed.Shapes(Maps(run, n_pixels), self.indices, [self.model], factor)
         return shapes if all((i, self.model) in shapes.shapes for i in self.indices) else None
 
     def time_text(self, index):

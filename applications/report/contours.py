@@ -14,13 +14,14 @@ from difference import compared, difference_field
 from read_run import Mesh
 
 FEM, PD = "finite elements", "peridynamics"
+PIXELS = 3 * style.DOTS_PER_INCH  # along the longer side of a picture
 
 
 class Maps:
     """The pixel maps of a run, one per mesh and view, made when first needed."""
 
-    def __init__(self, run, n_pixels=600):
-        self.run, self.n_pixels = run, n_pixels
+    def __init__(self, run, n_pixels=None):
+        self.run, self.n_pixels = run, n_pixels or PIXELS
         self.on_faces = run.cracks_on_faces()
         self._maps = {}
 

@@ -238,7 +238,7 @@ class Shape:
 class Shapes:
     """The deformed shapes of some models at some times in one view."""
 
-    def __init__(self, maps, indices, models, factor, margin=0.02, n_pixels=600):
+    def __init__(self, maps, indices, models, factor, margin=0.02):
         self.maps, self.run, self.factor = maps, maps.run, factor
         self.shapes = {}
         for index in indices:
@@ -255,7 +255,7 @@ class Shapes:
         lower = np.min([e[0] for e in ends], axis=0)
         upper = np.max([e[1] for e in ends], axis=0)
         edge = margin * (upper - lower).max()
-        self.view = View(lower - edge, upper + edge, n_pixels)
+        self.view = View(lower - edge, upper + edge, maps.n_pixels)
         for shape in self.shapes.values():
             shape.draw_on(self.view)
 

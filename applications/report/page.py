@@ -13,6 +13,8 @@ from pathlib import Path
 from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Text
 
+import style
+
 STYLE = (Path(__file__).parent / "page.css")
 
 
@@ -68,10 +70,10 @@ class Page:
         """The whole document."""
         links = " ".join(f'<a href="#{mark}">{escape(t)}</a>' for t, mark in self.contents)
         body = "\n".join(self.parts)
-        style = STYLE.read_text(encoding="utf-8")
+        sheet = STYLE.read_text(encoding="utf-8")
         return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8" />\n'
                 f'<meta name="viewport" content="width=device-width, initial-scale=1" />\n'
-                f"<title>{escape(title)}</title>\n<style>\n{style}</style></head>\n<body><main>\n"
+                f"<title>{escape(title)}</title>\n<style>\n{sheet}</style></head>\n<body><main>\n"
                 f"<header>{header}<nav>{links}</nav></header>\n{body}\n</section>\n"
                 f"</main></body></html>\n")
 
@@ -101,7 +103,7 @@ def encode(figure, vector):
         figure.savefig(buffer, format="svg", metadata={"Date": None})
         return buffer.getvalue(), "image/svg+xml"
     # More compression takes half as long again for files that are 3 % smaller.
-    figure.savefig(buffer, format="png", dpi=200, metadata={"Software": None}, pil_kwargs={"compress_level": 4})
+    figure.savefig(buffer, format="png", dpi=style.DOTS_PER_INCH, metadata={"Software": None}, pil_kwargs={"compress_level": 4})
     return buffer.getvalue(), "image/png"
 
 

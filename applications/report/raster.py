@@ -64,7 +64,7 @@ def reference_points(corners, points):
 class View:
     """A rectangle of pixels: the plane of a 2D body or a slice x_axis = position of a 3D one."""
 
-    def __init__(self, lower, upper, n_pixels=600, axis=None, position=None):
+    def __init__(self, lower, upper, n_pixels, axis=None, position=None):
         self.lower, self.upper = np.asarray(lower, float), np.asarray(upper, float)
         self.axis, self.position = axis, position
         dimension = len(self.lower)

@@ -105,7 +105,7 @@ class Slices:
         self.cracks = run.cracks(index)
         self.slices = []
         for axis in (2, 1, 0):
-            view = View(self.lower, self.upper, 400, axis, self.position[axis])
+            view = View(self.lower, self.upper, 2 * maps.n_pixels // 3, axis, self.position[axis])
             self.slices.append((view, slice_segments(self.cracks, axis, self.position[axis])))
         slack = 1e-9 * (self.upper - self.lower).max()
         self.outlines = {axis: slice_outlines(self.cracks, axis, self.position[axis],
@@ -114,7 +114,7 @@ class Slices:
         self.faces = []
         for axis in FACES:
             at = self.upper[axis] - inset[axis]
-            view = View(self.lower, self.upper, 160, axis, at)
+            view = View(self.lower, self.upper, 4 * maps.n_pixels // 15, axis, at)
             self.faces.append((view, slice_segments(self.cracks, axis, at)))
 
     def off_crack(self, axis):

@@ -3,6 +3,7 @@
 """Colours, fonts and number formats shared by all figures and tables."""
 
 import math
+import os
 import re
 import textwrap
 
@@ -13,6 +14,8 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+
+DOTS_PER_INCH = int(os.environ.get("PERIDEAL_DOTS_PER_INCH", "200"))  # of pictures; tests draw them coarser
 
 INK = "#1f2933"
 GRID = "#e4e7eb"

@@ -103,16 +103,18 @@ class Study:
         self.output = Path(output) / paper if output else ROOT / "output" / "papers" / paper
         self.rows = {}
 
-    def compute(self, program, quick=False, only=()):
-        """Compute the rows that are not finished yet (those named here in any case), and read all."""
+    def compute(self, program, quick=False, only=(), redo=True):
+        """Compute the rows that are not finished yet, of those named here if any (again, with redo), and read them."""
         command = [program, "study", self.file, "--output", str(self.output)]
         command += ["--quick"] if quick else []
-        command += ["--redo", "--only", *only] if only else []
+        command += [*(["--redo"] if redo else []), "--only", *only] if only else []
         environment = dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
         done = subprocess.run(command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, check=False)
         if done.returncode != 0:
             raise SystemExit(f"'{' '.join(command)}' ended with exit status {done.returncode}")
         self.read(quick)
+        if only and not redo:
+            self.rows = {name: row for name, row in self.rows.items() if name in only}
 
     def read(self, quick):
         """The finished rows; with quick only those that are marked so."""

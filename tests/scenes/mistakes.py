@@ -463,7 +463,7 @@ def main():
         run = run_scene(scene, overrides, ranks, expect_error=True, timeout=120, alone=alone)
         rows.append(judge(name, run.returncode, run.stdout, run.stderr, words, run.folder, ranks))
 
-    # Every eighth by the program itself, on one process or on two; the others by a process that
+    # Every 32nd by the program itself, on one process or on two; the others by a process that
     # goes on to the next mistake, which must not be the worse for the one before.
     for number, (name, overrides, words) in enumerate(changed + late):
         if "Domain/Node spacing" in overrides:
@@ -472,7 +472,7 @@ def main():
         else:
             scene_here = scene
         for ranks in (2,) if name == "too few cells" else (1, 2):
-            attempt_scene(name, scene_here, overrides, words, ranks, (number + 4 * ranks) % 8 == 0)
+            attempt_scene(name, scene_here, overrides, words, ranks, (number + 16 * ranks) % 32 == 0)
     for name, text, words in texts:
         attempt(name, ["run", write(folder, "text.prm", text)], words, 1)  # messages that begin with the file's name and line
     for number, (name, arguments, words) in enumerate(COMMANDS):

