@@ -47,7 +47,7 @@ namespace PeriDeal
       std::string reason;
       if (!families.neighbors().has_unique_sites())
         reason = "the nodes are not on a lattice with one node per site";
-      else if (body.elasticity.kinematics == Kinematics::full)
+      else if (body.elasticity.has_full_kinematics())
         reason = "with 'Kinematics = full' each bond has its own direction";
       else if (body.material.fracture_energy || body.material.critical_stretch)
         reason = "bonds may break";
@@ -292,9 +292,9 @@ namespace PeriDeal
   template <int dim>
   void SolidRows<dim>::make_lattice()
   {
-    const StateLaw                           law = laws.reference();
-    const double                             q   = complete_weighted();
-    typename StateLattice<dim>::Coefficients coefficients;
+    const StateLaw      law = laws.reference();
+    const double        q   = complete_weighted();
+    LatticeCoefficients coefficients;
     coefficients.stiffness  = law.extension / q;
     coefficients.dilatation = laws.volumetric ? law.volumetric * law.dilatation / (q * q) : 0.;
     for (unsigned int i = 0; i < families.nodes().n_local(); ++i)

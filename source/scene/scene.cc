@@ -85,8 +85,7 @@ namespace PeriDeal
       const std::string needs_lattice = " needs a lattice of cells ('Shape' in section 'Domain' = "
                                         "box or plate with hole), not a mesh file.";
 
-      require(shape == Shape::box || (pd.treatment != BoundaryTreatment::fictitious_mirror &&
-                                      pd.treatment != BoundaryTreatment::fictitious_constant),
+      require(shape == Shape::box || !pd.has_fictitious_nodes(),
               "Boundary treatment",
               "fictitious nodes need the sides of a box ('Shape' in section 'Domain' = box).");
       require(dim == 1 || pd.flux_treatment != FluxTreatment::layer_extrapolation,
