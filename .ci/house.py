@@ -44,9 +44,13 @@ def closing(text, at):
 
 
 def outer(body):
-    """A class's declarations, what is in braces of its own left out."""
-    kept, depth = [], 0
+    """A class's declarations, what is in braces of its own left out (those of default arguments are not)."""
+    kept, depth, brackets = [], 0, 0
     for char in body:
+        brackets += 0 if depth else (char == "(") - (char == ")")
+        if brackets:
+            kept.append(char)
+            continue
         depth += char == "{"
         if depth == 0:
             kept.append(char)
@@ -72,7 +76,7 @@ def count(body):
         if not statement or re.match(r"(using|friend|typedef|enum|struct|class|static constexpr)\b", statement):
             continue
         bare = without_template_arguments(statement)
-        if "(" in bare.split("=")[0]:
+        if "(" in bare.replace("operator=", "").split("=")[0]:
             n_methods += 1
         else:
             n_members += 1 + re.sub(r"=[^,]*", "", bare).count(",")
@@ -84,7 +88,7 @@ def largest_classes():
     rows = []
     for path in files("include/**/*.h", "source/**/*.h"):
         text = code_of(path)
-        for match in re.finditer(r"\b(?:class|struct)\s+(\w+)(?:\s*:\s*[^{;]*)?\s*\{", text):
+        for match in re.finditer(r"\b(?:class|struct)\s+(?:\w+::)?(\w+)(?:\s*:\s*[^{;]*)?\s*\{", text):
             name = match.group(1)
             n_members, n_methods = count(text[match.end():closing(text, match.end() - 1)])
             inside = [s for s, code in sources.items() if re.search(rf"\b{name}(<\w+>)?::~?\w+\s*\(", code)]

@@ -87,7 +87,7 @@ namespace PeriDeal
       make_crack_geometries(cracks.pieces(cracks.end_time));
     const bool   at_centers = dofs.get_fe().n_dofs_per_vertex() == 0;
     const bool   on_lattice = nodes != nullptr && nodes->lattice() && !nodes->has_doubled_nodes();
-    const double shift      = at_centers || cracks.mesh == CrackMesh::faces ?
+    const double shift      = at_centers || cracks.on_faces() ?
                                 1e-7 * GridTools::minimal_cell_diameter(dofs.get_triangulation()) :
                                 0.;
     std::vector<Point<dim>> points(n_points);

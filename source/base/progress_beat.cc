@@ -82,9 +82,7 @@ namespace PeriDeal
     : terminal(terminal)
     , interval(interval)
     , made(Clock::now())
-    , start(made)
     , last_told(made)
-    , last_tenth_told(made)
   {
     steps_done   = 0;
     bonds_broken = 0;
@@ -143,12 +141,17 @@ namespace PeriDeal
   }
 
 
-  double Progress::Beat::share_done() const
+  bool Progress::Beat::Span::is_open() const
   {
-    if (!(t_to > t_from))
+    return t_to > t_from;
+  }
+
+
+  double Progress::Beat::Span::share_at(const double t) const
+  {
+    if (!is_open())
       return done_from;
-    const double way = (time_reached.load(std::memory_order_relaxed) - t_from) / (t_to - t_from);
-    return done_from + std::clamp(way, 0., 1.) * (done_to - done_from);
+    return done_from + std::clamp((t - t_from) / (t_to - t_from), 0., 1.) * (done_to - done_from);
   }
 
 
@@ -156,7 +159,8 @@ namespace PeriDeal
   {
     const auto   now = Clock::now();
     const double left =
-      counts ? remaining.update(std::chrono::duration<double>(now - start).count(), share) : -1.;
+      counts ? bar.remaining.update(std::chrono::duration<double>(now - bar.start).count(), share) :
+               -1.;
     char elapsed[40], rest[40];
     format_duration(elapsed, sizeof elapsed, std::chrono::duration<double>(now - made).count());
     int        n   = 0;
@@ -165,7 +169,7 @@ namespace PeriDeal
         n += std::snprintf(text + n, size - n, format, values...);
     };
     const unsigned long long steps = steps_done, broken = bonds_broken;
-    if (t_to > t_from && steps > 0)
+    if (span.is_open() && steps > 0)
       add(": t = %.4g, step %llu", time_reached.load(), steps);
     if (doing[0] != '\0')
       add("%s %s", n > 0 ? "," : ":", doing);
@@ -186,14 +190,16 @@ namespace PeriDeal
   void Progress::Beat::tell()
   {
     char         text[600];
-    const double share = share_done();
+    const double share = span.share_at(time_reached.load(std::memory_order_relaxed));
     int          n     = 0;
     if (!terminal)
       {
-        n =
-          counts ?
-            std::snprintf(text, sizeof text, "  %s %d %%", label, static_cast<int>(100. * share)) :
-            std::snprintf(text, sizeof text, "  at work");
+        n = counts ? std::snprintf(text,
+                                   sizeof text,
+                                   "  %s %d %%",
+                                   bar.label,
+                                   static_cast<int>(100. * share)) :
+                     std::snprintf(text, sizeof text, "  at work");
         n += describe(text + n, sizeof text - n - 1, share);
         text[n++] = '\n';
         last_told = Clock::now();
@@ -206,7 +212,7 @@ namespace PeriDeal
     n                    = std::snprintf(text,
                       sizeof text,
                       "\r  %s [%.*s%.*s] %d %%",
-                      label,
+                      bar.label,
                       filled,
                       "####################",
                       width - filled,
@@ -225,12 +231,11 @@ namespace PeriDeal
   void Progress::Beat::begin(const std::string &what)
   {
     const Lock lock(mutex);
-    copy(label, sizeof label, what);
-    counts     = true;
-    last_tenth = 0;
-    remaining  = RemainingTime();
-    done_from = done_to = t_from = t_to = 0.;
-    start = last_tenth_told = Clock::now();
+    counts = true;
+    bar    = Bar();
+    span   = Span();
+    copy(bar.label, sizeof bar.label, what);
+    bar.start = bar.last_tenth_told = Clock::now();
   }
 
 
@@ -255,32 +260,26 @@ namespace PeriDeal
   {
     const Lock lock(mutex);
     time_reached = t;
-    t_from       = t;
-    t_to         = t_end;
-    done_from    = done;
-    done_to      = done_at_end;
+    span         = {t, t_end, done, done_at_end};
   }
 
 
   void Progress::Beat::update(const double share)
   {
     const Lock lock(mutex);
-    if (t_to > t_from)
-      time_reached = std::max(time_reached.load(), t_from);
+    if (span.is_open())
+      time_reached = std::max(time_reached.load(), span.t_from);
     const auto now = Clock::now();
-    if (share > done_to || !(t_to > t_from))
-      {
-        done_from = done_to = share;
-        t_from = t_to = 0.;
-      }
-    const bool tenth = static_cast<int>(10. * share) > last_tenth && share < 1. &&
-                       std::chrono::duration<double>(now - last_tenth_told).count() > 2.;
+    if (share > span.done_to || !span.is_open())
+      span = {0., 0., share, share};
+    const bool tenth = static_cast<int>(10. * share) > bar.last_tenth && share < 1. &&
+                       std::chrono::duration<double>(now - bar.last_tenth_told).count() > 2.;
     if (!terminal && !tenth)
       return;
     if (terminal && std::chrono::duration<double>(now - last_told).count() < 0.2)
       return;
-    last_tenth      = static_cast<int>(10. * share);
-    last_tenth_told = now;
+    bar.last_tenth      = static_cast<int>(10. * share);
+    bar.last_tenth_told = now;
     tell();
   }
 

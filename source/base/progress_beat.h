@@ -35,9 +35,26 @@ namespace PeriDeal
   private:
     using Clock = std::chrono::steady_clock;
 
+    /** From begin() on, until the next. */
+    struct Bar
+    {
+      char              label[64]  = "";
+      int               last_tenth = 0;
+      Clock::time_point start, last_tenth_told;
+      RemainingTime     remaining;
+    };
+
+    /** Times and shares done at both ends of what is under way. */
+    struct Span
+    {
+      bool   is_open() const;
+      double share_at(const double t) const;
+
+      double t_from = 0., t_to = 0., done_from = 0., done_to = 0.;
+    };
+
     static void *loop(void *self);
     void         tell();
-    double       share_done() const;
     int          describe(char *text, const std::size_t size, const double share);
 
     const bool        terminal;
@@ -46,10 +63,9 @@ namespace PeriDeal
     bool              runs = false, stop = false, counts = false;
     pthread_mutex_t   mutex;
     pthread_cond_t    wake;
-    char              label[64] = "", doing[160] = "", state[200] = "";
-    double            t_from = 0., t_to = 0., done_from = 0., done_to = 0.;
-    int               last_tenth = 0;
-    RemainingTime     remaining;
-    Clock::time_point made, start, last_told, last_tenth_told;
+    char              doing[160] = "", state[200] = "";
+    Bar               bar;
+    Span              span;
+    Clock::time_point made, last_told;
   };
 } // namespace PeriDeal

@@ -28,7 +28,7 @@ namespace PeriDeal
     {
       std::vector<double> times;
       const double        end = scene.time.end_time;
-      if (scene.coupling.zone != ZoneKind::adaptive || scene.time.steady)
+      if (!scene.coupling.is_adaptive() || scene.time.steady)
         return times;
       constexpr unsigned int n_even = 16, n_early = 6;
       for (unsigned int k = 1; k < n_even; ++k)

@@ -239,7 +239,7 @@ namespace PeriDeal
                               const Cracks<dim>        &cracks,
                               std::vector<std::string> &notes)
     {
-      if (cracks.mesh == CrackMesh::faces || cracks.change() || cracks.conduct())
+      if (cracks.on_faces() || cracks.change() || cracks.conduct())
         return;
       for (const CrackGeometry<dim> &crack : make_crack_geometries(cracks.pieces(0.)))
         if (measure_on_faces(coarse, crack) > 0. && lies_on_faces(coarse, crack))
@@ -301,7 +301,7 @@ namespace PeriDeal
     const Domain<dim>              &domain = scene.domain;
     const Cracks<dim>              &cracks = scene.cracks;
     std::vector<CrackGeometry<dim>> cut;
-    if (cracks.mesh == CrackMesh::faces)
+    if (cracks.on_faces())
       cut = make_crack_geometries(cracks.pieces(0.));
 
     CoarseMesh<dim> coarse;
@@ -339,7 +339,7 @@ namespace PeriDeal
     // p4est sorts its coarse cells in a time that grows with the square of their number.
     const bool every_cell = dim == 1 || coarse.cells.size() > most_coarse_cells;
     AssertThrow(
-      !every_cell || scene.coupling.zone != ZoneKind::adaptive || domain.coarsening == 0,
+      !every_cell || !scene.coupling.is_adaptive() || domain.coarsening == 0,
       UserError(
         "'Zone = adaptive' in section 'Coupling' needs a mesh that p4est distributes, of at most " +
         std::to_string(most_coarse_cells) + " coarse cells; this one has " +

@@ -127,7 +127,7 @@ namespace PeriDeal
     find_positions();
     find_volumes(nodal_volume);
     find_boundary_shares();
-    if (cracks.mesh == CrackMesh::faces)
+    if (cracks.on_faces())
       find_crack_points(cracks);
     doubled = Utilities::MPI::max(crack_points.empty() ? 0 : 1, communicator()) > 0;
   }

@@ -13,6 +13,8 @@
 
 #include <algorithm>
 
+#include <utility>
+
 namespace PeriDeal
 {
   void throw_if_zone_empty(const double n_nodes, const MPI_Comm communicator)
@@ -104,8 +106,8 @@ namespace PeriDeal
                                                const Zone<dim>           &zone,
                                                const CouplingScheme       scheme)
   {
-    if (scheme != CouplingScheme::exchange)
-      return std::make_unique<WeightedBonds<dim>>(nodes, body, zone, make_weighting(scheme));
+    if (auto weighting = make_weighting(scheme))
+      return std::make_unique<WeightedBonds<dim>>(nodes, body, zone, std::move(weighting));
     return make_exchange<ConductingBonds<dim>>(nodes, body, zone);
   }
 
@@ -116,11 +118,8 @@ namespace PeriDeal
   {
     Zone<dim> zone(body.coupling, body.horizon());
     zone.stay_in({{body.domain.lower, body.domain.upper}});
-    if (body.coupling.scheme != CouplingScheme::exchange)
-      return std::make_unique<StateCoupling<dim>>(nodes,
-                                                  body,
-                                                  zone,
-                                                  make_weighting(body.coupling.scheme));
+    if (auto weighting = make_weighting(body.coupling.scheme))
+      return std::make_unique<StateCoupling<dim>>(nodes, body, zone, std::move(weighting));
     return make_exchange<ElasticBonds<dim>>(nodes, body, zone);
   }
 

@@ -188,8 +188,7 @@ namespace PeriDeal
   template <int dim>
   bool ElasticElements<dim>::scales_beside_cracks() const
   {
-    return body.peridynamics.surface_correction == SurfaceCorrection::crack_scaling && zone_bonds &&
-           !body.cracks.cracks.empty();
+    return body.peridynamics.scales_beside_cracks() && zone_bonds && !body.cracks.cracks.empty();
   }
 
 

@@ -45,7 +45,7 @@ namespace PeriDeal
     , zone_bonds(coupling ? std::make_unique<SolidBondsBesideElements<dim>>(std::move(coupling)) :
                             nullptr)
     , cut_by_cracks(dofs,
-                    {body.cracks.mesh == CrackMesh::faces,
+                    {body.cracks.on_faces(),
                      true,
                      body.cracks.contact_conductance,
                      [&body] { return body.horizon(); }})

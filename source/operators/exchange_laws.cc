@@ -91,18 +91,15 @@ namespace PeriDeal
   template <int dim>
   void ConductingBonds<dim>::check_form(const LatticeBonds<dim> &of_lattice) const
   {
-    AssertThrow(
-      of_lattice.plain || form != OperatorForm::lattice || !of_lattice.zone.is_everywhere(),
-      UserError(
-        "'Operator form = lattice' in section 'Peridynamics' is not possible here: the conductivity varies or "
-        "the body has voids. Use 'auto'."));
+    const bool suits = of_lattice.plain || !of_lattice.zone.is_everywhere();
+    takes_lattice_form(form, suits ? "" : "the conductivity varies or the body has voids", true);
   }
 
 
   template <int dim>
   std::unique_ptr<BondForm> ConductingBonds<dim>::make_form() const
   {
-    return form == OperatorForm::stored ? make_stored_form(bonds) : make_lattice_form(bonds);
+    return takes_lattice_form(form, "", true) ? make_lattice_form(bonds) : make_stored_form(bonds);
   }
 
 

@@ -50,8 +50,8 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::fill()
   {
-    if (body.peridynamics.surface_correction == SurfaceCorrection::crack_scaling &&
-        body.cracks.mesh == CrackMesh::pairs && !body.cracks.cracks.empty())
+    if (body.peridynamics.scales_beside_cracks() && body.cracks.mesh == CrackMesh::pairs &&
+        !body.cracks.cracks.empty())
       cells.find_factors(Vector(layout));
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())

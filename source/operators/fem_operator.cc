@@ -52,7 +52,7 @@ namespace PeriDeal
             cell_material,
             zone_bonds.get(),
             crack_factors,
-            {body.cracks.mesh == CrackMesh::faces,
+            {body.cracks.on_faces(),
              body.cracks.mesh == CrackMesh::removed,
              body.cracks.contact_conductance,
              [&body] { return body.horizon(); }})

@@ -25,12 +25,12 @@ namespace PeriDeal
   template <int dim>
   void HeatSurfaceFactors<dim>::find(const std::vector<unsigned int> &of_nodes)
   {
-    const Nodes<dim>         &nodes     = bonds.nodes();
-    const bool                energy    = bonds.corrects_every_bond();
-    const CorrectionDirection direction = parameters.correction_direction;
-    const unsigned int n_directions = energy && direction == CorrectionDirection::both ? dim : 1;
-    const unsigned int first =
-      direction == CorrectionDirection::both ? 0 : static_cast<unsigned int>(direction);
+    const Nodes<dim>         &nodes        = bonds.nodes();
+    const bool                energy       = bonds.corrects_every_bond();
+    const CorrectionDirection direction    = parameters.correction_direction;
+    const bool                both         = direction == CorrectionDirection::both;
+    const unsigned int        n_directions = energy && both ? dim : 1;
+    const unsigned int        first        = both ? 0 : static_cast<unsigned int>(direction);
     if (factors.empty())
       {
         factors.resize(n_directions);

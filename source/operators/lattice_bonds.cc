@@ -125,7 +125,7 @@ namespace PeriDeal
         n_in_zone += i < nodes.n_owned() && candidates[i];
       }
     // A mesh that follows the cracks may have no fine cell before the first of them.
-    if (body.coupling.zone != ZoneKind::adaptive)
+    if (!body.coupling.is_adaptive())
       throw_if_zone_empty(n_in_zone, nodes.communicator());
     set_table_around(candidates);
     stays = true;

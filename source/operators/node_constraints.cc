@@ -113,11 +113,8 @@ namespace PeriDeal
   template <int dim>
   void NodeConstraints<dim>::find_prescribed(const BodyParameters<dim> &body)
   {
-    const BoundaryTreatment treatment  = body.peridynamics.treatment;
-    const auto             &dirichlet  = body.boundary_conditions.dirichlet;
-    const bool              fictitious = treatment == BoundaryTreatment::fictitious_mirror ||
-                            treatment == BoundaryTreatment::fictitious_constant;
-    if (treatment == BoundaryTreatment::layer)
+    const auto &dirichlet = body.boundary_conditions.dirichlet;
+    if (body.peridynamics.treatment == BoundaryTreatment::layer)
       {
         AssertThrow(
           nodes.lattice(),
@@ -157,7 +154,8 @@ namespace PeriDeal
       // Beyond the sides of a lattice of cell centres it is the fictitious nodes that have the
       // values.
       for (const auto &[node, condition] : first_sides(nodes, dirichlet))
-        if (!fictitious || !nodes.lattice() || !nodes.lattice()->at_centers ||
+        if (!body.peridynamics.has_fictitious_nodes() || !nodes.lattice() ||
+            !nodes.lattice()->at_centers ||
             body.boundary_conditions.side_of(condition->id) >= 2 * dim)
           prescribed_list.push_back({node, condition});
     for (const Prescribed &entry : prescribed_list)

@@ -87,11 +87,11 @@ namespace PeriDeal
     : families(nodes.find_parts(body.boundary_conditions), body)
     , laws(families.nodes(), body)
     , rows(families, laws, body)
-    , kinematics(families, rows, thermal, body.elasticity.kinematics == Kinematics::full)
+    , kinematics(families, rows, thermal, body.elasticity.has_full_kinematics())
     , beyond(complete_families(families, rows, body, laws.weighted))
     , weights_follow(body.elasticity.micromodulus != Micromodulus::constant)
   {
-    if (body.elasticity.micromodulus == Micromodulus::constant)
+    if (!weights_follow)
       laws.weighted = rows.complete_weighted();
     laws.weighted.update_ghost_values();
     rows.find_springs(body);

@@ -286,9 +286,9 @@ namespace PeriDeal
   template <int dim>
   void SolidRows<dim>::make_lattice()
   {
-    const StateLaw                           law = laws.reference();
-    const double                             q   = complete_weighted();
-    typename StateLattice<dim>::Coefficients coefficients;
+    const StateLaw      law = laws.reference();
+    const double        q   = complete_weighted();
+    LatticeCoefficients coefficients;
     coefficients.stiffness  = law.extension / q;
     coefficients.dilatation = laws.volumetric ? law.volumetric * law.dilatation / (q * q) : 0.;
     for (unsigned int i = 0; i < families.nodes().n_local(); ++i)

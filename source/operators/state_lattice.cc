@@ -8,6 +8,70 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
+  std::string StateLattice<dim>::obstacle(const BodyParameters<dim> &body)
+  {
+    return body.elasticity.has_full_kinematics() ?
+             "with 'Kinematics = full' each bond has its own direction" :
+           body.material.fracture_energy || body.material.critical_stretch ?
+             "bonds may break" :
+           body.peridynamics.corrects_elastic_bonds() ?
+             "with 'Surface correction' bonds have factors of their own" :
+             "";
+  }
+
+
+  template <int dim>
+  StateLattice<dim>::StateLattice(const Families<dim>       &families,
+                                  const LatticeCoefficients &coefficients,
+                                  const std::vector<bool>   &computed)
+    : families(families)
+    , complete(families, coefficients)
+    , edges(families, complete, coefficients, computed)
+    , layout(families, complete.moments[0].halo(), computed)
+    , stretches(layout, edges.number_of)
+  {
+    std::vector<double> volumes(families.nodes().n_local());
+    for (unsigned int i = 0; i < volumes.size(); ++i)
+      volumes[i] = families.nodes().volume(i);
+    layout.set_values(volumes, std::vector<double>(families.nodes().n_owned(), 0.));
+    for (unsigned int i = 0; i < volumes.size(); ++i)
+      {
+        const auto site = families.nodes().lattice()->index(families.nodes().position(i));
+        if (edges.excess[i] != 0. && layout.in_grid(site))
+          excess_slots.push_back({layout.slot(site), i, volumes[i] * edges.excess[i]});
+      }
+    set_terms();
+  }
+
+
+  template <int dim>
+  void StateLattice<dim>::set_terms()
+  {
+    const std::size_t n = layout.n_slots();
+    if (dim > 1)
+      tensions.resize(n, 0.);
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        displacements[d].resize(n, 0.);
+        excesses[d].resize(excess_slots.empty() ? 0 : n, 0.);
+        for (auto *list : {&sums[d], &own_sums[d], &other_sums[d]})
+          list->resize(list == &sums[d] || !edges.list.empty() ? stretches.n_sums : 0);
+      }
+    for (unsigned int a = 0; a < dim; ++a)
+      {
+        dilatation_terms.push_back({&complete.moments[a], layout.grid(displacements[a].data())});
+        force_terms[a].push_back({&complete.moments[a], layout.grid(tensions.data())});
+        for (unsigned int b = 0; b < dim; ++b)
+          {
+            const StencilKernel *kernel = &complete.springs[complete.pair(a, b)];
+            force_terms[a].push_back({kernel, layout.grid(displacements[b].data())});
+            excess_terms[a].push_back({kernel, layout.grid(excesses[b].data())});
+          }
+      }
+  }
+
+
+  template <int dim>
   template <int n_components>
   void StateLattice<dim>::fill(std::vector<double> *to,
                                const std::size_t    group,
@@ -42,41 +106,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateLattice<dim>::convolve(const std::vector<StencilKernel::Term> &terms,
-                                   const std::size_t                       first_term,
-                                   const std::size_t                       group,
-                                   double                                 *to) const
+  void StateLattice<dim>::add_up_at_edges(const std::size_t group) const
   {
-    const std::size_t begin = group == 0 ? 0 : layout.groups[group - 1].runs,
-                      end   = layout.groups[group].runs;
-    for (std::size_t k = begin; k < end; ++k)
-      runs[k].out = to + places[k];
-    StencilKernel::apply_sum(terms.data() + first_term,
-                             terms.size() - first_term,
-                             runs.data() + begin,
-                             end - begin);
-  }
-
-
-  template <int dim>
-  void StateLattice<dim>::convolve_edges(const std::size_t group) const
-  {
-    for (std::size_t c = group == 0 ? 0 : groups[group - 1].clusters; c < groups[group].clusters;
+    for (std::size_t c = group == 0 ? 0 : stretches.groups[group - 1].clusters;
+         c < stretches.groups[group].clusters;
          ++c)
-      {
-        const std::size_t begin = c == 0 ? 0 : clusters[c - 1], n = clusters[c] - begin;
-        for (unsigned int a = 0; a < dim; ++a)
-          for (const bool own : {true, false})
-            {
-              double *to = (own ? own_sums : other_sums)[a].data();
-              for (std::size_t k = begin; k < begin + n; ++k)
-                edge_runs[k].out = to + edge_places[k];
-              StencilKernel::apply_sum(own ? force_terms[a].data() + 1 : excess_terms[a].data(),
-                                       dim,
-                                       edge_runs.data() + begin,
-                                       n);
-            }
-      }
+      for (unsigned int a = 0; a < dim; ++a)
+        {
+          stretches.apply_to_cluster(force_terms[a].data() + 1, dim, c, own_sums[a].data());
+          stretches.apply_to_cluster(excess_terms[a].data(), dim, c, other_sums[a].data());
+        }
   }
 
 
@@ -84,22 +123,22 @@ namespace PeriDeal
   void StateLattice<dim>::dilatation_forces(double *tau, const double *u) const
   {
     std::size_t s = 0;
-    for (std::size_t group = 0; group < groups.size(); ++group)
+    for (std::size_t group = 0; group < stretches.groups.size(); ++group)
       {
         fill<dim>(displacements.data(), group, u);
-        convolve(dilatation_terms, 0, group, sums[0].data());
-        for (; s < groups[group].stretches; ++s)
+        stretches.apply(dilatation_terms.data(), dim, group, sums[0].data());
+        for (; s < stretches.groups[group].stretches; ++s)
           {
-            const Stretch      &stretch = stretches[s];
+            const Stretch      &stretch = stretches.list[s];
             const double *const found   = sums[0].data() + stretch.at;
             double *const       to      = tau + stretch.node;
             if (stretch.edge == none)
               for (std::uint32_t k = 0; k < stretch.n; ++k)
-                to[k] = dilatation * found[k];
+                to[k] = complete.dilatation * found[k];
             else
               for (std::uint32_t k = 0; k < stretch.n; ++k)
                 {
-                  const EdgeNode     &edge = edges[stretch.edge + k];
+                  const auto         &edge = edges.list[stretch.edge + k];
                   const double *const own  = u + static_cast<std::size_t>(dim) * (stretch.node + k);
                   double              sum  = found[k];
                   for (unsigned int d = 0; d < dim; ++d)
@@ -119,7 +158,7 @@ namespace PeriDeal
         const double *const from = sums[d].data() + stretch.at;
         double *const       to   = y + static_cast<std::size_t>(dim) * stretch.node + d;
         for (std::uint32_t k = 0; k < stretch.n; ++k)
-          to[dim * k] = -volume * from[k];
+          to[dim * k] = -complete.volume * from[k];
       }
   }
 
@@ -132,7 +171,7 @@ namespace PeriDeal
   {
     for (std::uint32_t k = 0; k < stretch.n; ++k)
       {
-        const EdgeNode     &edge = edges[stretch.edge + k];
+        const auto         &edge = edges.list[stretch.edge + k];
         const std::size_t   node = stretch.node + k, at = stretch.at + k;
         const double *const own     = u + dim * node;
         const double        tension = tau != nullptr ? tau[node] : 0.;
@@ -142,7 +181,7 @@ namespace PeriDeal
             if (!excess_slots.empty())
               force += other_sums[a][at];
             for (unsigned int b = 0; b < dim; ++b)
-              force -= edge.block[pair(a, b)] * own[b];
+              force -= edge.block[complete.pair(a, b)] * own[b];
             y[dim * node + a] = -families.nodes().volume(node) * force;
           }
       }
@@ -155,30 +194,50 @@ namespace PeriDeal
     const bool with_tau = dim > 1 && tau != nullptr;
     fill_excess(u);
     std::size_t s = 0;
-    for (std::size_t group = 0; group < groups.size(); ++group)
+    for (std::size_t group = 0; group < stretches.groups.size(); ++group)
       {
         if (with_tau)
           fill<1>(&tensions, group, tau);
         else
           fill<dim>(displacements.data(), group, u);
         for (unsigned int a = 0; a < dim; ++a)
-          convolve(force_terms[a], with_tau ? 0 : 1, group, sums[a].data());
+          stretches.apply(force_terms[a].data() + (with_tau ? 0 : 1),
+                          dim + (with_tau ? 1 : 0),
+                          group,
+                          sums[a].data());
         if (!excess_slots.empty())
-          convolve_edges(group);
-        for (; s < groups[group].stretches; ++s)
-          if (stretches[s].edge == none)
-            finish(stretches[s], y);
+          add_up_at_edges(group);
+        for (; s < stretches.groups[group].stretches; ++s)
+          if (stretches.list[s].edge == none)
+            finish(stretches.list[s], y);
           else
-            finish_edge(stretches[s], u, tau, y);
+            finish_edge(stretches.list[s], u, tau, y);
       }
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                     \
-  template void StateLattice<dim>::dilatation_forces(double *, const double *) const; \
-  template void StateLattice<dim>::forces(double *, const double *, const double *) const;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  template <int dim>
+  bool StateLattice<dim>::is_regular(const unsigned int node) const
+  {
+    return edges.number_of[node] == none;
+  }
+
+
+  template <int dim>
+  std::size_t StateLattice<dim>::memory_consumption() const
+  {
+    std::size_t bytes =
+      layout.memory_consumption() + edges.memory_consumption() + stretches.memory_consumption() +
+      excess_slots.capacity() * sizeof(ExcessSlot) + tensions.capacity() * sizeof(double);
+    for (unsigned int d = 0; d < dim; ++d)
+      for (const auto *list :
+           {&displacements[d], &excesses[d], &sums[d], &own_sums[d], &other_sums[d]})
+        bytes += list->capacity() * sizeof(double);
+    return bytes;
+  }
+
+
+  template class StateLattice<1>;
+  template class StateLattice<2>;
+  template class StateLattice<3>;
 } // namespace PeriDeal

@@ -74,6 +74,8 @@ namespace PeriDeal
   {
     if (scheme == CouplingScheme::splice)
       return std::make_unique<Splice>();
-    return std::make_unique<Blending>();
+    if (scheme == CouplingScheme::blending)
+      return std::make_unique<Blending>();
+    return nullptr;
   }
 } // namespace PeriDeal

@@ -207,8 +207,7 @@ namespace PeriDeal
     if (scene.warms_slowly())      // `Time step` is that of the heat problem
       {
         const bool in_steps = scene.material.fracture_energy || scene.material.critical_stretch ||
-                              scene.elasticity.kinematics == Kinematics::full ||
-                              !scene.cracks.tips.empty();
+                              scene.elasticity.has_full_kinematics() || !scene.cracks.tips.empty();
         return (in_steps ? share : 1.) * scene.time.end_time;
       }
     return scene.time.time_step > 0. ? scene.time.time_step : share * scene.time.end_time;

@@ -81,6 +81,12 @@ namespace PeriDeal
   }
 
 
+  bool ElasticityControl::has_full_kinematics() const
+  {
+    return kinematics == Kinematics::full;
+  }
+
+
   bool ElasticityControl::is_static() const
   {
     return solver != ElasticSolver::dynamics;
@@ -144,7 +150,7 @@ namespace PeriDeal
     if (is_given("Preconditioner") && solver != ElasticSolver::conjugate_gradients)
       error("Preconditioner",
             "is for 'Solver = conjugate gradients'; 'Solver' is '" + solver_name() + "'.");
-    if (kinematics == Kinematics::full && solver == ElasticSolver::linear)
+    if (has_full_kinematics() && solver == ElasticSolver::linear)
       error(
         "Kinematics",
         "'full' is not linear in the displacement, but 'Solver' is 'linear'. Use 'conjugate gradients' or another solver.");

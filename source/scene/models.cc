@@ -223,6 +223,19 @@ namespace PeriDeal
   }
 
 
+  bool Peridynamics::has_fictitious_nodes() const
+  {
+    return treatment == BoundaryTreatment::fictitious_mirror ||
+           treatment == BoundaryTreatment::fictitious_constant;
+  }
+
+
+  bool Peridynamics::scales_beside_cracks() const
+  {
+    return surface_correction == SurfaceCorrection::crack_scaling;
+  }
+
+
   bool Peridynamics::corrects_elastic_bonds() const
   {
     return surface_correction == SurfaceCorrection::volume ||

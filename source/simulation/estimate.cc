@@ -75,7 +75,7 @@ namespace PeriDeal
         return static_cast<double>(domain.image->phases.size()) -
                static_cast<double>(domain.image->counts().back());
       double n = number_of<dim>(domain.cells, 0) / std::pow(2., 1. * dim * domain.coarsening);
-      if (domain.shape == Shape::plate_with_hole)
+      if (domain.has_voids())
         n *= share_of_body(domain);
       return n;
     }
@@ -146,7 +146,7 @@ namespace PeriDeal
     template <int dim>
     std::string obstacle(const Scene<dim> &scene, const double sample_nodes)
     {
-      if (scene.domain.shape != Shape::box && scene.domain.shape != Shape::plate_with_hole)
+      if (!scene.domain.has_lattice() || scene.domain.image)
         return "the body is no box";
       if (scene.domain.coarsening > 0 || scene.domain.has_extra_layers())
         return "the lattice is graded or has extra layers";
@@ -262,7 +262,7 @@ namespace PeriDeal
     result.sampled       = true;
     result.cells         = growth(one.cells, two.cells);
     result.time_to_build = growth(one.time_to_build, two.time_to_build);
-    if (scene.domain.shape == Shape::box)
+    if (!scene.domain.has_voids())
       result.cells = number_of<dim>(scene.domain.cells, 0);
     std::vector<double> components;
     for (unsigned int k = 0; k < result.models.size(); ++k)
@@ -405,7 +405,7 @@ namespace PeriDeal
     // Estimates are right to a factor of two.
     if (estimate.memory <= (estimate.sampled ? 2. : 1.) * available)
       return;
-    const std::string entry = scene.domain.shape == Shape::image ? "Cells per pixel" : "Cells";
+    const std::string entry = scene.domain.image ? "Cells per pixel" : "Cells";
     AssertThrow(
       false,
       UserError("The scene needs " + std::string(estimate.sampled ? "about " : "at least ") +

@@ -167,7 +167,7 @@ namespace PeriDeal
       }
     pass_output_times();
     progress.end();
-    if (const unsigned int n = history.n_adaptations(); n > 0)
+    if (const unsigned int n = adaptation.history.n_adaptations(); n > 0)
       record->notes.push_back("the mesh was adapted " + std::to_string(n) +
                               (n == 1 ? " time" : " times") + "; it has " +
                               readable_count(mesh->n_global_active_cells()) +
@@ -293,9 +293,9 @@ namespace PeriDeal
       problem->examine(t);
     progress.doing("writing results");
     Timings::Scope scope(timings, "output");
-    if (!readers_fit)
+    if (!adaptation.readers_fit)
       output->find_points(reported());
-    readers_fit = true;
+    adaptation.readers_fit = true;
     if (!tells_at_stops()) // refuses what is not finite before it is written
       add_totals(t);
     with_formulas(communicator, [&] { output->write_points(t, exact.get()); });
@@ -324,7 +324,7 @@ namespace PeriDeal
     nlohmann::ordered_json summary = PeriDeal::describe_scene(scene, text, *mesh, communicator);
     if (scene.domain.coarsening > 0)
       summary["mesh"] = {{"coarsening", scene.domain.coarsening},
-                         {"adaptations", history.n_adaptations()}};
+                         {"adaptations", adaptation.history.n_adaptations()}};
     describe_run(scene, *mesh, *record, timings, summary);
     summary["write times"] = output_times();
     for (const auto &problem : problems)
@@ -354,7 +354,7 @@ namespace PeriDeal
             problem->time_of_run(output_times(), list == &problems, context(), memory);
           computing = own >= 0. && computing >= 0. ? computing + own : -1.;
         }
-    if (grading)
+    if (adaptation.grading)
       progress.line("With 'Zone = adaptive' all figures are those of the mesh at the start.");
     for (const std::string &note : record->notes)
       progress.note(note);
@@ -414,8 +414,9 @@ namespace PeriDeal
           }
         for (const double stop = place.stops[place.stop]; place.now < stop;)
           {
-            const double next = grading ? grading->next_adaptation(place.now) :
-                                          std::numeric_limits<double>::infinity();
+            const double next = adaptation.grading ?
+                                  adaptation.grading->next_adaptation(place.now) :
+                                  std::numeric_limits<double>::infinity();
             const double to   = std::min(stop, next);
             advance_all(to, place.stop + 1, place.stops.size(), t);
             if (to == next)

@@ -22,9 +22,9 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::prepare_adaptation()
   {
-    if (scene.coupling.zone != ZoneKind::adaptive)
+    if (!scene.coupling.is_adaptive())
       return;
-    grading = std::make_unique<Grading<dim>>(scene, *mesh);
+    adaptation.grading = std::make_unique<Grading<dim>>(scene, *mesh);
     if (scene.time.steady || resumes())
       return;
     for (unsigned int round = 0; round < scene.domain.coarsening && adapt(0.); ++round)
@@ -36,9 +36,9 @@ namespace PeriDeal
   template <int dim>
   bool Simulation<dim>::adapt(const double t)
   {
-    if (!grading)
+    if (!adaptation.grading)
       return false;
-    grading->set_time(t);
+    adaptation.grading->set_time(t);
     const auto guide = std::find_if(problems.begin(), problems.end(), [](const auto &problem) {
       return problem->name() == to_string(ModelKind::coupled);
     });
@@ -51,12 +51,12 @@ namespace PeriDeal
       goal * goal * std::max(found.energy, least) / mesh->n_global_active_cells();
     {
       Timings::Scope scope(timings, "mesh adaptation");
-      if (!grading->mark(*mesh, found.squares, target))
+      if (!adaptation.grading->mark(*mesh, found.squares, target))
         return false;
       for (auto &problem : problems)
         problem->before_remesh();
-      history.record(*mesh);
-      time_of_mesh = t;
+      adaptation.history.record(*mesh);
+      adaptation.last_time = t;
       mesh->execute_coarsening_and_refinement();
     }
     with_formulas(communicator, [&] {
@@ -65,7 +65,7 @@ namespace PeriDeal
     });
     for (auto &problem : problems)
       problem->renew_stepper();
-    readers_fit = false;
+    adaptation.readers_fit = false;
     return true;
   }
 
@@ -102,15 +102,15 @@ namespace PeriDeal
   void Simulation<dim>::exchange_mesh(Archive &archive)
   {
     const Archive::Part part(archive, "mesh");
-    history.exchange(archive);
-    archive.exchange("time", time_of_mesh);
-    if (!archive.loads() || history.n_adaptations() == 0)
+    adaptation.history.exchange(archive);
+    archive.exchange("time", adaptation.last_time);
+    if (!archive.loads() || adaptation.history.n_adaptations() == 0)
       return;
-    history.repeat(*mesh);
-    grading->set_time(time_of_mesh);
+    adaptation.history.repeat(*mesh);
+    adaptation.grading->set_time(adaptation.last_time);
     with_formulas(communicator, [&] {
       for (auto &problem : problems)
-        problem->rebuild(time_of_mesh);
+        problem->rebuild(adaptation.last_time);
     });
     output->find_points(reported());
   }

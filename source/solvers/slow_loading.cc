@@ -43,7 +43,7 @@ namespace PeriDeal
     , options(options)
     , work_of_forces(op)
   {
-    for (Vector *v : {&last, &before, &unbalanced, &scratch})
+    for (Vector *v : {&last, &before.change, &unbalanced, &scratch})
       op.initialize_vector(*v);
   }
 
@@ -140,22 +140,22 @@ namespace PeriDeal
   void SlowLoading::step(Vector &u, const double t, const AfterStep &after_round)
   {
     last = u;
-    if (has_before)
+    if (before.any)
       {
         size = std::max(size, undeformed_residual(op, u, scratch, unbalanced, t));
         // Where forces are linear and loads change in proportion this is the solution.
-        const double ratio = (t - now) / (now - last_time);
+        const double ratio = (t - now) / (now - before.start);
         u                  = last;
-        u.sadd(1. + ratio, -ratio, before);
+        u.sadd(1. + ratio, -ratio, before.change);
         op.distribute(u, t);
       }
     else
       size = std::max(size, start_statics(op, u, t, options));
     solve(u, t);
     op.unbalanced(unbalanced, u, t);
-    before = u;
-    before -= last;
-    so_far.work += work_of_forces.step(before, unbalanced, t);
+    before.change = u;
+    before.change -= last;
+    so_far.work += work_of_forces.step(before.change, unbalanced, t);
     so_far.exchanged = std::max(so_far.exchanged, so_far.start + std::abs(so_far.work));
     breaking         = {t, 0., false, false};
     go_on(u, after_round);
@@ -166,10 +166,10 @@ namespace PeriDeal
   {
     const double t = breaking.time;
     change_bonds(u, t, after_round);
-    before.sadd(-1., 1., u);
-    has_before = true;
-    last_time  = now;
-    now        = t;
+    before.change.sadd(-1., 1., u);
+    before.any   = true;
+    before.start = now;
+    now          = t;
     ++steps;
     tell_step(t);
   }
@@ -178,11 +178,11 @@ namespace PeriDeal
   void SlowLoading::exchange(Archive &archive, const NodeKeys &keys)
   {
     archive.exchange("last equilibrium", last, keys);
-    archive.exchange("before", before, keys);
-    archive.exchange("has before", has_before);
+    archive.exchange("before", before.change, keys);
+    archive.exchange("has before", before.any);
     archive.exchange("size of residuals", size);
     archive.exchange("now", now);
-    archive.exchange("time before", last_time);
+    archive.exchange("time before", before.start);
     archive.exchange("iterations", iterations);
     archive.exchange("steps", steps);
     archive.exchange("start", so_far.start);

@@ -31,6 +31,7 @@ TEST(Weighting, models_share_a_place)
 
 TEST(Weighting, symmetric_where_it_says_so)
 {
+  EXPECT_EQ(make_weighting(CouplingScheme::exchange), nullptr);
   const auto blending = make_weighting(CouplingScheme::blending),
              splice   = make_weighting(CouplingScheme::splice);
   EXPECT_TRUE(blending->symmetric());

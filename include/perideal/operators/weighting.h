@@ -38,6 +38,6 @@ namespace PeriDeal
     }
   };
 
-  /** Of `blending` or `splice`. */
+  /** Of `blending` or `splice`; null for `exchange`, which weighs nothing. */
   std::unique_ptr<const Weighting> make_weighting(const CouplingScheme scheme);
 } // namespace PeriDeal

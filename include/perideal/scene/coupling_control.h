@@ -47,6 +47,9 @@ namespace PeriDeal
      */
     void parse();
 
+    /** The mesh follows the solution, and the zone with it. */
+    bool is_adaptive() const;
+
     /** The entries `Zone` and `Scheme` as given. */
     std::string zone_text() const;
     std::string scheme_text() const;

@@ -83,6 +83,12 @@ namespace PeriDeal
                   const double                  from,
                   const double                  to);
 
+    /** Cracks run along faces of the mesh, on both sides of which there are nodes. */
+    bool on_faces() const
+    {
+      return mesh == CrackMesh::faces;
+    }
+
     /** Cracks or their transmission change with time. */
     bool change() const;
 

@@ -30,6 +30,9 @@ namespace PeriDeal
     ElasticSolver solver                = ElasticSolver::linear;
     bool          multigrid             = true; // entry `Preconditioner`
 
+    /** Strains are those of the deformed bonds. */
+    bool has_full_kinematics() const;
+
     /** All solvers but `dynamics` find the equilibrium, in which there is no time. */
     bool is_static() const;
 

@@ -39,6 +39,12 @@ namespace PeriDeal
       return flux_treatment == FluxTreatment::natural;
     }
 
+    /** The prescribed values are those of nodes beyond the sides. */
+    bool has_fictitious_nodes() const;
+
+    /** What is beside a crack makes up for what the crack cuts (CrackSideFactors). */
+    bool scales_beside_cracks() const;
+
     /** The surface correction is one of the linear peridynamic solid. */
     bool corrects_elastic_bonds() const;
 

@@ -69,6 +69,15 @@ namespace PeriDeal
       void exchange(Archive &archive);
     };
 
+    /** Of a mesh that follows the solution. */
+    struct Adaptation
+    {
+      std::unique_ptr<Grading<dim>> grading; // null: the mesh stays as it is
+      MeshHistory                   history;
+      double                        last_time   = 0.;
+      bool                          readers_fit = true; // the mesh
+    };
+
     RunContext                        context();
     std::vector<const Problem<dim> *> reported() const;
     std::vector<double>               output_times() const;
@@ -132,10 +141,7 @@ namespace PeriDeal
     std::unique_ptr<ExactSolution>              exact;
     std::unique_ptr<ResultRecord>               record;
     std::unique_ptr<RunOutput<dim>>             output;
-    std::unique_ptr<Grading<dim>>               grading; // only where the mesh is adapted
-    MeshHistory                                 history; // of an adapted mesh
-    double                                      time_of_mesh = 0.;
-    bool                                        readers_fit  = true; // the mesh
+    Adaptation                                  adaptation;
     Place                                       place;
     std::unique_ptr<CheckpointClock>            clock;                 // unless steady
     double                                      wall_time_before = 0.; // the run was resumed

@@ -103,6 +103,14 @@ namespace PeriDeal
       bool   any = false, is_open = false;
     };
 
+    /** What the last step brought before bonds broke, from which the next one is guessed. */
+    struct LastStep
+    {
+      Vector change;
+      double start = 0.;
+      bool   any   = false;
+    };
+
     void solve(Vector &u, const double t);
     void change_bonds(Vector &u, const double t, const AfterStep &after_round);
     void check_inversion(Vector &u, const double t) const;
@@ -110,13 +118,12 @@ namespace PeriDeal
     ElasticOperator              &op;
     std::unique_ptr<StaticSolver> solver;
     const StaticOptions           options;
-    Vector                        last;   // equilibrium before the step
-    Vector                        before; // u less what the last step brought before bonds broke
+    Vector                        last; // equilibrium before the step
+    LastStep                      before;
     Vector                        unbalanced, scratch;
     WorkOfForces                  work_of_forces;
     double size = 0.; // of the residual of the largest load so far, by which others are measured
-    double now = 0., last_time = 0.;
-    bool   has_before        = false;
+    double now  = 0.;
     unsigned int  iterations = 0, steps = 0;
     LoadingEnergy so_far;
     Breaking      breaking;

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "edge_nodes.h"
+
+#include <perideal/mesh/lattice_sites.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    Tensor<1, dim> bond_of(const FamilyMember<dim> &member, const Lattice<dim> &lattice)
+    {
+      Tensor<1, dim> xi;
+      for (unsigned int d = 0; d < dim; ++d)
+        xi[d] = member.offset[d] * lattice.spacing[d];
+      return xi;
+    }
+  } // namespace
+
+
+  template <int dim>
+  CompleteFamilies<dim>::CompleteFamilies(const Families<dim>       &families,
+                                          const LatticeCoefficients &coefficients)
+    : volume(families.nodes().lattice()->cell_volume())
+    , stiffness(coefficients.stiffness)
+    , dilatation(coefficients.dilatation)
+  {
+    const Lattice<dim>             &lattice = *families.nodes().lattice();
+    std::vector<std::array<int, 3>> offsets(1);
+    std::vector<Tensor<1, dim>>     vectors(1);
+    std::vector<double>             weights(1);
+    for (const FamilyMember<dim> &member : families.weights().members())
+      {
+        const Tensor<1, dim> xi = bond_of(member, lattice);
+        for (unsigned int d = 0; d < dim; ++d)
+          center[d] -= 2. * stiffness * member.weight * xi[d] * xi[d] / xi.norm_square();
+        if (*std::min_element(member.offset.begin(), member.offset.end()) < 0)
+          continue;
+        std::array<int, 3> offset{};
+        std::copy(member.offset.begin(), member.offset.end(), offset.begin());
+        offsets.push_back(offset);
+        vectors.push_back(xi);
+        weights.push_back(member.weight);
+      }
+    std::vector<double> values(offsets.size());
+    for (unsigned int a = 0; a < dim; ++a)
+      {
+        for (std::size_t k = 0; k < values.size(); ++k)
+          values[k] = weights[k] * vectors[k][a];
+        std::array<bool, 3> odd{};
+        odd[a] = true;
+        moments.emplace_back(dim, offsets, values, odd);
+      }
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = a; b < dim; ++b)
+        {
+          values[0] = a == b ? center[a] : 0.;
+          for (std::size_t k = 1; k < values.size(); ++k)
+            values[k] = 2. * stiffness * weights[k] * vectors[k][a] * vectors[k][b] /
+                        vectors[k].norm_square();
+          std::array<bool, 3> odd{};
+          odd[a] = odd[b] = a != b;
+          springs.emplace_back(dim, offsets, values, odd);
+        }
+  }
+
+
+  template <int dim>
+  typename EdgeNodes<dim>::Node EdgeNodes<dim>::find(const Families<dim>         &families,
+                                                     const CompleteFamilies<dim> &complete,
+                                                     const LatticeCoefficients   &coefficients,
+                                                     const unsigned int           i) const
+  {
+    const Nodes<dim> &nodes = families.nodes();
+    const auto        site  = nodes.lattice()->index(nodes.position(i));
+    Node              edge;
+    edge.excess     = excess[i];
+    edge.dilatation = coefficients.dilatations.empty() ? 0. : coefficients.dilatations[i];
+    edge.block.fill(0.);
+    for (const FamilyMember<dim> &member : families.weights().members())
+      {
+        const unsigned int j = families.neighbors().node_at(site + member.offset);
+        if (j == numbers::invalid_unsigned_int)
+          continue;
+        const Tensor<1, dim> xi     = bond_of(member, *nodes.lattice());
+        const double         weight = nodes.volume(j) * member.weight,
+                     spring = 2. * complete.stiffness * (1. + excess[i] + excess[j]) * weight /
+                              xi.norm_square();
+        edge.moment += weight * xi;
+        for (unsigned int a = 0; a < dim; ++a)
+          for (unsigned int b = a; b < dim; ++b)
+            edge.block[complete.pair(a, b)] += spring * xi[a] * xi[b];
+      }
+    for (unsigned int a = 0; a < dim; ++a)
+      edge.block[complete.pair(a, a)] +=
+        complete.center[a] * nodes.volume(i) * (1. + 2. * excess[i]);
+    return edge;
+  }
+
+
+  template <int dim>
+  EdgeNodes<dim>::EdgeNodes(const Families<dim>         &families,
+                            const CompleteFamilies<dim> &complete,
+                            const LatticeCoefficients   &coefficients,
+                            const std::vector<bool>     &computed)
+  {
+    const Nodes<dim> &nodes = families.nodes();
+    for (const double s : coefficients.stiffnesses)
+      excess.push_back(0.5 * (s / complete.stiffness - 1.)); // 0 to the last bit at most nodes
+    number_of.assign(nodes.n_owned(), none);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        if (!computed[i])
+          continue;
+        const auto like_most = [&](const unsigned int j) {
+          return j != numbers::invalid_unsigned_int && nodes.volume(j) == complete.volume &&
+                 excess[j] == 0.;
+        };
+        bool       regular = like_most(i) && (coefficients.dilatations.empty() ||
+                                        coefficients.dilatations[i] == complete.dilatation);
+        const auto site    = nodes.lattice()->index(nodes.position(i));
+        for (const FamilyMember<dim> &member : families.weights().members())
+          regular = regular && like_most(families.neighbors().node_at(site + member.offset));
+        if (regular)
+          continue;
+        number_of[i] = static_cast<std::uint32_t>(list.size());
+        list.push_back(find(families, complete, coefficients, i));
+      }
+    list.shrink_to_fit();
+  }
+
+
+  template <int dim>
+  std::size_t EdgeNodes<dim>::memory_consumption() const
+  {
+    return excess.capacity() * sizeof(double) + number_of.capacity() * sizeof(std::uint32_t) +
+           list.capacity() * sizeof(Node);
+  }
+
+
+  template struct CompleteFamilies<1>;
+  template struct CompleteFamilies<2>;
+  template struct CompleteFamilies<3>;
+  template class EdgeNodes<1>;
+  template class EdgeNodes<2>;
+  template class EdgeNodes<3>;
+} // namespace PeriDeal
