@@ -91,7 +91,8 @@ def largest_classes():
         for match in re.finditer(r"\b(?:class|struct)\s+(?:\w+::)?(\w+)(?:\s*:\s*[^{;]*)?\s*\{", text):
             name = match.group(1)
             n_members, n_methods = count(text[match.end():closing(text, match.end() - 1)])
-            inside = [s for s, code in sources.items() if re.search(rf"\b{name}(<\w+>)?::~?\w+\s*\(", code)]
+            defined = re.compile(rf"^  (?! |template ).*\b{name}(?:<[\w, ]+>)?::~?\w+\s*\(", re.M)
+            inside = [s for s, code in sources.items() if defined.search(code)]
             rows.append((n_members + n_methods, name, n_members, n_methods, len(inside), sum(sources[s].count("\n") for s in inside)))
     return sorted(rows, reverse=True)
 

@@ -323,7 +323,7 @@ namespace PeriDeal
         const auto     next = std::upper_bound(starts.begin(), starts.end(), number);
         const NodePair pair{layout.local_to_global(next - starts.begin() - 1),
                             layout.local_to_global(bonds.rows.neighbor(number))};
-        if (state[number] == BondState::broken && pair[0] < pair[1])
+        if (state.is_broken(number) && pair[0] < pair[1])
           pairs.push_back(pair);
       }
     return pairs;

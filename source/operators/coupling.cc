@@ -12,7 +12,6 @@
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
-
 #include <utility>
 
 namespace PeriDeal
@@ -35,13 +34,12 @@ namespace PeriDeal
     if (!obstacle.first.empty())
       entry_error(obstacle.first, obstacle.second + ", for 'Models = coupled'.");
     control.refuse(
-      dim == 1 && control.zone == ZoneKind::near_cracks,
+      dim == 1 && control.is_near_cracks(),
       "Zone",
       "'" + control.zone_text() +
         "' needs a crack, and bodies of 'Dimension' 1 have none. Give a formula of x, or 'everywhere'.");
     control.refuse(
-      (control.zone == ZoneKind::near_cracks || control.zone == ZoneKind::adaptive) &&
-        body.cracks.cracks.empty(),
+      (control.is_near_cracks() || control.is_adaptive()) && body.cracks.cracks.empty(),
       "Zone",
       "'" + control.zone_text() +
         "' lies around cracks, but section 'Cracks' has none: the zone is empty. Give a formula, or 'everywhere'.");

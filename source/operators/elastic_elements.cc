@@ -29,7 +29,7 @@ namespace PeriDeal
     if (coupled)
       return SolidBondsBesideElements<dim>::require(body);
     body.elasticity.refuse(
-      body.elasticity.kinematics == Kinematics::full,
+      body.elasticity.has_full_kinematics(),
       "Kinematics",
       "'full' is for 'Models = peridynamics' alone; finite elements have small displacements. "
       "Leave them out, or use 'linear'.");

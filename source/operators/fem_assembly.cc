@@ -50,7 +50,7 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::fill()
   {
-    if (body.peridynamics.scales_beside_cracks() && body.cracks.mesh == CrackMesh::pairs &&
+    if (body.peridynamics.scales_beside_cracks() && body.cracks.cut_pairs() &&
         !body.cracks.cracks.empty())
       cells.find_factors(Vector(layout));
     for (const auto &cell : dofs.active_cell_iterators())

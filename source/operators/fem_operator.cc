@@ -23,8 +23,7 @@ namespace PeriDeal
     if (coupled)
       return Coupling<dim>::require(body);
     body.finite_elements.refuse(
-      body.finite_elements.degree > 1 && !body.cracks.cracks.empty() &&
-        body.cracks.mesh == CrackMesh::pairs,
+      body.finite_elements.degree > 1 && !body.cracks.cracks.empty() && body.cracks.cut_pairs(),
       "Degree",
       "found " + std::to_string(body.finite_elements.degree) +
         "; cracks with 'Mesh' in section 'Cracks' = pairs need degree 1.");

@@ -21,18 +21,18 @@ namespace PeriDeal
     };
     const std::string other = " Use another correction, or ";
     refuse(
-      body.domain.nodes != NodePlacement::vertices,
+      body.domain.has_nodes_at_centers(),
       "continues the displacement from nodes on the sides, and 'Nodes' in section 'Domain' is 'cell centers'." +
         other + "'vertices'.");
-    refuse(!body.domain.has_lattice() || body.domain.shape == Shape::image,
+    refuse(!body.domain.has_lattice() || body.domain.is_image(),
            "needs flat sides of a lattice, which this 'Shape' in section 'Domain' has not." +
              other + "'box' or 'plate with hole'.");
     refuse(pd.nodal_volume != NodalVolume::partial,
            "needs 'Nodal volume = partial'." + other + "that.");
-    refuse(body.cracks.mesh == CrackMesh::faces && !body.cracks.cracks.empty(),
+    refuse(body.cracks.on_faces() && !body.cracks.cracks.empty(),
            "is not for cracks with 'Mesh = faces', where two nodes are at one place." + other +
              "'removed'.");
-    refuse(body.elasticity.kinematics == Kinematics::full,
+    refuse(body.elasticity.has_full_kinematics(),
            "is not for 'Kinematics = full'." + other + "'linear'.");
     const double reach = body.horizon() + body.domain.spacing().norm();
     for (const types::boundary_id side : symmetry)
@@ -53,9 +53,9 @@ namespace PeriDeal
     refuse(
       conditions.traction_layer > 0.,
       "lets tractions act on the sides themselves; 'Traction layer' in section 'Boundary conditions' has no effect. Leave that out.");
-    refuse(dim > 1 && body.elasticity.model == ElasticModel::bond_based,
+    refuse(dim > 1 && body.elasticity.is_bond_based(),
            "is for 'Model = state-based' in section 'Elasticity'." + other + "that.");
-    refuse(pd.form == OperatorForm::lattice,
+    refuse(pd.wants_lattice_form(),
            "makes a matrix; 'Operator form' is 'lattice'." + other + "'auto'.");
   }
 

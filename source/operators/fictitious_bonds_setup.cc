@@ -277,7 +277,7 @@ namespace PeriDeal
     bool any = false;
     for_each_of(node, [&](const Bond &bond) {
       // What was cut from the start has never had a weight.
-      any = any || (state[bond.number] == BondState::parted && squares[bond.number] > 0.);
+      any = any || (state.is_parted(bond.number) && squares[bond.number] > 0.);
     });
     return any;
   }
@@ -288,7 +288,7 @@ namespace PeriDeal
   {
     double sum = 0.;
     for_each_of(node, [&](const Bond &bond) {
-      if (state[bond.number] != BondState::parted)
+      if (!state.is_parted(bond.number))
         sum += squares[bond.number] / families.nodes().volume(node);
     });
     return sum;

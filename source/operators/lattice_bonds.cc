@@ -25,7 +25,7 @@ namespace PeriDeal
     , last(body.cracks.end_time)
   {
     uniform = stiffness.uniform;
-    plain   = uniform && body.domain.shape == Shape::box && !nodes.is_graded();
+    plain   = uniform && body.domain.is_box() && !nodes.is_graded();
     if (uniform && nodes.n_local() > 0)
       uniform_stiffness = stiffness.at(nodes.position(0));
     find_offsets();

@@ -24,7 +24,7 @@ namespace PeriDeal
     const BoundaryConditions<dim> &bc = body.boundary_conditions;
     if (body.peridynamics.natural_fluxes())
       return;
-    const bool in_layers = body.peridynamics.flux_treatment == FluxTreatment::layer_extrapolation;
+    const bool in_layers = body.peridynamics.extrapolates_layers();
     for (const SurfaceTransfer &given : bc.transfers)
       {
         if (given.fixes_level())
@@ -114,7 +114,7 @@ namespace PeriDeal
   void NodeConstraints<dim>::find_prescribed(const BodyParameters<dim> &body)
   {
     const auto &dirichlet = body.boundary_conditions.dirichlet;
-    if (body.peridynamics.treatment == BoundaryTreatment::layer)
+    if (body.peridynamics.has_layers())
       {
         AssertThrow(
           nodes.lattice(),
@@ -189,7 +189,7 @@ namespace PeriDeal
     if (body.peridynamics.natural_fluxes())
       return;
     AssertThrow(
-      body.domain.shape == Shape::box && bonds.neighbors().has_unique_sites(),
+      body.domain.is_box() && bonds.neighbors().has_unique_sites(),
       UserError(
         "'Flux treatment' in section 'Peridynamics' must be 'natural' unless the body is a box "
         "without doubled nodes."));
@@ -198,7 +198,7 @@ namespace PeriDeal
       if (!transfer.fixes_level())
         fluxes.push_back(transfer);
     std::string message;
-    if (body.peridynamics.flux_treatment == FluxTreatment::layer_extrapolation)
+    if (body.peridynamics.extrapolates_layers())
       {
         for (const SurfaceTransfer &flux : fluxes)
           if (find_condition(fluxes, flux.id) == &flux) // once for each side

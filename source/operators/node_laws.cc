@@ -15,7 +15,7 @@ namespace PeriDeal
   template <int dim>
   NodeLaws<dim>::NodeLaws(const Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : weighted(nodes.partitioner())
-    , volumetric(body.elasticity.model == ElasticModel::state_based && dim > 1)
+    , volumetric(!body.elasticity.is_bond_based() && dim > 1)
     , nodes(nodes)
   {
     const PlaneState plane   = body.elasticity.plane;
@@ -23,9 +23,8 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
         const Moduli moduli = body.material.moduli(nodes.position(i));
-        laws.push_back(body.elasticity.model == ElasticModel::bond_based ?
-                         bond_law(moduli, dim, plane) :
-                         state_law(moduli, dim, plane));
+        laws.push_back(body.elasticity.is_bond_based() ? bond_law(moduli, dim, plane) :
+                                                         state_law(moduli, dim, plane));
         largest  = std::max(largest, laws[i].extension);
         smallest = std::min(smallest, laws[i].extension);
       }

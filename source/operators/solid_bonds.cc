@@ -65,7 +65,7 @@ namespace PeriDeal
     if (pd.corrects_elastic_bonds())
       require_surface_factors(body);
     const std::string not_lattice = StateLattice<dim>::obstacle(body);
-    pd.refuse(pd.form == OperatorForm::lattice && !not_lattice.empty(),
+    pd.refuse(pd.wants_lattice_form() && !not_lattice.empty(),
               "Operator form",
               "'lattice' is not defined here: " + not_lattice + "; use 'auto'.");
     KernelWeights<dim>::require(body);
@@ -119,9 +119,7 @@ namespace PeriDeal
   bool SolidBonds<dim>::has_parted(const unsigned int i, const BondState &state) const
   {
     bool any = beyond && beyond->is_parted(i);
-    rows.for_each_stored(i, [&](const auto &bond) {
-      any = any || state[bond.number] == BondState::parted;
-    });
+    rows.for_each_stored(i, [&](const auto &bond) { any = any || state.is_parted(bond.number); });
     return any;
   }
 

@@ -20,21 +20,21 @@ namespace PeriDeal
   {
     const Material &material = body.material;
     body.coupling.refuse(
-      body.coupling.zone == ZoneKind::adaptive,
+      body.coupling.is_adaptive(),
       "Zone",
       "'adaptive' is for what diffuses; with 'Physics = elasticity' use 'cracks: 1' or a formula.");
     body.elasticity.refuse(
-      body.elasticity.kinematics == Kinematics::full,
+      body.elasticity.has_full_kinematics(),
       "Kinematics",
       "'full' is not for 'Models = coupled', whose coefficients are those of the undeformed body.");
     material.refuse(
       material.fracture_energy || material.critical_stretch,
       material.fracture_energy ? "Fracture energy" : "Critical stretch",
       "is not for 'Models = coupled', whose bonds do not break; use 'peridynamics', or leave the entry out.");
-    if (body.coupling.scheme != CouplingScheme::exchange)
+    if (!body.coupling.exchanges())
       StateCoupling<dim>::require(body);
     body.peridynamics.refuse(
-      body.peridynamics.completes_families() && body.coupling.scheme == CouplingScheme::exchange,
+      body.peridynamics.completes_families() && body.coupling.exchanges(),
       "Surface correction",
       "'fictitious nodes' is not for 'Scheme = exchange', whose bonds need no correction. Use 'none', or 'splice' or 'blending'.");
     Coupling<dim>::require(body);

@@ -19,7 +19,7 @@ namespace PeriDeal
     const ElasticityControl &control = body.elasticity;
     const std::string        scheme =
       "'Scheme = " + body.coupling.scheme_text() + "' in section 'Coupling'";
-    const bool splice = body.coupling.scheme == CouplingScheme::splice;
+    const bool splice = body.coupling.splices();
     if (pd.completes_families())
       FictitiousBonds<dim>::require(body);
     pd.refuse(
@@ -28,7 +28,7 @@ namespace PeriDeal
       "'fictitious nodes' and 'Scheme = splice' do not go with 'Symmetry' in section 'Boundary conditions': nothing would tell its lost forces from those of the other half. "
       "Hold the side by 'Displacement', or use 'blending'.");
     body.cracks.refuse(
-      body.cracks.mesh == CrackMesh::faces && !body.cracks.cracks.empty(),
+      body.cracks.on_faces() && !body.cracks.cracks.empty(),
       "Mesh",
       "'faces' is for 'Scheme = exchange' in section 'Coupling': the families of others know one node at each place. Use 'removed'.");
     body.domain.refuse(
@@ -41,7 +41,7 @@ namespace PeriDeal
               "is for 'Scheme = exchange', not for " + scheme +
                 "; use 'none' or 'fictitious nodes'.");
     control.refuse(
-      dim > 1 && control.model == ElasticModel::bond_based,
+      dim > 1 && control.is_bond_based(),
       "Model",
       "'bond-based' is not for " + scheme +
         ": its zone would have a Poisson ratio of its own. Use 'state-based', or 'Scheme = exchange'.");

@@ -46,7 +46,7 @@ namespace PeriDeal
     std::vector<Point<dim>> positions;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       positions.push_back(nodes.position(i));
-    const bool at_centers = body.domain.nodes == NodePlacement::cell_centers;
+    const bool at_centers = body.domain.has_nodes_at_centers();
     conditions            = std::make_unique<DisplacementConditions<dim>>(on_sides,
                                                                positions,
                                                                body,

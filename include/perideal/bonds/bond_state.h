@@ -40,6 +40,16 @@ namespace PeriDeal
       return marks.empty() || marks[number] == whole;
     }
 
+    bool is_parted(const std::size_t number) const
+    {
+      return !marks.empty() && marks[number] == parted;
+    }
+
+    bool is_broken(const std::size_t number) const
+    {
+      return !marks.empty() && marks[number] == broken;
+    }
+
     Mark operator[](const std::size_t number) const
     {
       return marks.empty() ? whole : marks[number];

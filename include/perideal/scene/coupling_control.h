@@ -47,6 +47,22 @@ namespace PeriDeal
      */
     void parse();
 
+    bool exchanges() const
+    {
+      return scheme == CouplingScheme::exchange;
+    }
+
+    bool splices() const
+    {
+      return scheme == CouplingScheme::splice;
+    }
+
+    /** The zone lies around the cracks. */
+    bool is_near_cracks() const
+    {
+      return zone == ZoneKind::near_cracks;
+    }
+
     /** The mesh follows the solution, and the zone with it. */
     bool is_adaptive() const;
 

@@ -83,6 +83,12 @@ namespace PeriDeal
                   const double                  from,
                   const double                  to);
 
+    /** Cells that a crack cuts conduct between the nodes that it does not part. */
+    bool cut_pairs() const
+    {
+      return mesh == CrackMesh::pairs;
+    }
+
     /** Cracks run along faces of the mesh, on both sides of which there are nodes. */
     bool on_faces() const
     {

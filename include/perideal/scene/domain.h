@@ -99,6 +99,21 @@ namespace PeriDeal
       return shape != Shape::mesh_file;
     }
 
+    bool is_box() const
+    {
+      return shape == Shape::box;
+    }
+
+    bool is_image() const
+    {
+      return shape == Shape::image;
+    }
+
+    bool has_nodes_at_centers() const
+    {
+      return nodes == NodePlacement::cell_centers;
+    }
+
     /** Refuse what an entry of another section has chosen on a mesh from a file. */
     void require_lattice(const bool         chosen,
                          const std::string &where,

@@ -30,6 +30,11 @@ namespace PeriDeal
     ElasticSolver solver                = ElasticSolver::linear;
     bool          multigrid             = true; // entry `Preconditioner`
 
+    bool is_bond_based() const
+    {
+      return model == ElasticModel::bond_based;
+    }
+
     /** Strains are those of the deformed bonds. */
     bool has_full_kinematics() const;
 

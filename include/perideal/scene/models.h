@@ -39,6 +39,23 @@ namespace PeriDeal
       return flux_treatment == FluxTreatment::natural;
     }
 
+    /** Bonds are to have the lattice form, or the scene is refused. */
+    bool wants_lattice_form() const
+    {
+      return form == OperatorForm::lattice;
+    }
+
+    /** Prescribed values are those of layers of nodes. */
+    bool has_layers() const
+    {
+      return treatment == BoundaryTreatment::layer;
+    }
+
+    bool extrapolates_layers() const
+    {
+      return flux_treatment == FluxTreatment::layer_extrapolation;
+    }
+
     /** The prescribed values are those of nodes beyond the sides. */
     bool has_fictitious_nodes() const;
 
