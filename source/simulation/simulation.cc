@@ -101,13 +101,11 @@ namespace PeriDeal
           record->notes.push_back(note);
       }
     problem_factory(scene).add_companions(models, scene, record->notes);
-    for (const auto &model : models)
-      for (const auto &companion : model->companions)
-        {
-          companions.push_back(companion.get());
-          progress.line("to find the " + companion->field_name() + " in it:");
-          say_size(*companion, progress);
-        }
+    for (const Problem<dim> *const companion : companions())
+      {
+        progress.line("to find the " + companion->field_name() + " in it:");
+        say_size(*companion, progress);
+      }
     prepare_adaptation();
     exact = make_reference(scene);
     Timings::Scope scope(timings, "output");
@@ -131,6 +129,17 @@ namespace PeriDeal
   std::vector<const Problem<dim> *> Simulation<dim>::reported() const
   {
     return {problems.begin(), problems.end()};
+  }
+
+
+  template <int dim>
+  typename Simulation<dim>::List Simulation<dim>::companions() const
+  {
+    List list;
+    for (const auto &model : models)
+      for (const auto &companion : model->companions)
+        list.push_back(companion.get());
+    return list;
   }
 
 
@@ -185,8 +194,8 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::begin()
   {
-    for (const auto *list : {&companions, &problems})
-      for (const auto &problem : *list)
+    for (const List &list : {companions(), problems})
+      for (Problem<dim> *const problem : list)
         problem->begin(context());
   }
 
@@ -233,7 +242,7 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::settle()
   {
-    for (const auto &companion : companions)
+    for (Problem<dim> *const companion : companions())
       {
         Timings::Scope scope(timings, companion->field_name());
         companion->settle(context());
@@ -347,13 +356,14 @@ namespace PeriDeal
     build();
     begin();
     double computing = 0., memory = 0.; // negative if it is not known
-    for (const auto *list : {&companions, &problems})
-      for (const auto &problem : *list)
-        {
-          const double own =
-            problem->time_of_run(output_times(), list == &problems, context(), memory);
-          computing = own >= 0. && computing >= 0. ? computing + own : -1.;
-        }
+    List   all = companions();
+    all.insert(all.end(), problems.begin(), problems.end());
+    for (std::size_t k = 0; k < all.size(); ++k)
+      {
+        const bool   says = k + problems.size() >= all.size();
+        const double own  = all[k]->time_of_run(output_times(), says, context(), memory);
+        computing         = own >= 0. && computing >= 0. ? computing + own : -1.;
+      }
     if (adaptation.grading)
       progress.line("With 'Zone = adaptive' all figures are those of the mesh at the start.");
     for (const std::string &note : record->notes)
@@ -443,9 +453,10 @@ namespace PeriDeal
                                     const unsigned int n_stops,
                                     const double       t)
   {
-    for (; place.problem < companions.size(); ++place.problem)
+    const List before_all = companions();
+    for (; place.problem < before_all.size(); ++place.problem)
       {
-        Problem<dim>  &companion = *companions[place.problem];
+        Problem<dim>  &companion = *before_all[place.problem];
         Timings::Scope scope(timings, companion.field_name());
         companion.advance(
           place.now,
@@ -453,9 +464,9 @@ namespace PeriDeal
           [](const double) {},
           context());
       }
-    for (; place.problem < companions.size() + problems.size(); ++place.problem)
+    for (; place.problem < before_all.size() + problems.size(); ++place.problem)
       {
-        const unsigned int k       = place.problem - companions.size();
+        const unsigned int k       = place.problem - before_all.size();
         Problem<dim>      &problem = *problems[k];
         const double       before = share_done(k, to), after = share_done(k + 1, to);
         progress.doing(problem.doing(stop, n_stops, t));

@@ -85,14 +85,14 @@ namespace PeriDeal
   {
     place.exchange(archive);
     timings.exchange(archive);
-    const auto exchange_all = [&](List &list, const std::string &name) {
+    const auto exchange_all = [&](const List &list, const std::string &name) {
       for (std::size_t k = 0; k < list.size(); ++k)
         {
           const Archive::Part part(archive, name + std::to_string(k));
           list[k]->exchange(archive);
         }
     };
-    exchange_all(companions, "companion ");
+    exchange_all(companions(), "companion ");
     exchange_all(problems, "problem ");
     output->exchange(archive);
   }

@@ -80,6 +80,7 @@ namespace PeriDeal
 
     RunContext                        context();
     std::vector<const Problem<dim> *> reported() const;
+    List                              companions() const; // advance before the problems
     std::vector<double>               output_times() const;
 
     void build();
@@ -137,7 +138,7 @@ namespace PeriDeal
     Timings                                     timings;
     std::shared_ptr<dealii::Triangulation<dim>> mesh;
     Models<dim>                                 models;
-    List                                        companions, problems; // of them, in this order
+    List                                        problems; // of the models, those that are reported
     std::unique_ptr<ExactSolution>              exact;
     std::unique_ptr<ResultRecord>               record;
     std::unique_ptr<RunOutput<dim>>             output;
