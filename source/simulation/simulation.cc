@@ -483,24 +483,6 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  void Simulation<dim>::find_steady_state()
-  {
-    progress.line(problems[0]->steady_name());
-    settle();
-    constexpr double settled = 0.05; // share of cells more or fewer
-    for (unsigned int round = 0; round < 2 * scene.domain.coarsening; ++round)
-      {
-        const double n_before = mesh->n_global_active_cells();
-        if (!adapt(0.))
-          break;
-        settle();
-        if (std::abs(mesh->n_global_active_cells() - n_before) < settled * n_before)
-          break;
-      }
-  }
-
-
   template class Simulation<1>;
   template class Simulation<2>;
   template class Simulation<3>;

@@ -71,6 +71,24 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Simulation<dim>::find_steady_state()
+  {
+    progress.line(problems[0]->steady_name());
+    settle();
+    constexpr double settled = 0.05; // share of cells more or fewer
+    for (unsigned int round = 0; round < 2 * scene.domain.coarsening; ++round)
+      {
+        const double n_before = mesh->n_global_active_cells();
+        if (!adapt(0.))
+          break;
+        settle();
+        if (std::abs(mesh->n_global_active_cells() - n_before) < settled * n_before)
+          break;
+      }
+  }
+
+
+  template <int dim>
   void Simulation<dim>::Place::exchange(Archive &archive)
   {
     archive.exchange("now", now);
@@ -195,6 +213,7 @@ namespace PeriDeal
   template void Simulation<dim>::prepare_adaptation(); \
   template bool Simulation<dim>::adapt(const double);  \
   template void Simulation<dim>::resume();             \
+  template void Simulation<dim>::find_steady_state();  \
   template void Simulation<dim>::offer_checkpoint(const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
