@@ -85,6 +85,7 @@ namespace PeriDeal
     coarse->domain.scene_folder = scene.domain.scene_folder;
     coarse->domain.communicator = scene.domain.communicator;
     coarse->parse_and_validate();
+    problem_factory(*coarse).require_computable(*coarse);
     return coarse;
   }
 

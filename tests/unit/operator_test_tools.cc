@@ -3,7 +3,7 @@
 
 #include "operator_test_tools.h"
 
-#include <perideal/problems/problem_factory.h>
+#include <perideal/problems/computable.h>
 
 #include <Eigen/Eigenvalues>
 

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/problems/problem_factory.h>
+#include <perideal/problems/computable.h>
 #include <perideal/scene/lists.h>
 
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 
 #pragma once
 
+#include <perideal/problems/computable.h>
 #include <perideal/problems/model.h>
-#include <perideal/scene/scene.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -68,21 +68,6 @@ namespace PeriDeal
   const ProblemFactory<dim> &problem_factory(const Scene<dim> &scene)
   {
     return problem_factory<dim>(scene.general.physics);
-  }
-
-  /**
-   * What says that a scene can be computed: mesh and models find nothing that they cannot do.
-   * Throws UserError, with its place in the text. Not collective.
-   */
-  template <int dim>
-  void require_computable(const Scene<dim> &scene, const SceneText &text);
-
-  /** parse_scene() and require_computable(): the scene is fine. Throws UserError. */
-  template <int dim>
-  void parse_computable(const SceneText &text, Scene<dim> &scene)
-  {
-    parse_scene(text, scene);
-    require_computable(scene, text);
   }
 
   /**
