@@ -286,9 +286,6 @@ namespace ScalarWave
     const auto require = [](const bool holds, const std::string &what) {
       AssertThrow(holds, UserError(what));
     };
-    const auto is_zero = [](const Expression &formula) {
-      return formula.is_constant() && formula.value(Point<dim>()) == 0.;
-    };
     const auto &sides = scene.boundary_conditions;
     require(!scene.time.steady, "'Steady' in section 'Time': waves have no steady state.");
     require(scene.time.stepper == "auto",
