@@ -113,8 +113,8 @@ namespace PeriDeal
                              {bc + "/Lamp", "bottom: 6, 2 ; right: 0, 1"}},
                     ModelKind::finite_elements);
     nlohmann::ordered_json summary;
-    make_diffusion_problem(ModelKind::finite_elements, *body.mesh, body.scene)
-      ->describe_scene(summary, true);
+    Model<2>               model(ModelKind::finite_elements, *body.mesh);
+    make_diffusion_problem(model, body.scene)->describe_scene(summary, true);
     EXPECT_EQ(summary["sides"]["right"], "contact layer 2, 0.5, 3*t");
     EXPECT_EQ(summary["sides"]["bottom"], "lamp 6, 2");
     EXPECT_EQ(summary["sides"]["top"], "insulated");
