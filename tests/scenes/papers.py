@@ -137,10 +137,10 @@ def growing():
     """Bobaru 2012 Example 5: heat is conserved while cracks grow, and the temperature jumps when they have met."""
     table = Comparison("Bobaru (2012), Example 5: cracks that grow and cross")
     scene = "bobaru_2012/example_5.prm"
-    published = run_paper("bobaru_2012/example_5_paper.prm", {"Models": PD, "Domain/Cells": "60, 60"})
-    # A flux by extrapolation is not conserved. Measured: at most 2.1e-2.
+    published = run_paper("bobaru_2012/example_5_paper.prm", {"Models": PD, "Domain/Cells": "30, 30"})
+    # A flux by extrapolation is not conserved. Measured: at most 2.5e-2, on 60 x 60 cells 2.1e-2.
     for t, lost, through in balances(published, PD):
-        table.add_limit(f"as published, 60 x 60 cells, t = {t}: imbalance over throughput", abs(lost) / through, 0.031)
+        table.add_limit(f"as published, 30 x 30 cells, t = {t}: imbalance over throughput", abs(lost) / through, 0.031)
     before, after = (published.probe(PD, (0, 0.05), t) - published.probe(PD, (0, -0.05), t) for t in (3, 7))
     check(after > 3 * before, f"as published: the jump opens when the cracks meet, found {before} and {after}")
     jump = {}
