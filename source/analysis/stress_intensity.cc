@@ -231,8 +231,9 @@ namespace PeriDeal
           const double       length = along.norm();
           double             room   = 0.5 * length;
           for (unsigned int d = 0; d < 2; ++d)
-            room = std::min(
-              {room, end[d] - scene.domain.body_lower[d], scene.domain.body_upper[d] - end[d]});
+            room = std::min({room,
+                             end[d] - scene.domain.extra.body_lower[d],
+                             scene.domain.extra.body_upper[d] - end[d]});
           room = std::min({room, scene.domain.holes.distance(end), distance_to_parts(scene, end)});
           for (const CrackPiece<2> &piece : pieces)
             if (piece.crack != k)

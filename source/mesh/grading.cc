@@ -62,7 +62,8 @@ namespace PeriDeal
   {
     const CouplingControl &coupling = scene.coupling;
     const bool             adaptive = coupling.zone == ZoneKind::adaptive;
-    const bool coarse = scene.domain.coarsening > 0, coupled = runs(scene, ModelKind::coupled);
+    const bool             coarse   = scene.domain.coarsening.times > 0,
+               coupled              = runs(scene, ModelKind::coupled);
     coupling.refuse(adaptive && !coupled,
                     "Zone",
                     "is 'adaptive', but 'Models' has no 'coupled', which the mesh would follow.");
@@ -84,7 +85,8 @@ namespace PeriDeal
     const auto refuse = [&](const bool fault, const std::string &what) {
       scene.domain.refuse(coarse && fault,
                           "Coarsening",
-                          "found " + std::to_string(scene.domain.coarsening) + ", but " + what);
+                          "found " + std::to_string(scene.domain.coarsening.times) + ", but " +
+                            what);
     };
     refuse(
       runs(scene, ModelKind::peridynamics),
@@ -92,7 +94,7 @@ namespace PeriDeal
     refuse(coupled && coupling.scheme != CouplingScheme::exchange,
            "'Scheme' in section 'Coupling' is not 'exchange', the only one for graded meshes.");
     refuse(
-      !scene.domain.fine_by_formula && (adaptive || coupling.zone == ZoneKind::near_cracks) &&
+      !scene.domain.coarsening.by_formula && (adaptive || coupling.zone == ZoneKind::near_cracks) &&
         scene.cracks.cracks.empty(),
       "section 'Cracks' has none for which cells would stay fine. Give a formula in 'Fine where'.");
   }
@@ -102,12 +104,12 @@ namespace PeriDeal
   Grading<dim>::Grading(const Scene<dim> &scene, const Triangulation<dim> &mesh)
     : zone(scene.coupling, scene.horizon())
     , by_zone(true)
-    , by_name(scene.domain.fine_by_formula)
+    , by_name(scene.domain.coarsening.by_formula)
     , history(scene.crack_history())
     , adaptations(adaptation_times(scene, history))
     , finest(
         std::lround(std::log2(mesh.begin(0)->extent_in_direction(0) / scene.domain.spacing()[0])))
-    , coarsest(finest - scene.domain.coarsening)
+    , coarsest(finest - scene.domain.coarsening.times)
     , end(scene.cracks.end_time)
   {
     zone.stay_in({{scene.domain.lower, scene.domain.upper}}); // cells are merged in boxes only
@@ -116,7 +118,7 @@ namespace PeriDeal
     const auto &models = scene.general.models;
     if (by_name)
       {
-        named = Zone<dim>(scene.domain.fine);
+        named = Zone<dim>(scene.domain.coarsening.fine);
         named.stay_in({{scene.domain.lower, scene.domain.upper}});
         by_zone = std::find(models.begin(), models.end(), ModelKind::coupled) != models.end();
       }

@@ -309,7 +309,7 @@ namespace PeriDeal
     unsigned int    n_refinements = 0;
     if (!domain.has_lattice())
       {
-        coarse = read_mesh_file<dim>(domain.mesh_file, domain.scene_folder, communicator, ids);
+        coarse = read_mesh_file<dim>(domain.mesh_file, domain.files.folder, communicator, ids);
         note_cracks_on_faces(coarse, cracks, notes);
       }
     else if (domain.shape == Shape::plate_with_hole)
@@ -330,16 +330,16 @@ namespace PeriDeal
     notes.insert(notes.end(), domain.notes.begin(), domain.notes.end());
     if (domain.shape != Shape::box && n_refinements == 0)
       require_resolved(coarse, cut);
-    AssertThrow(n_refinements >= domain.coarsening,
+    AssertThrow(n_refinements >= domain.coarsening.times,
                 UserError("'Coarsening' in section 'Domain' is " +
-                          std::to_string(domain.coarsening) +
+                          std::to_string(domain.coarsening.times) +
                           ", but with 'Mesh = faces' (section 'Cracks') cells can be merged " +
                           std::to_string(n_refinements) +
                           " times only, since the crack has to lie on faces of the largest ones."));
     // p4est sorts its coarse cells in a time that grows with the square of their number.
     const bool every_cell = dim == 1 || coarse.cells.size() > most_coarse_cells;
     AssertThrow(
-      !every_cell || !scene.coupling.is_adaptive() || domain.coarsening == 0,
+      !every_cell || !scene.coupling.is_adaptive() || domain.coarsening.times == 0,
       UserError(
         "'Zone = adaptive' in section 'Coupling' needs a mesh that p4est distributes, of at most " +
         std::to_string(most_coarse_cells) + " coarse cells; this one has " +
@@ -362,14 +362,13 @@ namespace PeriDeal
           {
             const Point<dim> center = cell->face(f)->center();
             const auto       found  = ids.find({static_cast<unsigned int>(cell->index()), f});
-            cell->face(f)->set_boundary_id(domain.has_lattice() ?
-                                             box_side(domain, cut, center) :
-                                           found != ids.end() ? found->second :
-                                                                crack_boundary_id);
+            cell->face(f)->set_boundary_id(domain.has_lattice() ? box_side(domain, cut, center) :
+                                           found != ids.end()   ? found->second :
+                                                                  crack_boundary_id);
           }
-    if (n_refinements > domain.coarsening)
-      mesh->refine_global(n_refinements - domain.coarsening);
-    if (domain.coarsening > 0)
+    if (n_refinements > domain.coarsening.times)
+      mesh->refine_global(n_refinements - domain.coarsening.times);
+    if (domain.coarsening.times > 0)
       Grading<dim>(scene, *mesh).refine(*mesh);
     if constexpr (dim > 1)
       if (auto *distributed = dynamic_cast<parallel::distributed::Triangulation<dim> *>(mesh.get());

@@ -186,11 +186,11 @@ namespace PeriDeal
                                         const BodyParameters<dim>     &body,
                                         const bool                     at_centers)
   {
-    if (body.domain.pins.empty())
+    if (body.domain.islands.pins.empty())
       return;
     const double slack = 1e-6 * body.domain.spacing().norm();
     for (unsigned int node = 0; node < positions.size(); ++node)
-      for (const Pin<dim> &pin : body.domain.pins)
+      for (const Pin<dim> &pin : body.domain.islands.pins)
         if (pin.at_center == at_centers && pin.position.distance(positions[node]) < slack)
           {
             const unsigned int unknown = dim * node + pin.component;

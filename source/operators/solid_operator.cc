@@ -52,10 +52,10 @@ namespace PeriDeal
       for (const Point<dim> &p : piece.corners)
         for (unsigned int d = 0; d < dim; ++d)
           {
-            const double slack = 1e-9 * (domain.body_upper[d] - domain.body_lower[d]);
+            const double slack = 1e-9 * (domain.extra.body_upper[d] - domain.extra.body_lower[d]);
             domain.refuse(
-              (domain.extra_layers[2 * d] > 0 && p[d] < domain.body_lower[d] + slack) ||
-                (domain.extra_layers[2 * d + 1] > 0 && p[d] > domain.body_upper[d] - slack),
+              (domain.extra.layers[2 * d] > 0 && p[d] < domain.extra.body_lower[d] + slack) ||
+                (domain.extra.layers[2 * d + 1] > 0 && p[d] > domain.extra.body_upper[d] - slack),
               "Extra layers",
               "a crack ends at a side of the body that has some, and would be closed by them. Leave them out at that side.");
           }

@@ -204,8 +204,8 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           {
             const double slack = 1e-9 * (domain.upper[d] - domain.lower[d]);
-            if ((domain.extra_layers[2 * d] > 0 && p[d] < domain.body_lower[d] + slack) ||
-                (domain.extra_layers[2 * d + 1] > 0 && p[d] > domain.body_upper[d] - slack))
+            if ((domain.extra.layers[2 * d] > 0 && p[d] < domain.extra.body_lower[d] + slack) ||
+                (domain.extra.layers[2 * d + 1] > 0 && p[d] > domain.extra.body_upper[d] - slack))
               volume *= 0.5;
           }
         return domain.shows(p) ? volume : 0.;

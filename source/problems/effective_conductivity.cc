@@ -29,7 +29,7 @@ namespace PeriDeal
     double length_over_area = 1.;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        const double length = scene.domain.body_upper[d] - scene.domain.body_lower[d];
+        const double length = scene.domain.extra.body_upper[d] - scene.domain.extra.body_lower[d];
         length_over_area    = d == a.id / 2 ? length_over_area * length : length_over_area / length;
       }
     const double heat = 0.5 * (balance.sides.at(a.name) - balance.sides.at(b.name));

@@ -99,7 +99,7 @@ namespace PeriDeal
             Vector volumes(u);
             integrate(initial, u);
             integrate([](const Point<dim> &) { return 1.; }, volumes);
-            if (scene.domain.coarsening > 0)
+            if (scene.domain.coarsening.times > 0)
               {
                 fem->hanging_nodes().condense(u);
                 fem->hanging_nodes().condense(volumes);
@@ -107,7 +107,7 @@ namespace PeriDeal
               }
             for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
               u.local_element(i) /= volumes.local_element(i);
-            if (scene.domain.coarsening > 0)
+            if (scene.domain.coarsening.times > 0)
               move_to_nodes(initial, volumes, u);
           }
         else

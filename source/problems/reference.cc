@@ -55,8 +55,8 @@ namespace PeriDeal
     {
       const Domain<dim> &domain = scene.domain;
       const bool         layers = domain.has_extra_layers();
-      const Point<dim>   lower  = layers ? domain.body_lower : domain.lower,
-                       upper    = layers ? domain.body_upper : domain.upper;
+      const Point<dim>   lower  = layers ? domain.extra.body_lower : domain.lower,
+                       upper    = layers ? domain.extra.body_upper : domain.upper;
       const Point<dim>  middle  = lower + 0.5 * (upper - lower);
       ExactSolidContext context;
       context.dim = dim;

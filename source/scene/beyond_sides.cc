@@ -166,7 +166,7 @@ namespace PeriDeal
     for (const types::boundary_id side : conditions.symmetry)
       set(side, BeyondSide::mirrored);
     for (unsigned int side = 0; side < 2 * dim; ++side)
-      if (automatic && body.domain.has_extra_layers() && body.domain.extra_layers[side] > 0)
+      if (automatic && body.domain.has_extra_layers() && body.domain.extra.layers[side] > 0)
         beyond[side] = BeyondSide::nothing;
     return beyond;
   }

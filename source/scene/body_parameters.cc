@@ -82,12 +82,12 @@ namespace PeriDeal
   {
     for (unsigned int d = 0; d < dim; ++d)
       Assert(lower[d] < upper[d] && cells[d] > 0, ExcMessage("A box needs cells."));
-    domain.shape      = Shape::box;
-    domain.lower      = lower;
-    domain.upper      = upper;
-    domain.body_lower = lower;
-    domain.body_upper = upper;
-    domain.cells      = cells;
+    domain.shape            = Shape::box;
+    domain.lower            = lower;
+    domain.upper            = upper;
+    domain.extra.body_lower = lower;
+    domain.extra.body_upper = upper;
+    domain.cells            = cells;
     cracks.set_box(lower, upper);
   }
 

@@ -159,8 +159,7 @@ namespace PeriDeal
               if (static_cast<int>(cells[axis]) + change < 2 || found)
                 continue;
               other[axis] += change;
-              found = first_along_row(pieces, domain, other, at_centers, off_row, axis) ==
-                      nullptr;
+              found = first_along_row(pieces, domain, other, at_centers, off_row, axis) == nullptr;
               if (found)
                 cells = other;
             }
@@ -205,7 +204,7 @@ namespace PeriDeal
                              " (section 'Cracks') runs along a row of " +
                              (at_centers ? "cell centres" : "nodes") + " of " +
                              text_of<dim>(scene.domain.cells) + " cells";
-    const bool fixed = scene.domain.shape == Shape::image || scene.domain.coarsening > 0 ||
+    const bool fixed = scene.domain.shape == Shape::image || scene.domain.coarsening.times > 0 ||
                        scene.domain.has_extra_layers();
     const auto cells = fixed ? std::optional<Cells<dim>>() :
                                cells_off_cracks(pieces, scene.domain, at_centers);

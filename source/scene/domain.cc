@@ -165,7 +165,8 @@ namespace PeriDeal
     for (unsigned int d = 0; d < dim; ++d)
       {
         const double slack = 1e-9 * (upper[d] - lower[d]);
-        inside = inside && p[d] >= body_lower[d] - slack && p[d] <= body_upper[d] + slack;
+        inside             = inside && p[d] >= extra.body_lower[d] - slack &&
+                 p[d] <= extra.body_upper[d] + slack;
       }
     return inside;
   }
@@ -245,17 +246,17 @@ namespace PeriDeal
   template <int dim>
   void Domain<dim>::parse_fine_part()
   {
-    fine_by_formula = text("Fine where") != "auto";
-    if (fine_by_formula && coarsening == 0)
+    coarsening.by_formula = text("Fine where") != "auto";
+    if (coarsening.by_formula && coarsening.times == 0)
       error("Fine where", "has no effect: 'Coarsening' is 0, so all cells are fine.");
-    if (coarsening == 0)
+    if (coarsening.times == 0)
       return;
     if (shape != Shape::box)
       error("Coarsening",
             "found " + text("Coarsening") + ", but 'Shape' is '" + text("Shape") +
               "': only the lattice of a box has cells to merge. Use 0.");
     for (unsigned int d = 0; d < dim; ++d)
-      if (coarsening > 20 || cells[d] % (1u << coarsening) != 0)
+      if (coarsening.times > 20 || cells[d] % (1u << coarsening.times) != 0)
         {
           unsigned int possible = 0;
           while (possible < 20 && cells[d] % (2u << possible) == 0)
@@ -267,10 +268,10 @@ namespace PeriDeal
                   " only. Choose 'Cells' divisible by a higher power of two, or at most " +
                   std::to_string(possible) + " here.");
         }
-    if (!fine_by_formula)
+    if (!coarsening.by_formula)
       return;
-    fine = Expression(text("Fine where"), where("Fine where"));
-    if (fine.depends_on_time())
+    coarsening.fine = Expression(text("Fine where"), where("Fine where"));
+    if (coarsening.fine.depends_on_time())
       error("Fine where", "found '" + text("Fine where") + "'; the formula may not depend on t.");
   }
 
@@ -357,7 +358,7 @@ namespace PeriDeal
     lower = parse_point<dim>(text("Lower corner"), where("Lower corner"));
     upper = parse_point<dim>(text("Upper corner"), where("Upper corner"));
     image.reset();
-    pins.clear();
+    islands.pins.clear();
     notes.clear();
     if (shape == Shape::image)
       parse_image(); // the pixels may say where the upper corner is
@@ -375,7 +376,7 @@ namespace PeriDeal
     parse_hole();
     holes.has_one = shape == Shape::plate_with_hole;
     parse_listed_holes();
-    coarsening = whole_number("Coarsening");
+    coarsening.times = whole_number("Coarsening");
     parse_fine_part();
     mesh_file = text("Mesh file");
     if (shape == Shape::mesh_file && mesh_file.empty() && !own_mesh)

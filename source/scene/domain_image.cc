@@ -152,18 +152,18 @@ namespace PeriDeal
       if (whole_number(entry) < 1 || whole_number(entry) > 1000)
         error(entry, "found " + text(entry) + ", needs a number from 1 to 1000.");
 
-    const std::filesystem::path beside = std::filesystem::path(scene_folder) / text("Image");
+    const std::filesystem::path beside = std::filesystem::path(files.folder) / text("Image");
     image_file = std::filesystem::exists(text("Image")) || !std::filesystem::exists(beside) ?
                    text("Image") :
                    beside.string();
     if (!std::filesystem::exists(image_file))
       error("Image",
             "there is no file '" + text("Image") + "'" +
-              places_looked_at(text("Image"), scene_folder));
+              places_looked_at(text("Image"), files.folder));
     Picture picture;
     try
       {
-        picture = read_picture(image_file, communicator);
+        picture = read_picture(image_file, files.communicator);
       }
     catch (const UserError &fault)
       {
@@ -183,7 +183,7 @@ namespace PeriDeal
     const double       n_cells =
       std::pow(n_parts, 2.) * (picture.n_columns / block) * (picture.n_rows / block);
     const double room =
-      available_memory(communicator) / Utilities::MPI::n_mpi_processes(communicator);
+      available_memory(files.communicator) / Utilities::MPI::n_mpi_processes(files.communicator);
     if (n_cells * bytes_of_cell > room || n_cells > std::numeric_limits<unsigned int>::max())
       error(n_parts > 1 ? "Cells per pixel" : "Pixels per cell",
             "found " + text(n_parts > 1 ? "Cells per pixel" : "Pixels per cell") +
@@ -205,7 +205,7 @@ namespace PeriDeal
         image->lower[d]   = lower[d];
         image->spacing[d] = (upper[d] - lower[d]) / cells[d];
       }
-    islands = choice<IslandRule>("Islands");
+    islands.rule = choice<IslandRule>("Islands");
     if (picture.n_columns % block != 0 || picture.n_rows % block != 0)
       notes.push_back("'Pixels per cell' leaves out " + std::to_string(picture.n_columns % block) +
                       " columns of pixels at the right and " +
@@ -294,11 +294,11 @@ namespace PeriDeal
   template <int dim>
   void Domain<dim>::parse_extra_layers()
   {
-    body_lower   = lower;
-    body_upper   = upper;
-    extra_layers = parse_layers<dim>(text("Extra layers"), where("Extra layers"));
+    extra.body_lower = lower;
+    extra.body_upper = upper;
+    extra.layers     = parse_layers<dim>(text("Extra layers"), where("Extra layers"));
     const bool any =
-      std::any_of(extra_layers.begin(), extra_layers.end(), [](const auto n) { return n > 0; });
+      std::any_of(extra.layers.begin(), extra.layers.end(), [](const auto n) { return n > 0; });
     const std::string phase = text("Extra layers phase");
     if (!phase.empty() && (!any || !image))
       error("Extra layers phase",
@@ -312,15 +312,15 @@ namespace PeriDeal
     const Tensor<1, dim> h = spacing();
     for (unsigned int d = 0; d < dim; ++d)
       {
-        lower[d] -= h[d] * extra_layers[2 * d];
-        upper[d] += h[d] * extra_layers[2 * d + 1];
-        cells[d] += extra_layers[2 * d] + extra_layers[2 * d + 1];
+        lower[d] -= h[d] * extra.layers[2 * d];
+        upper[d] += h[d] * extra.layers[2 * d + 1];
+        cells[d] += extra.layers[2 * d] + extra.layers[2 * d + 1];
       }
     require_countable("Extra layers");
     if constexpr (dim == 2)
       if (image)
         *image = image->surrounded(
-          extra_layers,
+          extra.layers,
           phase.empty() ?
             PhaseMap::nearest :
             static_cast<int>(choice_of(phase, image->names, where("Extra layers phase"))));
@@ -330,7 +330,7 @@ namespace PeriDeal
   template <int dim>
   bool Domain<dim>::has_extra_layers() const
   {
-    return std::any_of(extra_layers.begin(), extra_layers.end(), [](const auto n) {
+    return std::any_of(extra.layers.begin(), extra.layers.end(), [](const auto n) {
       return n > 0;
     });
   }
@@ -347,7 +347,7 @@ namespace PeriDeal
   PhaseMap Domain<dim>::image_of_body() const
   {
     if constexpr (dim == 2)
-      return image->without(extra_layers);
+      return image->without(extra.layers);
     return *image;
   }
 

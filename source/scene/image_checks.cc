@@ -284,11 +284,11 @@ namespace PeriDeal
                                                     return a.distance(first) <
                                                            b.distance(first) - 1e-9 * island.size;
                                                   });
-          scene.domain.pins.push_back({first, 0, at_center});
-          scene.domain.pins.push_back({first, 1, at_center});
+          scene.domain.islands.pins.push_back({first, 0, at_center});
+          scene.domain.islands.pins.push_back({first, 1, at_center});
           const Tensor<1, 2> arm = last - first;
           if (arm.norm() > 0.)
-            scene.domain.pins.push_back(
+            scene.domain.islands.pins.push_back(
               {last, std::abs(arm[0]) >= std::abs(arm[1]) ? 1u : 0u, at_center});
         }
     }
@@ -300,9 +300,9 @@ namespace PeriDeal
       PhaseMap  &map        = *domain.image;
       const bool determined = is_elastic(scene) ? !scene.elasticity.is_static() :
                                                   !scene.time.steady;
-      if (domain.islands == IslandRule::pin && !is_elastic(scene))
+      if (domain.islands.rule == IslandRule::pin && !is_elastic(scene))
         entry_error(domain.where("Islands"), "'pin' is for 'Physics = elasticity'; use 'remove'.");
-      if ((determined && domain.islands != IslandRule::remove) || !map.has_voids())
+      if ((determined && domain.islands.rule != IslandRule::remove) || !map.has_voids())
         return;
       const std::vector<int> part_of = map.parts(connections(scene));
       const Holding          holding(scene);
@@ -325,26 +325,26 @@ namespace PeriDeal
       const std::string parts =
         std::to_string(islands.size()) + (islands.size() == 1 ? " part" : " parts");
       const std::string what = describe(islands);
-      if (domain.islands == IslandRule::error)
+      if (domain.islands.rule == IslandRule::error)
         entry_error(domain.where("Islands"),
                     "no side holds " + parts + " of the body in the image (" + what + "), whose " +
                       (is_elastic(scene) ? "displacement" : "steady state") +
                       " is not determined. Use '" +
                       (is_elastic(scene) ? "remove' or 'pin" : "remove") +
                       "', or give conditions on a side that each part touches.");
-      if (2 * n_cells > n_solid && domain.islands == IslandRule::remove)
+      if (2 * n_cells > n_solid && domain.islands.rule == IslandRule::remove)
         entry_error(domain.where("Islands"),
                     "'remove' would take away " + percent(double(n_cells) / n_solid) +
                       " of the body, because no side holds " + parts + " of it (" + what +
                       "). Give conditions on a side that the body touches.");
       for (const ImagePart &island : islands)
-        if (domain.islands == IslandRule::pin)
+        if (domain.islands.rule == IslandRule::pin)
           pin(scene, part_of, island);
         else
           for (const std::size_t c : island.cells)
             map.phases[c] = PhaseMap::empty;
       domain.notes.push_back("no side holds " + parts + " of the image, " + what + ": " +
-                             (domain.islands == IslandRule::pin ? "pinned" : "removed") +
+                             (domain.islands.rule == IslandRule::pin ? "pinned" : "removed") +
                              " ('Islands' in section 'Domain').");
     }
 

@@ -200,7 +200,7 @@ namespace PeriDeal
     boundary_conditions.physical_names.clear();
     if (!domain.mesh_file.empty())
       boundary_conditions.physical_names =
-        read_physical_names(domain.mesh_file, domain.scene_folder, dim, domain.communicator);
+        read_physical_names(domain.mesh_file, domain.files.folder, dim, domain.files.communicator);
     boundary_conditions.parse(domain.has_lattice(),
                               domain.shape == Shape::plate_with_hole ||
                                 (domain.image && domain.image->has_voids()),
@@ -223,8 +223,8 @@ namespace PeriDeal
     checkpoint.parse(time.end_time, time.steady);
     const bool layers = domain.has_extra_layers();
     output.make_grid(domain.shape == Shape::box,
-                     layers ? domain.body_lower : domain.lower,
-                     layers ? domain.body_upper : domain.upper);
+                     layers ? domain.extra.body_lower : domain.lower,
+                     layers ? domain.extra.body_upper : domain.upper);
     reference.parse();
     units.parse();
     validate();

@@ -286,8 +286,8 @@ namespace PeriDeal
           const std::string message = text.file_name + ": " + trimmed(out.str());
           AssertThrow(false, UserError(message));
         }
-      scene.domain.scene_folder = std::filesystem::path(text.file_name).parent_path().string();
-      scene.domain.communicator = text.communicator;
+      scene.domain.files.folder = std::filesystem::path(text.file_name).parent_path().string();
+      scene.domain.files.communicator = text.communicator;
       scene.parse_and_validate();
     });
     scene.domain.mesh_file = found_near(scene.domain.mesh_file, text.file_name);

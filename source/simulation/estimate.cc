@@ -74,7 +74,7 @@ namespace PeriDeal
       if (domain.image)
         return static_cast<double>(domain.image->phases.size()) -
                static_cast<double>(domain.image->counts().back());
-      double n = number_of<dim>(domain.cells, 0) / std::pow(2., 1. * dim * domain.coarsening);
+      double n = number_of<dim>(domain.cells, 0) / std::pow(2., 1. * dim * domain.coarsening.times);
       if (domain.has_voids())
         n *= share_of_body(domain);
       return n;
@@ -148,7 +148,7 @@ namespace PeriDeal
     {
       if (!scene.domain.has_lattice() || scene.domain.image)
         return "the body is no box";
-      if (scene.domain.coarsening > 0 || scene.domain.has_extra_layers())
+      if (scene.domain.coarsening.times > 0 || scene.domain.has_extra_layers())
         return "the lattice is graded or has extra layers";
       if (has_bonds(scene))
         {

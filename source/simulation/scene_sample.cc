@@ -82,8 +82,8 @@ namespace PeriDeal
       }
     for (const char *const entry : {"Probes", "Line", "Grid"})
       coarse->output.set(entry, "");
-    coarse->domain.scene_folder = scene.domain.scene_folder;
-    coarse->domain.communicator = scene.domain.communicator;
+    coarse->domain.files.folder       = scene.domain.files.folder;
+    coarse->domain.files.communicator = scene.domain.files.communicator;
     coarse->parse_and_validate();
     problem_factory(*coarse).require_computable(*coarse);
     return coarse;

@@ -331,8 +331,8 @@ namespace PeriDeal
   nlohmann::ordered_json Simulation<dim>::summary_now(const bool at_the_end) const
   {
     nlohmann::ordered_json summary = PeriDeal::describe_scene(scene, text, *mesh, communicator);
-    if (scene.domain.coarsening > 0)
-      summary["mesh"] = {{"coarsening", scene.domain.coarsening},
+    if (scene.domain.coarsening.times > 0)
+      summary["mesh"] = {{"coarsening", scene.domain.coarsening.times},
                          {"adaptations", adaptation.history.n_adaptations()}};
     describe_run(scene, *mesh, *record, timings, summary);
     summary["write times"] = output_times();

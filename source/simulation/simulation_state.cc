@@ -27,7 +27,7 @@ namespace PeriDeal
     adaptation.grading = std::make_unique<Grading<dim>>(scene, *mesh);
     if (scene.time.steady || resumes())
       return;
-    for (unsigned int round = 0; round < scene.domain.coarsening && adapt(0.); ++round)
+    for (unsigned int round = 0; round < scene.domain.coarsening.times && adapt(0.); ++round)
       for (auto &problem : problems)
         problem->start_anew();
   }
@@ -76,7 +76,7 @@ namespace PeriDeal
     progress.line(problems[0]->steady_name());
     settle();
     constexpr double settled = 0.05; // share of cells more or fewer
-    for (unsigned int round = 0; round < 2 * scene.domain.coarsening; ++round)
+    for (unsigned int round = 0; round < 2 * scene.domain.coarsening.times; ++round)
       {
         const double n_before = mesh->n_global_active_cells();
         if (!adapt(0.))

@@ -123,13 +123,14 @@ namespace PeriDeal
   {
     json                     summary  = describe_start(scene, text, communicator);
     static const char *const shapes[] = {"box", "plate with hole", "mesh file", "image"};
-    const auto               corners  = scene.domain.has_extra_layers() ?
-                                          std::make_pair(scene.domain.body_lower, scene.domain.body_upper) :
-                                          bounding_box(mesh, communicator);
-    summary["domain"]                 = {{"lower", coordinates(corners.first)},
-                                         {"upper", coordinates(corners.second)},
-                                         {"shape", shapes[static_cast<int>(scene.domain.shape)]}};
-    summary["cells"]                  = mesh.n_global_active_cells();
+    const auto               corners =
+      scene.domain.has_extra_layers() ?
+                      std::make_pair(scene.domain.extra.body_lower, scene.domain.extra.body_upper) :
+                      bounding_box(mesh, communicator);
+    summary["domain"] = {{"lower", coordinates(corners.first)},
+                         {"upper", coordinates(corners.second)},
+                         {"shape", shapes[static_cast<int>(scene.domain.shape)]}};
+    summary["cells"]  = mesh.n_global_active_cells();
     if (json places = places_of_conditions(scene, mesh, communicator); !places.empty())
       summary["places"] = std::move(places);
     if (scene.domain.image)

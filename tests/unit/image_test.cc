@@ -223,8 +223,8 @@ namespace PeriDeal
     EXPECT_EQ(nearest.domain.cells, (std::array<unsigned int, 2>{{6, 4}}));
     EXPECT_EQ(nearest.domain.lower, Point<2>(-2., 0.));
     EXPECT_EQ(nearest.domain.upper, Point<2>(4., 4.));
-    EXPECT_EQ(nearest.domain.body_lower, Point<2>(0., 0.));
-    EXPECT_EQ(nearest.domain.body_upper, Point<2>(4., 3.));
+    EXPECT_EQ(nearest.domain.extra.body_lower, Point<2>(0., 0.));
+    EXPECT_EQ(nearest.domain.extra.body_upper, Point<2>(4., 3.));
     EXPECT_TRUE(nearest.domain.shows(Point<2>(0.5, 2.5)));
     EXPECT_FALSE(nearest.domain.shows(Point<2>(0.5, 3.5)));
     EXPECT_FALSE(nearest.domain.shows(Point<2>(-0.5, 0.5)));
@@ -333,7 +333,7 @@ namespace PeriDeal
                              {"Domain/Cells per pixel", "2"},
                              {"Peridynamics/Horizon ratio", "2"}}) +
                elastic());
-        EXPECT_EQ(scene.domain.pins.size(), 6u);
+        EXPECT_EQ(scene.domain.islands.pins.size(), 6u);
         std::vector<std::string>         notes;
         const auto                       mesh = build_mesh(scene, MPI_COMM_WORLD, notes);
         dealii::DoFHandler<2>            handler(*mesh);

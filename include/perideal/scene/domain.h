@@ -72,26 +72,46 @@ namespace PeriDeal
     NodePlacement                 nodes = NodePlacement::vertices;
     Holes<dim>                    holes; // of a plate with holes
     std::string                   mesh_file;
-    unsigned int coarsening = 0; // times that cells are merged away from where they stay fine
-    Expression   fine;           // they stay fine where greater than 0
-    bool         fine_by_formula = false; // else in the zone of section `Coupling`
+
+    /** Cells are merged, so many times, away from where they stay fine. */
+    struct Coarsening
+    {
+      unsigned int times = 0;
+      Expression   fine;               // they stay fine where it is greater than 0
+      bool         by_formula = false; // else in the zone of section `Coupling`
+    };
+    Coarsening coarsening;
 
     /**
      * Rows of cells beyond each side (left, right, bottom, ...), which are in no result, and the
      * body between them.
      */
-    std::array<unsigned int, 2 * dim> extra_layers{};
-    dealii::Point<dim>                body_lower, body_upper;
+    struct ExtraLayers
+    {
+      std::array<unsigned int, 2 * dim> layers{};
+      dealii::Point<dim>                body_lower, body_upper;
+    };
+    ExtraLayers extra;
 
     std::string               image_file;
     std::shared_ptr<PhaseMap> image; // of `Shape = image`, else null
-    IslandRule                islands = IslandRule::error;
-    std::vector<Pin<dim>>     pins;  // of islands; set by Scene
     std::vector<std::string>  notes; // on the image and the cracks, for the user
 
-    /** Images are looked for here, too, and read by the processes of this communicator together. */
-    std::string scene_folder;
-    MPI_Comm    communicator = MPI_COMM_SELF;
+    /** Parts of an image that nothing joins to the rest. */
+    struct Islands
+    {
+      IslandRule            rule = IslandRule::error;
+      std::vector<Pin<dim>> pins; // set by Scene
+    };
+    Islands islands;
+
+    /** Files are looked for here, too, and read by the processes of this communicator together. */
+    struct Files
+    {
+      std::string folder;
+      MPI_Comm    communicator = MPI_COMM_SELF;
+    };
+    Files files;
 
     /** Nodes and cells lie on a lattice: any body but one from a mesh file. */
     bool has_lattice() const
