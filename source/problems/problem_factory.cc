@@ -55,9 +55,9 @@ namespace PeriDeal
   void require_computable(const Scene<dim> &scene, const SceneText &text)
   {
     with_location(text, [&] {
+      require_stepper(scene);
       problem_factory(scene).require_computable(scene);
       Grading<dim>::require(scene);
-      require_stepper(scene);
     });
   }
 

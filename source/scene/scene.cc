@@ -214,13 +214,13 @@ namespace PeriDeal
     make_heat_problem(*this);
     // a conductor without capacitance is always in its steady state, and an equilibrium has a time
     // only where its loads have
-    time.steady =
-      (time.steady && !elasticity.computes_temperature) || !material.stores ||
-      (general.physics == Physics::elasticity && elasticity.is_static() && !is_loaded_slowly());
+    const bool rests = this->deforms && elasticity.is_static() && !is_loaded_slowly();
+    time.steady = (time.steady && !elasticity.computes_temperature) || !material.stores || rests;
     take_times();
     solver.parse();
-    output.parse(time.end_time, time.steady);
-    checkpoint.parse(time.end_time, time.steady);
+    // a body that deforms and cannot be steady, though it is said to be: its solver says so
+    output.parse(time.end_time, this->deforms ? rests : time.steady);
+    checkpoint.parse(time.end_time, this->deforms ? rests : time.steady);
     const bool layers = domain.has_extra_layers();
     output.make_grid(domain.shape == Shape::box,
                      layers ? domain.extra.body_lower : domain.lower,
