@@ -19,6 +19,16 @@ namespace PeriDeal
   {
     const Domain<dim>  &domain = body.domain;
     const Peridynamics &pd     = body.peridynamics;
+    pd.refuse(dim > 1 && pd.extrapolates_layers(),
+              "Flux treatment",
+              "'layer extrapolation' is for 'Dimension' 1 only; use 'extrapolation'.");
+    pd.refuse(dim > 2 && pd.self_term == SelfTerm::paper,
+              "Self term",
+              "'paper' is defined for 'Dimension' 1 and 2 only.");
+    pd.refuse(pd.correction_direction != CorrectionDirection::both &&
+                static_cast<unsigned int>(pd.correction_direction) >= dim,
+              "Correction direction",
+              "there is no such direction with 'Dimension' = " + std::to_string(dim) + ".");
     domain.require_lattice(pd.volume_fraction == VolumeFraction::exact,
                            pd.where("Volume fraction"),
                            "'exact'");

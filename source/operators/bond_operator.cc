@@ -232,7 +232,7 @@ namespace PeriDeal
     constraints.update(bonds, body);
     form->update_rows(rows, stiffness_diagonal.begin());
     outside.update(rows);
-    if (!change.damage) // which may leave nodes alone, that keep their heat
+    if (bonds.cracks().broken().empty()) // damage may leave nodes alone, that keep their heat
       throw_if_isolated(rows);
     for (const auto &load : loads.with_coefficient())
       if (std::binary_search(rows.begin(), rows.end(), load.node))

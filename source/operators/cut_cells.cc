@@ -37,9 +37,9 @@ namespace PeriDeal
                           const double                        new_transmission,
                           const BrokenBonds                  *broken_now)
   {
-    broken          = broken_now != nullptr && !broken_now->empty() ? broken_now : nullptr;
-    cracks          = make_crack_geometries(pieces);
-    transmission    = new_transmission;
+    broken       = broken_now != nullptr && !broken_now->empty() ? broken_now : nullptr;
+    cracks       = rule.in_mesh ? std::vector<CrackGeometry<dim>>() : make_crack_geometries(pieces);
+    transmission = new_transmission;
     const auto open = make_open_geometries(pieces);
     if (broken)
       damaged.resize(cut.size(), false);
@@ -48,9 +48,10 @@ namespace PeriDeal
         const unsigned int index = cell->active_cell_index();
         cut[index]               = !rule.in_mesh &&
                      (rule.removes ? is_removed(cell, open) : PeriDeal::is_cut(cell, cracks));
+        if (!damaged.empty())
+          damaged[index] = false;
         if (!broken || (cut[index] && rule.removes))
           continue;
-        damaged[index] = false;
         for (const unsigned int a : cell->vertex_indices())
           for (unsigned int b = 0; b < a; ++b)
             damaged[index] = damaged[index] || kept_of_broken(cell, a, b) < 1.;

@@ -144,10 +144,9 @@ namespace PeriDeal
         nodes    = zone_bonds->coupling().families().neighbors().nodes_near(boxes, reach + beyond);
         old_rows = zone_bonds->apply_change(change, nodes);
       }
-    cells.cut().set(near,
-                    history.pieces(to),
-                    history.transmission(to),
-                    zone_bonds ? &zone_bonds->coupling().families().cracks().broken() : nullptr);
+    const BrokenBonds *const broken =
+      zone_bonds ? &zone_bonds->coupling().families().cracks().broken() : nullptr;
+    cells.cut().set(near, history.pieces(to), history.transmission(to), broken);
     if (scaled)
       {
         const auto beside = owned_unknowns<dim>(cells_near(0.), *layout);
@@ -166,7 +165,7 @@ namespace PeriDeal
       }
     event->touched.compress();
     event->touched.sort();
-    update_rows(!joins.empty(), change.damage);
+    update_rows(!joins.empty(), broken && !broken->empty());
     event->touched.clear();
     return true;
   }

@@ -200,9 +200,12 @@ namespace PeriDeal
     std::string message;
     if (body.peridynamics.extrapolates_layers())
       {
+        std::set<types::boundary_id> sides;
+        for (const SurfaceTransfer &flux : fluxes)
+          sides.insert(flux.id);
         for (const SurfaceTransfer &flux : fluxes)
           if (find_condition(fluxes, flux.id) == &flux) // once for each side
-            message = extrapolate_layer(bonds, flux.id, fluxes.size(), body);
+            message = extrapolate_layer(bonds, flux.id, sides.size(), body);
       }
     else
       for (const auto &[node, transfer] : first_sides(nodes, fluxes, true))

@@ -7,6 +7,7 @@
 
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/solid_problem.h>
+#include <perideal/scene/with_formulas.h>
 
 #include <algorithm>
 
@@ -20,12 +21,14 @@ namespace PeriDeal
     template <int dim>
     ChangeSet<dim> damage_since(const SolidProblem<dim> &solid, std::size_t &n_told)
     {
-      const MPI_Comm              all = solid.dofs().get_communicator();
-      const std::vector<NodePair> own = solid.op().broken_since(n_told);
-      std::vector<Point<dim>>     places;
-      for (const NodePair &pair : own)
-        places.push_back(
-          solid.position(solid.dofs().locally_owned_dofs().index_within_set(pair[0])));
+      const MPI_Comm          all = solid.dofs().get_communicator();
+      std::vector<NodePair>   own = solid.op().broken_since(n_told);
+      std::vector<Point<dim>> places; // of first nodes, each once
+      std::sort(own.begin(), own.end());
+      for (std::size_t k = 0; k < own.size(); ++k)
+        if (k == 0 || own[k][0] != own[k - 1][0])
+          places.push_back(
+            solid.position(solid.dofs().locally_owned_dofs().index_within_set(own[k][0])));
       ChangeSet<dim> change;
       change.damage = true;
       for (const auto &list : Utilities::MPI::all_gather(all, own))
@@ -65,13 +68,14 @@ namespace PeriDeal
       return;
     std::size_t n_marks = n_told;
     const bool  any     = !solid.op().broken_since(n_marks).empty();
-    bool        untold  = Utilities::MPI::max(any ? 1 : 0, solid.dofs().get_communicator()) > 0;
+    bool untold = was_told || Utilities::MPI::max(any ? 1 : 0, solid.dofs().get_communicator()) > 0;
     archive.exchange("damage that heat does not know", untold);
     if (!archive.loads())
       return;
-    was_told = untold;
-    n_told   = 0;
-    solid.heat->follow(damage_since(solid, n_told));
+    was_told                    = untold;
+    n_told                      = 0;
+    const ChangeSet<dim> damage = damage_since(solid, n_told);
+    with_formulas(solid.dofs().get_communicator(), [&] { solid.heat->follow(damage); });
   }
 
 

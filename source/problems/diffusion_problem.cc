@@ -150,8 +150,10 @@ namespace PeriDeal
   void DiffusionProblem<dim>::apply_change(const ChangeSet<dim> &damage)
   {
     Timings::Scope scope(this->timings, "following damage");
-    follow(damage);
-    stepper->restart();
+    with_formulas(this->dofs().get_communicator(), [&] {
+      follow(damage);
+      stepper->restart();
+    });
   }
 
 

@@ -28,7 +28,7 @@ namespace PeriDeal
       using DiffusionProblem<dim>::scene;
 
       /**
-       * @param model finite elements, coupled, or peridynamics by exchange, which is `coupled` with
+       * @param on finite elements, coupled, or peridynamics by exchange, which is `coupled` with
        *              the zone everywhere
        */
       ElementDiffusion(Model<dim> &on, const Scene<dim> &scene)

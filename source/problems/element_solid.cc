@@ -28,7 +28,7 @@ namespace PeriDeal
       using SolidProblem<dim>::scene;
 
       /**
-       * @param model finite elements, coupled, or peridynamics with fictitious nodes, which has
+       * @param on finite elements, coupled, or peridynamics with fictitious nodes, which has
        *              elements for what is beside bonds: loads, masses, stresses
        */
       ElementSolid(Model<dim> &on, const Scene<dim> &scene)

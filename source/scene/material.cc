@@ -179,19 +179,6 @@ namespace PeriDeal
   }
 
 
-  void Material::require_storage()
-  {
-    needs_storage = true;
-    for (const std::string entry : {"Density", "Heat capacity"})
-      read(entry, Physics::heat); // for its errors
-    const std::vector<std::string> &names = phases.all().names;
-    for (unsigned int k = 0; k < names.size(); ++k)
-      if (is_zero(heat_capacity.formula(k)))
-        error("Heat capacity",
-              "is 0 in the phase '" + names[k] + "', needs a value greater than 0.");
-  }
-
-
   InitialAndSource::InitialAndSource()
     : SceneSection("Initial and source")
   {

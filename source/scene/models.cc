@@ -140,7 +140,7 @@ namespace PeriDeal
   }
 
 
-  void Peridynamics::parse(const Physics physics, const unsigned int dim)
+  void Peridynamics::parse(const Physics physics)
   {
     horizon_ratio = number("Horizon ratio");
     if (horizon_ratio < 1.)
@@ -210,16 +210,6 @@ namespace PeriDeal
       treatment == BoundaryTreatment::exchange ?
         "'exchange' has no place for a nonlocal dilatation" :
         "fictitious nodes and layers are not defined");
-    refuse(dim > 1 && flux_treatment == FluxTreatment::layer_extrapolation,
-           "Flux treatment",
-           "'layer extrapolation' is for 'Dimension' 1 only; use 'extrapolation'.");
-    refuse(dim > 2 && self_term == SelfTerm::paper,
-           "Self term",
-           "'paper' is defined for 'Dimension' 1 and 2 only.");
-    refuse(correction_direction != CorrectionDirection::both &&
-             static_cast<unsigned int>(correction_direction) >= dim,
-           "Correction direction",
-           "there is no such direction with 'Dimension' = " + std::to_string(dim) + ".");
   }
 
 

@@ -208,7 +208,7 @@ namespace PeriDeal
                               elasticity.computes_temperature);
     cracks.parse(general.physics);
     keep_cracks_off_nodes(*this);
-    peridynamics.parse(general.physics, dim);
+    peridynamics.parse(general.physics);
     coupling.parse();
     finite_elements.parse(general.physics, elasticity.computes_temperature);
     make_heat_problem(*this);

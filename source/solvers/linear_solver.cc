@@ -72,6 +72,13 @@ namespace PeriDeal
 
   void LinearSolver::prepare(const double a, const double b)
   {
+    if (remake)
+      {
+        preconditioner = std::make_unique<MultigridPreconditioner>(op, direct_up_to);
+        if (built_stiffness >= 0.)
+          preconditioner->initialize(built_capacity, built_stiffness);
+        remake = false;
+      }
     // An outdated preconditioner makes iterations slower, never wrong: making one costs as much as
     // dozens of iterations.
     const bool worn = outdated &&
@@ -152,11 +159,7 @@ namespace PeriDeal
     archive.exchange("first iterations", n_first_iterations);
     archive.exchange("last iterations", n_last_iterations);
     archive.exchange("outdated", outdated);
-    if (!archive.loads())
-      return;
-    preconditioner = std::make_unique<MultigridPreconditioner>(op, direct_up_to);
-    if (built_stiffness >= 0.)
-      preconditioner->initialize(built_capacity, built_stiffness);
+    remake = archive.loads();
   }
 
 

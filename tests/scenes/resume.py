@@ -40,13 +40,15 @@ SCENES = {
              for stepper, tolerance in (("euler", 0), ("rk4", 0), ("rkc2", 0), ("chebyshev", 0), ("crank nicolson", IMPLICIT),
                                         ("bdf2", IMPLICIT), ("sdirk2", IMPLICIT))]
     + [("heat/temperature_dependent.prm", {}, 0)],
-    "cracks": [("coupling/growing_cracks.prm", {}, 0), ("heat/closing_crack.prm", {}, 0),
+    "cracks": [("coupling/growing_cracks.prm", {}, 0), ("coupling/growing_cracks.prm", {"Domain/Cells": "24, 24", "Time/Stepper": "bdf2"}, IMPLICIT),
+               ("heat/closing_crack.prm", {}, 0),
                ("coupling/adaptive_zone.prm", {"Domain/Cells": "24, 24"}, 0)],
     "motion": [("fracture/branching_crack.prm", {"Domain/Cells": "60, 24"}, 0),
                ("fracture/branching_crack.prm", {"Domain/Cells": "61, 25", "Domain/Nodes": "cell centers", "Elasticity/Kinematics": "full"}, 0),
                ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],
     "loading": [("fracture/centre_crack.prm", {"Domain/Cells": "30, 60", "Solver/Tolerance": "1e-13"}, SLOW), ("elasticity/thermal_stress.prm", {}, IMPLICIT),
-                ("elasticity/growing_crack.prm", {"Domain/Cells": "66, 11", "Solver/Tolerance": "1e-13"}, SLOW)],
+                ("elasticity/growing_crack.prm", {"Domain/Cells": "66, 11", "Solver/Tolerance": "1e-13"}, SLOW),
+                ("fracture/torn_strip.prm", {"Time/Stepper": "sdirk2", "Solver/Tolerance": "1e-13"}, SLOW)],
 }
 # Runs of some seconds, which signals can meet on their way.
 LONGER = {

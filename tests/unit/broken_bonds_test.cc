@@ -161,6 +161,55 @@ namespace
   }
 
 
+  /**
+   * Largest change of K x, x even about x = 0.5, by breaking the bond at y = 0.5 from the crack in
+   * the mesh at x = 0.5 to the next node on one side.
+   */
+  double change_beside_faces(const double side)
+  {
+    const Following<2>    body(square + Settings{{"Cracks/Segments", "0.5,0.25 ; 0.5,0.75"},
+                                              {"Cracks/Mesh", "faces"},
+                                              {"Coupling/Zone", "everywhere"}},
+                            ModelKind::coupled);
+    const Nodes<2>       &nodes = *body.nodes;
+    std::vector<NodePair> ends{{0, 0}};
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const dealii::Point<2> p = nodes.position(i), beside = nodes.crack_point(i);
+        if (std::abs(p[1] - 0.5) > 1e-9)
+          continue;
+        if (std::abs(p[0] - 0.5) < 1e-9 && side * (beside[0] - 0.5) > 0.)
+          ends[0][0] = nodes.partitioner()->local_to_global(i);
+        if (std::abs(p[0] - 0.5 - side / 12.) < 1e-9)
+          ends[0][1] = nodes.partitioner()->local_to_global(i);
+      }
+    for (auto &node : ends[0])
+      node = dealii::Utilities::MPI::max(node, MPI_COMM_WORLD);
+    ChangeSet<2> damage;
+    damage.damage = true;
+    damage.broken = {{std::min(ends[0][0], ends[0][1]), std::max(ends[0][0], ends[0][1])}};
+    for (const double x : {0.5, 0.5 + side / 12.})
+      damage.cuts.push_back(
+        dealii::BoundingBox<2>({dealii::Point<2>(x, 0.5), dealii::Point<2>(x, 0.5)}));
+    const Vector x = body.values([](const dealii::Point<2> &p) {
+      return std::cos(3. * (p[0] - 0.5)) + std::abs(p[0] - 0.5) * (1. + p[1]);
+    });
+    Vector       y = body.vector(), before = body.vector();
+    body.op().apply(before, x);
+    EXPECT_TRUE(body.fem->follow(damage));
+    body.op().apply(y, x);
+    return largest_difference(y, before);
+  }
+
+
+  TEST(BrokenBonds, do_the_same_on_both_sides_of_a_crack_in_the_mesh)
+  {
+    const double left = change_beside_faces(-1.), right = change_beside_faces(1.);
+    EXPECT_GT(left, 1e-3);
+    EXPECT_NEAR(left, right, 1e-12);
+  }
+
+
   TEST(BrokenBonds, let_through_what_they_are_told)
   {
     BrokenBonds broken(0.25);

@@ -7,6 +7,8 @@
 
 #include <perideal/mesh/nodes.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <utility>
 #include <vector>

@@ -69,7 +69,7 @@ namespace PeriDeal
     bool completes_families() const;
 
     /** Throws UserError for values out of range and contradicting entries. */
-    void parse(const Physics physics = Physics::heat, const unsigned int dim = 2);
+    void parse(const Physics physics = Physics::heat);
 
   private:
     void declare_quadrature();

@@ -47,8 +47,8 @@ namespace PeriDeal
 
     /**
      * What the preconditioner was made for, so that a run that goes on has the same, unless K has
-     * changed since it was made: then it is made for K as it is. The operator is what it was when
-     * this was kept. Collective.
+     * changed since it was made: then it is made for K as it is. That is done with the next
+     * solution, when the operator has been loaded, too. Collective.
      */
     void exchange(Archive &archive);
 
@@ -63,7 +63,7 @@ namespace PeriDeal
     const unsigned int                       max_iterations, direct_up_to;
     std::unique_ptr<MultigridPreconditioner> preconditioner;
     double                                   built_capacity = -1., built_stiffness = -1.;
-    bool                                     outdated           = false;
+    bool                                     outdated = false, remake = false; // after loading
     unsigned int                             n_first_iterations = 0, n_last_iterations = 0;
   };
 
