@@ -215,7 +215,8 @@ def frames():
     lengths = [sum(np.linalg.norm(np.diff(crack, axis=0)) for crack in entry["cracks"]) for entry in run.summary["fields"]]
     check(len(lengths) == 3 and np.allclose(lengths, [0.4, 1.2, 2.0], atol=1e-9), f"the cracks of each written time have lengths {lengths}")
     script = os.path.join(SOURCE_DIR, "applications", "report", "animate.py")
-    done = subprocess.run([sys.executable, script, run.folder], capture_output=True, text=True, check=False)
+    environment = {**os.environ, "PERIDEAL_DOTS_PER_INCH": "200"}  # cracks have to be seen
+    done = subprocess.run([sys.executable, script, run.folder], env=environment, capture_output=True, text=True, check=False)
     check(done.returncode == 0, f"animate.py: {done.stderr}")
     folder = os.path.join(run.folder, "animation")
     check(sorted(os.listdir(folder)) == ["contact_sheet.png", "frame_0000.png", "frame_0001.png", "frame_0002.png"], f"files are {sorted(os.listdir(folder))}")

@@ -414,6 +414,7 @@ def ranks():
 
 def figures():
     """applications/report/study.py."""
+    os.environ["PERIDEAL_DOTS_PER_INCH"] = "200"  # the size of a file tells that something is drawn
     study = Workshop({"title": "A study <of> plates", "text": "Its text & more.", "rows": [
         {"name": "plates", "scene": "plate.prm", "vary": {"Domain/Cells": ["10, 10", "20, 20", "40, 40"], "Models": ["finite elements", "peridynamics"]}},
         {"name": "kernels", "scene": "plate.prm", "group": "kernels", "vary": {"Peridynamics/Kernel": ["constant", "conical"]}},
