@@ -17,6 +17,7 @@ namespace PeriDeal
     {
       heat.general            = scene.general;
       heat.domain             = scene.domain;
+      heat.material           = scene.material;
       heat.initial_and_source = scene.initial_and_source;
       heat.finite_elements    = scene.finite_elements;
       heat.coupling           = scene.coupling;
@@ -41,7 +42,6 @@ namespace PeriDeal
     template <int dim>
     void read_sections(const Scene<dim> &scene, Scene<dim> &heat)
     {
-      heat.material     = scene.material;
       heat.cracks       = scene.cracks;
       heat.peridynamics = scene.peridynamics;
       heat.cracks.set("Mesh", scene.cracks.mesh == CrackMesh::faces ? "faces" : "removed");
@@ -51,17 +51,13 @@ namespace PeriDeal
         heat.peridynamics.set("Surface correction", "none");
       heat.peridynamics.set("Operator form", "auto"); // that of elastic bonds is meant
       heat.peridynamics.parse(Physics::heat);
-      heat.material.parse(Physics::heat,
-                          dim,
-                          PlaneState::stress,
-                          heat.domain.image,
-                          !heat.time.steady);
       heat.time.steady = heat.time.steady || !heat.material.stores;
       heat.take_times();
       heat.solver.parse();
       heat.units.parse();
       if (heat.time.steady)
         return;
+      heat.material.require_storage();
       if (!scene.material.fracture_energy && !scene.material.critical_stretch)
         return;
       heat.broken_bonds_conduct = scene.elasticity.broken_bonds_conduct;

@@ -145,8 +145,8 @@ namespace PeriDeal
                        const bool                             storage_needed)
   {
     needs_storage = storage_needed;
-    phases.parse(physics, image, [=](const std::string &entry) {
-      return (!needs_storage && (entry == "Density" || entry == "Heat capacity")) ||
+    phases.parse(physics, image, [storage_needed, physics](const std::string &entry) {
+      return (!storage_needed && (entry == "Density" || entry == "Heat capacity")) ||
              (physics == Physics::elasticity && entry == "Heat capacity");
     });
     const auto property = [&](const std::string &entry) {
@@ -176,6 +176,22 @@ namespace PeriDeal
            {"Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio"})
         if (!text(entry).empty())
           read(entry, physics); // for its errors
+  }
+
+
+  void Material::require_storage()
+  {
+    needs_storage                         = true;
+    const std::vector<std::string> &names = phases.all().names;
+    for (const auto &[entry, property] :
+         {std::make_pair("Density", &density), std::make_pair("Heat capacity", &heat_capacity)})
+      {
+        read(entry, Physics::heat); // for its errors
+        for (unsigned int k = 0; k < names.size(); ++k)
+          refuse(is_zero(property->formula(k)),
+                 entry,
+                 "is 0 in the phase '" + names[k] + "', needs a value greater than 0.");
+      }
   }
 
 

@@ -76,6 +76,12 @@ namespace PeriDeal
                const std::shared_ptr<const PhaseMap> &image         = nullptr,
                const bool                             needs_storage = true);
 
+    /**
+     * Of a body that deforms and whose temperature changes in time: what parse() has allowed to be
+     * 0 must not be. Throws UserError.
+     */
+    void require_storage();
+
   private:
     void declare_elasticity();
 

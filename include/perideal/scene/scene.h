@@ -81,7 +81,7 @@ namespace PeriDeal
     /**
      * What `Temperature change = computed` solves first: the values of the same sections, with
      * `Physics = heat` and without what deforms the body; else null. No text is parsed for it but
-     * that of material, cracks and peridynamics, which mean something else there.
+     * that of cracks and peridynamics, which mean something else there.
      */
     std::shared_ptr<const Scene<dim>> heat;
 
