@@ -291,9 +291,10 @@ namespace ScalarWave
     require(scene.time.stepper == "auto",
             "'Stepper' in section 'Time' is '" + scene.time.stepper +
               "'; waves have their own, use 'auto'.");
-    require(
-      sides.transfers.empty(),
-      "Sides of waves are at rest ('Dirichlet', 0) or free: leave out 'Flux' and 'Convection'.");
+    for (const SurfaceTransfer &transfer : sides.transfers)
+      require(false,
+              "Sides of waves are at rest ('Dirichlet', 0) or free: leave out '" +
+                transfer.kind->entry + "'.");
     for (const SideCondition &side : sides.dirichlet)
       require(is_zero(side.value),
               "'Dirichlet' in section 'Boundary conditions': the side '" + side.name +

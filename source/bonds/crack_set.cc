@@ -179,18 +179,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  void CrackSet<dim>::set_time(const double t)
-  {
-    cracks       = make_crack_geometries(past.pieces(t, cut_at_tips));
-    transmission = past.transmission(t);
-    time         = t;
-  }
-
-
-  template <int dim>
   void CrackSet<dim>::apply_change(const ChangeSet<dim> &change)
   {
-    set_time(change.to);
+    time         = change.to;
+    cracks       = make_crack_geometries(past.pieces(time, cut_at_tips));
+    transmission = past.transmission(time);
     broken_bonds.add(change.broken);
   }
 

@@ -26,8 +26,8 @@ namespace PeriDeal
     bool cuts_at_tips(const BodyParameters<dim> &body, const HaloAround halo)
     {
       if (body.deforms && body.cracks.through_tips == ThroughTips::automatic)
-        return halo == HaloAround::nodes || body.coupling.scheme != CouplingScheme::exchange ||
-               body.peridynamics.surface_correction == SurfaceCorrection::crack_scaling;
+        return halo == HaloAround::nodes || !body.coupling.exchanges() ||
+               body.peridynamics.scales_beside_cracks();
       return body.cracks.cuts_bonds_at_tips(body.peridynamics.surface_correction);
     }
 
@@ -64,7 +64,7 @@ namespace PeriDeal
   {
     // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away
     // than any bond.
-    const double layer  = body.peridynamics.flux_treatment == FluxTreatment::layer_extrapolation ?
+    const double layer  = body.peridynamics.extrapolates_layers() ?
                             body.horizon() + 0.5 * nodes.smallest_spacing() :
                             0.;
     const double images = completes_mesh(body) ? halo_of_images(weights.reach()) : 0.;

@@ -33,9 +33,7 @@ namespace PeriDeal
                            pd.where("Volume fraction"),
                            "'exact'");
     domain.require_lattice(pd.self_term == SelfTerm::paper, pd.where("Self term"), "'paper'");
-    domain.require_lattice(pd.form == OperatorForm::lattice,
-                           pd.where("Operator form"),
-                           "'lattice'");
+    domain.require_lattice(pd.wants_lattice_form(), pd.where("Operator form"), "'lattice'");
     if (!domain.has_lattice())
       {
         pd.refuse(

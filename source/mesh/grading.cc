@@ -61,7 +61,7 @@ namespace PeriDeal
   void Grading<dim>::require(const Scene<dim> &scene)
   {
     const CouplingControl &coupling = scene.coupling;
-    const bool             adaptive = coupling.zone == ZoneKind::adaptive;
+    const bool             adaptive = coupling.is_adaptive();
     const bool             coarse   = scene.domain.coarsening.times > 0,
                coupled              = runs(scene, ModelKind::coupled);
     coupling.refuse(adaptive && !coupled,
@@ -73,7 +73,7 @@ namespace PeriDeal
       "'adaptive' changes the mesh, but 'Coarsening' in section 'Domain' is 0: no cell may be "
       "larger than those of 'Cells'. Give it at least 1.");
     coupling.refuse(
-      adaptive && scene.cracks.mesh == CrackMesh::faces,
+      adaptive && scene.cracks.on_faces(),
       "Zone",
       "'adaptive' is for cracks that lie across cells; 'Mesh' in section 'Cracks' is 'faces'.");
     coupling.refuse(
@@ -91,10 +91,10 @@ namespace PeriDeal
     refuse(
       runs(scene, ModelKind::peridynamics),
       "'Models' has peridynamics, whose bonds need fine cells everywhere. Use 'coupled', or 0 here.");
-    refuse(coupled && coupling.scheme != CouplingScheme::exchange,
+    refuse(coupled && !coupling.exchanges(),
            "'Scheme' in section 'Coupling' is not 'exchange', the only one for graded meshes.");
     refuse(
-      !scene.domain.coarsening.by_formula && (adaptive || coupling.zone == ZoneKind::near_cracks) &&
+      !scene.domain.coarsening.by_formula && (adaptive || coupling.is_near_cracks()) &&
         scene.cracks.cracks.empty(),
       "section 'Cracks' has none for which cells would stay fine. Give a formula in 'Fine where'.");
   }

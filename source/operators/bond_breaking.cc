@@ -256,13 +256,12 @@ namespace PeriDeal
   unsigned long long BondBreaking<dim>::break_overstretched(const double               t,
                                                             std::vector<unsigned int> &touched)
   {
-    const std::vector<std::size_t> &starts = bonds.rows.first_of_nodes();
-    std::set<unsigned int>          nodes;
+    std::set<unsigned int> nodes;
     for (const auto &[number, ratio] : inside)
       {
         state.mark(number, BondState::broken, t);
         bonds.kinematics.release(number);
-        nodes.insert(std::upper_bound(starts.begin(), starts.end(), number) - starts.begin() - 1);
+        nodes.insert(bonds.rows.node_of(number));
       }
     unsigned long long n_ends = inside.size();
     if (bonds.beyond)
@@ -315,13 +314,11 @@ namespace PeriDeal
   template <int dim>
   std::vector<NodePair> BondBreaking<dim>::broken_since(std::size_t &n_known) const
   {
-    const std::vector<std::size_t> &starts = bonds.rows.first_of_nodes();
-    const auto                     &layout = *bonds.families.nodes().partitioner();
-    std::vector<NodePair>           pairs;
+    const auto           &layout = *bonds.families.nodes().partitioner();
+    std::vector<NodePair> pairs;
     for (const auto &[number, time] : state.marked_since(n_known))
       {
-        const auto     next = std::upper_bound(starts.begin(), starts.end(), number);
-        const NodePair pair{layout.local_to_global(next - starts.begin() - 1),
+        const NodePair pair{layout.local_to_global(bonds.rows.node_of(number)),
                             layout.local_to_global(bonds.rows.neighbor(number))};
         if (state.is_broken(number) && pair[0] < pair[1])
           pairs.push_back(pair);

@@ -29,7 +29,7 @@ namespace PeriDeal
              other + "'box' or 'plate with hole'.");
     refuse(pd.nodal_volume != NodalVolume::partial,
            "needs 'Nodal volume = partial'." + other + "that.");
-    refuse(body.cracks.on_faces() && !body.cracks.cracks.empty(),
+    refuse(body.cracks.double_nodes(),
            "is not for cracks with 'Mesh = faces', where two nodes are at one place." + other +
              "'removed'.");
     refuse(body.elasticity.has_full_kinematics(),

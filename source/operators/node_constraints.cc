@@ -292,8 +292,8 @@ namespace PeriDeal
     const Lattice<dim> &lattice = *nodes.lattice();
     const int           rows = static_cast<int>(std::lround(body.horizon() / lattice.spacing[0]));
     if (lattice.n_sites[0] <= n_layers * rows)
-      return "'Flux treatment = layer extrapolation' in section 'Peridynamics' takes a layer of one horizon at each end named in "
-             "'Flux', and the bar has no node beyond. Choose a shorter 'Horizon', more 'Cells' or 'natural'.";
+      return "'Flux treatment = layer extrapolation' in section 'Peridynamics' takes a layer of one horizon at each end with a "
+             "flux, and the bar has no node beyond. Choose a shorter 'Horizon', more 'Cells' or 'natural'.";
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         auto      site  = lattice.index(nodes.position(i));

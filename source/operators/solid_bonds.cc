@@ -150,7 +150,7 @@ namespace PeriDeal
     const double          reach     = families.weights().reach();
     // On a mesh nodes follow from others that lie farther away.
     const double touched = beyond && !families.nodes().lattice() ? halo_of_images(reach) : reach;
-    families.cracks().set_time(change.to);
+    families.cracks().apply_change(change);
     const std::vector<unsigned int> near = neighbors.nodes_near(change.cuts, touched);
     if (!marked)
       for (const unsigned int i : near)

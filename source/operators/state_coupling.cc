@@ -28,7 +28,7 @@ namespace PeriDeal
       "'fictitious nodes' and 'Scheme = splice' do not go with 'Symmetry' in section 'Boundary conditions': nothing would tell its lost forces from those of the other half. "
       "Hold the side by 'Displacement', or use 'blending'.");
     body.cracks.refuse(
-      body.cracks.on_faces() && !body.cracks.cracks.empty(),
+      body.cracks.double_nodes(),
       "Mesh",
       "'faces' is for 'Scheme = exchange' in section 'Coupling': the families of others know one node at each place. Use 'removed'.");
     body.domain.refuse(

@@ -5,20 +5,14 @@
 
 #include <perideal/scene/lists.h>
 
-#include <algorithm>
-
 namespace PeriDeal
 {
   template <int dim>
   void note_missing_crack_scaling(const Scene<dim> &scene, std::vector<std::string> &notes)
   {
-    const auto &models = scene.general.models;
-    const auto  runs   = [&](const ModelKind model) {
-      return std::find(models.begin(), models.end(), model) != models.end();
-    };
     const SurfaceCorrection correction = scene.peridynamics.surface_correction;
-    const bool              bonds      = runs(ModelKind::peridynamics) || runs(ModelKind::coupled),
-               pairs                   = scene.cracks.mesh == CrackMesh::pairs;
+    const bool bonds = runs(scene, ModelKind::peridynamics) || runs(scene, ModelKind::coupled),
+               pairs = scene.cracks.cut_pairs();
     if (dim == 1 || scene.cracks.cracks.empty() || scene.cracks.conduct() || (!bonds && !pairs) ||
         (correction != SurfaceCorrection::none && correction != SurfaceCorrection::automatic))
       return;

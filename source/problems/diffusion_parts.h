@@ -5,7 +5,6 @@
 
 #include <perideal/analysis/heat_flux.h>
 #include <perideal/problems/diffusion_problem.h>
-#include <perideal/problems/model.h>
 
 #include <memory>
 #include <sstream>

@@ -29,7 +29,7 @@ namespace PeriDeal
 
       /**
        * @param on finite elements, coupled, or peridynamics by exchange, which is `coupled` with
-       *              the zone everywhere
+       *           the zone everywhere
        */
       ElementDiffusion(Model<dim> &on, const Scene<dim> &scene)
         : DiffusionProblem<dim>(scene)
@@ -220,8 +220,7 @@ namespace PeriDeal
         const Vector                                    &u,
         const std::function<double(const Point<dim> &)> &exact) const override
       {
-        if (scene.cracks.cracks.empty() || scene.cracks.mesh == CrackMesh::faces ||
-            element.degree > 1)
+        if (scene.cracks.cracks.empty() || scene.cracks.on_faces() || element.degree > 1)
           return element_difference(handler, u, exact);
         // Inside a cut cell the interpolant runs across the crack: only the values at the nodes are
         // the model's.
@@ -268,9 +267,9 @@ namespace PeriDeal
           }
         if (!scene.cracks.cracks.empty())
           list.emplace_back("cracks",
-                            scene.cracks.mesh == CrackMesh::pairs ? "pairs" :
-                            scene.cracks.mesh == CrackMesh::faces ? "faces" :
-                                                                    "removed");
+                            scene.cracks.cut_pairs() ? "pairs" :
+                            scene.cracks.on_faces()  ? "faces" :
+                                                       "removed");
         return list;
       }
 

@@ -29,7 +29,7 @@ namespace PeriDeal
 
       /**
        * @param on finite elements, coupled, or peridynamics with fictitious nodes, which has
-       *              elements for what is beside bonds: loads, masses, stresses
+       *           elements for what is beside bonds: loads, masses, stresses
        */
       ElementSolid(Model<dim> &on, const Scene<dim> &scene)
         : SolidProblem<dim>(scene)
@@ -243,7 +243,7 @@ namespace PeriDeal
               list.push_back(setting);
             }
         if (!scene.cracks.cracks.empty())
-          list.emplace_back("cracks", scene.cracks.mesh == CrackMesh::faces ? "faces" : "removed");
+          list.emplace_back("cracks", scene.cracks.on_faces() ? "faces" : "removed");
         return list;
       }
 
@@ -271,7 +271,7 @@ namespace PeriDeal
         Timings::Scope scope(this->timings, "certificate");
         certificate             = examine_coupling(*elements);
         const std::string fault = certificate->fault();
-        AssertThrow(fault.empty() || scene.coupling.scheme != CouplingScheme::exchange,
+        AssertThrow(fault.empty() || !scene.coupling.exchanges(),
                     UserError("The coupling of section 'Coupling' is not sound: " + fault +
                               ". Choose another 'Zone'."));
       }

@@ -37,8 +37,7 @@ namespace PeriDeal
         "Surface correction",
         "'fictitious nodes' has no effect without 'Models = peridynamics' or 'coupled'. Use 'none'.");
       pd.refuse(
-        !runs(scene, ModelKind::coupled) &&
-          pd.surface_correction == SurfaceCorrection::crack_scaling,
+        !runs(scene, ModelKind::coupled) && pd.scales_beside_cracks(),
         "Surface correction",
         "'crack scaling' without 'Models = coupled' has no effect with 'Physics = elasticity'; use 'none', 'volume', 'energy' or 'moments'.");
       material.refuse(
@@ -52,7 +51,7 @@ namespace PeriDeal
         "Surface correction",
         "without 'Models = peridynamics' has no effect with 'Physics = elasticity'; use 'none'.");
       pd.refuse(
-        pd.form == OperatorForm::lattice,
+        pd.wants_lattice_form(),
         "Operator form",
         "'lattice' is not defined without 'Models = peridynamics' with 'Physics = elasticity'; use 'auto'.");
       scene.boundary_conditions.refuse(
@@ -73,9 +72,7 @@ namespace PeriDeal
                                 const Triangulation<dim> &mesh,
                                 std::vector<std::string> &notes)
     {
-      const auto &models = scene.general.models;
-      if (dim == 1 || scene.elasticity.model != ElasticModel::bond_based ||
-          std::find(models.begin(), models.end(), ModelKind::peridynamics) == models.end())
+      if (dim == 1 || !scene.elasticity.is_bond_based() || !runs(scene, ModelKind::peridynamics))
         return;
       const double own    = bond_based_poisson(dim, scene.elasticity.plane);
       double       lowest = 1., highest = -1.;
@@ -116,16 +113,7 @@ namespace PeriDeal
         if (scene.elasticity.is_static())
           require_equilibrium(scene);
         if (scene.heat)
-          try
-            {
-              require_diffusion(*scene.heat);
-            }
-          catch (const UserError &fault)
-            {
-              AssertThrow(false,
-                          UserError("The heat problem of 'Temperature change = computed': " +
-                                    fault.message()));
-            }
+          of_heat_problem([&] { require_diffusion(*scene.heat); });
       }
 
       unsigned int n_components() const override

@@ -26,7 +26,7 @@ namespace PeriDeal
     {
       if (dim == 1)
         return "in 1D";
-      return body.domain.nodes == NodePlacement::cell_centers ? "with nodes at cell centres" : "";
+      return body.domain.has_nodes_at_centers() ? "with nodes at cell centres" : "";
     }
 
 
@@ -50,7 +50,7 @@ namespace PeriDeal
         if (const std::string obstacle = obstacle_on_mesh(body); !obstacle.empty())
           return {"on a mesh from a file families do not go on " + obstacle,
                   "They do with 'Nodes = vertices' (section 'Domain')."};
-      if (body.cracks.mesh == CrackMesh::faces && !body.cracks.cracks.empty())
+      if (body.cracks.double_nodes())
         return {"cracks are cut into the mesh ('Mesh = faces')",
                 "Families go on with 'Mesh = removed' (section 'Cracks')."};
       if (body.peridynamics.nodal_volume != NodalVolume::partial)

@@ -36,9 +36,9 @@ namespace PeriDeal
   template <int dim>
   std::pair<std::string, std::string> BodyParameters<dim>::obstacle_to_bonds_on_elements() const
   {
-    if (domain.nodes != NodePlacement::vertices)
+    if (domain.has_nodes_at_centers())
       return {domain.where("Nodes"),
-              std::string(domain.shape == Shape::image ?
+              std::string(domain.is_image() ?
                             "is 'cell centers', which is what 'auto' means with 'Shape = image'" :
                             "is 'cell centers'") +
                 "; bonds and elements share the nodes on the vertices: set 'Nodes = vertices'"};

@@ -60,18 +60,12 @@ namespace PeriDeal
       error("Adaptive tolerance", "is for 'Zone = adaptive'; 'Zone' is '" + text("Zone") + "'.");
     refuse(overlap < 0., "Overlap", "found " + text("Overlap") + ", needs 0 or more horizons.");
     parse_zone();
-    if (is_adaptive() && scheme != CouplingScheme::exchange)
+    if (is_adaptive() && !exchanges())
       error("Zone",
             "'adaptive' changes the mesh while the run goes on, which 'Scheme = " +
               choice_name("Scheme") + "' cannot follow. Use 'exchange', or 'cracks: 1'.");
-    if (overlap > 0. && scheme == CouplingScheme::exchange)
+    if (overlap > 0. && exchanges())
       error("Overlap", "is for 'Scheme' = splice and blending; 'exchange' has none.");
-  }
-
-
-  bool CouplingControl::is_adaptive() const
-  {
-    return zone == ZoneKind::adaptive;
   }
 
 

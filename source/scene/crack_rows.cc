@@ -187,14 +187,13 @@ namespace PeriDeal
   void keep_cracks_off_nodes(Scene<dim> &scene)
   {
     if (dim == 1 || scene.cracks.cracks.empty() || !scene.domain.has_lattice() ||
-        scene.cracks.mesh == CrackMesh::faces ||
-        scene.cracks.nodes_on_cracks == NodesOnCracks::left)
+        scene.cracks.on_faces() || scene.cracks.nodes_on_cracks == NodesOnCracks::left)
       return;
     const auto pieces = make_crack_geometries(
       scene.cracks.pieces(scene.cracks.tips.empty() ? 0. : scene.time.end_time));
     // In the middle of a body a crack lies on a row of vertices or of centres, for any cells.
     const bool at_centers =
-      scene.domain.nodes == NodePlacement::cell_centers &&
+      scene.domain.has_nodes_at_centers() &&
       (runs(scene, ModelKind::peridynamics) || runs(scene, ModelKind::coupled));
     const CrackGeometry<dim> *const piece =
       first_along_row(pieces, scene.domain, scene.domain.cells, at_centers, on_row);
@@ -204,7 +203,7 @@ namespace PeriDeal
                              " (section 'Cracks') runs along a row of " +
                              (at_centers ? "cell centres" : "nodes") + " of " +
                              text_of<dim>(scene.domain.cells) + " cells";
-    const bool fixed = scene.domain.shape == Shape::image || scene.domain.coarsening.times > 0 ||
+    const bool fixed = scene.domain.is_image() || scene.domain.coarsening.times > 0 ||
                        scene.domain.has_extra_layers();
     const auto cells = fixed ? std::optional<Cells<dim>>() :
                                cells_off_cracks(pieces, scene.domain, at_centers);

@@ -32,8 +32,7 @@ namespace PeriDeal
       heat.boundary_conditions.displacement.clear();
       heat.boundary_conditions.traction.clear();
       // Where no lattice mirrors its nodes in it, a plane of symmetry is an insulated side.
-      if (!scene.domain.has_lattice() ||
-          (scene.cracks.mesh == CrackMesh::faces && !scene.cracks.cracks.empty()))
+      if (!scene.domain.has_lattice() || scene.cracks.double_nodes())
         heat.boundary_conditions.symmetry.clear();
     }
 
@@ -44,10 +43,10 @@ namespace PeriDeal
     {
       heat.cracks       = scene.cracks;
       heat.peridynamics = scene.peridynamics;
-      heat.cracks.set("Mesh", scene.cracks.mesh == CrackMesh::faces ? "faces" : "removed");
+      heat.cracks.set("Mesh", scene.cracks.on_faces() ? "faces" : "removed");
       heat.cracks.parse(Physics::heat);
       // Corrections of elastic bonds are none of those that conduct.
-      if (scene.peridynamics.surface_correction != SurfaceCorrection::crack_scaling)
+      if (!scene.peridynamics.scales_beside_cracks())
         heat.peridynamics.set("Surface correction", "none");
       heat.peridynamics.set("Operator form", "auto"); // that of elastic bonds is meant
       heat.peridynamics.parse(Physics::heat);
@@ -68,18 +67,11 @@ namespace PeriDeal
   } // namespace
 
 
-  template <int dim>
-  void make_heat_problem(Scene<dim> &scene)
+  void of_heat_problem(const std::function<void()> &action)
   {
-    scene.heat.reset();
-    if (scene.general.physics != Physics::elasticity || !scene.elasticity.computes_temperature)
-      return;
-    const auto heat = std::make_shared<Scene<dim>>();
     try
       {
-        take_sections(scene, *heat);
-        read_sections(scene, *heat);
-        heat->validate();
+        action();
       }
     catch (const UserError &fault)
       {
@@ -87,6 +79,21 @@ namespace PeriDeal
           false,
           UserError("The heat problem of 'Temperature change = computed': " + fault.message()));
       }
+  }
+
+
+  template <int dim>
+  void make_heat_problem(Scene<dim> &scene)
+  {
+    scene.heat.reset();
+    if (scene.general.physics != Physics::elasticity || !scene.elasticity.computes_temperature)
+      return;
+    const auto heat = std::make_shared<Scene<dim>>();
+    of_heat_problem([&] {
+      take_sections(scene, *heat);
+      read_sections(scene, *heat);
+      heat->validate();
+    });
     scene.heat = heat;
   }
 

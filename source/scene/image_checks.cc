@@ -154,7 +154,7 @@ namespace PeriDeal
       {
         if (!is_elastic(scene))
           return any_value(part);
-        const bool centers = scene.domain.nodes == NodePlacement::cell_centers;
+        const bool centers = scene.domain.has_nodes_at_centers();
         const bool pd      = runs(scene, ModelKind::peridynamics),
                    others  = !pd || runs(scene, ModelKind::finite_elements);
         return ((!others && centers) || is_held(part, false)) &&

@@ -202,8 +202,7 @@ namespace PeriDeal
       boundary_conditions.physical_names =
         read_physical_names(domain.mesh_file, domain.files.folder, dim, domain.files.communicator);
     boundary_conditions.parse(domain.has_lattice(),
-                              domain.shape == Shape::plate_with_hole ||
-                                (domain.image && domain.image->has_voids()),
+                              domain.has_voids(),
                               general.physics,
                               elasticity.computes_temperature);
     cracks.parse(general.physics);
@@ -222,7 +221,7 @@ namespace PeriDeal
     output.parse(time.end_time, this->deforms ? rests : time.steady);
     checkpoint.parse(time.end_time, this->deforms ? rests : time.steady);
     const bool layers = domain.has_extra_layers();
-    output.make_grid(domain.shape == Shape::box,
+    output.make_grid(domain.is_box(),
                      layers ? domain.extra.body_lower : domain.lower,
                      layers ? domain.extra.body_upper : domain.upper);
     reference.parse();

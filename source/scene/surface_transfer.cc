@@ -64,4 +64,13 @@ namespace PeriDeal
       text += (&formula == formulas.data() ? " " : ", ") + formula.text();
     return text;
   }
+
+
+  std::string entries_that_fix_level()
+  {
+    std::string entries = "'Dirichlet'";
+    for (const TransferKind &kind : transfer_kinds())
+      entries += kind.fixes_level ? " or '" + kind.entry + "'" : "";
+    return entries;
+  }
 } // namespace PeriDeal

@@ -6,6 +6,7 @@
 
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
+#include <perideal/scene/surface_transfer.h>
 #include <perideal/solvers/floating_part.h>
 
 #include <Eigen/Eigenvalues>
@@ -187,7 +188,9 @@ namespace PeriDeal
             "The steady state is not determined in a part of the body with " +
             std::to_string(static_cast<unsigned long long>(n)) + " unknowns, one of them at " +
             op.place_of(part.get_partitioner()->global_to_local(index)) +
-            ": cracks (section 'Cracks') have cut it off from all sides with a 'Dirichlet' or 'Convection' condition. "
+            ": cracks (section 'Cracks') have cut it off from all sides in " +
+            entries_that_fix_level() +
+            " (section 'Boundary conditions'). "
             "Give one of its sides such a condition, shorten the cracks, or give them a 'Transmission'.";
         throw_on_all_if_any(communicator, message);
       }

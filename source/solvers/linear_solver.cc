@@ -190,12 +190,9 @@ namespace PeriDeal
     for (const SurfaceTransfer &transfer : bc.transfers)
       for (const Expression &formula : transfer.formulas)
         refuse(formula, bc, transfer.kind->entry);
-    std::string entries = "'Dirichlet'";
-    for (const TransferKind &kind : transfer_kinds())
-      entries += kind.fixes_level ? " or '" + kind.entry + "'" : "";
     scene.time.refuse(bc.dirichlet.empty() && !bc.transfers_fix_level(),
                       "Steady",
-                      "without a side in " + entries +
+                      "without a side in " + entries_that_fix_level() +
                         " (section 'Boundary conditions') the steady state is not determined.");
   }
 
@@ -209,9 +206,8 @@ namespace PeriDeal
   {
     AssertThrow(
       op.has_steady_state(),
-      UserError(
-        "'Steady = true' in section 'Time' needs a 'Dirichlet' or a 'Convection' side in section "
-        "'Boundary conditions': nothing fixes the level of the solution."));
+      UserError("'Steady = true' in section 'Time' needs a side in " + entries_that_fix_level() +
+                " (section 'Boundary conditions'): nothing fixes the level of the solution."));
     Vector rhs, change;
     op.initialize_vector(rhs);
     op.initialize_vector(change);

@@ -23,12 +23,12 @@ namespace PeriDeal
     const std::vector<Method> &methods()
     {
       static const std::vector<Method> list = {{"euler", make_euler, true},
-                                              {"rk4", make_rk4, true},
-                                              {"rkc2", make_rkc2, true},
-                                              {"chebyshev", make_chebyshev, true},
-                                              {"crank nicolson", make_crank_nicolson, false},
-                                              {"bdf2", make_bdf2, false},
-                                              {"sdirk2", make_sdirk2, false}};
+                                               {"rk4", make_rk4, true},
+                                               {"rkc2", make_rkc2, true},
+                                               {"chebyshev", make_chebyshev, true},
+                                               {"crank nicolson", make_crank_nicolson, false},
+                                               {"bdf2", make_bdf2, false},
+                                               {"sdirk2", make_sdirk2, false}};
       return list;
     }
   } // namespace
@@ -95,8 +95,8 @@ namespace PeriDeal
   {
     static const std::vector<std::string> names = []() {
       std::vector<std::string> list{"auto"};
-      for (const Method &entry : methods())
-        list.push_back(entry.name);
+      for (const Method &method : methods())
+        list.push_back(method.name);
       return list;
     }();
     return names;
@@ -128,17 +128,17 @@ namespace PeriDeal
                                         const StepperOptions &options)
   {
     const std::string wanted = name == "auto" ? choose_stepper(op) : name;
-    for (const Method &entry : methods())
-      if (entry.name == wanted)
+    for (const Method &method : methods())
+      if (method.name == wanted)
         {
           AssertThrow(
-            !entry.is_explicit || op.capacity_is_diagonal(),
+            !method.is_explicit || op.capacity_is_diagonal(),
             UserError(
               "'Stepper = " + wanted +
               "' in section 'Time' needs 'Capacity = lumped' in section "
               "'Finite elements'. With 'consistent' choose sdirk2, bdf2 or crank nicolson."));
           refuse_unstable_step(wanted, op, options.time_step);
-          return entry.make(op, options);
+          return method.make(op, options);
         }
     AssertThrow(false,
                 UserError("'Stepper' in section 'Time' is '" + name +

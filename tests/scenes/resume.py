@@ -30,7 +30,7 @@ from scene_test import SOURCE_DIR, Run, check, check_clean_error, check_message,
 from scene_test import EXECUTABLE, _environment, _folders, _on_ranks  # signals need the process itself
 
 IMPLICIT = 1e-12
-SLOW = 1e-11 # what breaks slowly, where the preconditioner may be older than the last break: 3e-12 was seen
+SLOW = 1e-11  # what breaks slowly, where the preconditioner may be older than the last break: 3e-12 was seen
 
 HEAT = {"Domain/Cells": "24, 24"}
 IMAGE = {"Domain/Pixels per cell": "4", "Peridynamics/Horizon ratio": "2", "Elasticity/Solver": "dynamics", "Material/Density": "1",

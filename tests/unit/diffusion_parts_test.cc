@@ -129,7 +129,9 @@ namespace PeriDeal
     body.constraints.distribute(before, 0.);
     const auto &history = body.problem.scene.crack_history();
     EXPECT_FALSE(history.change(body.bonds.cracks().now(), 1.)->cuts.empty());
-    body.bonds.cracks().set_time(history.representative(1.));
+    ChangeSet<2> change;
+    change.to = history.representative(1.);
+    body.bonds.cracks().apply_change(change);
     body.constraints.distribute(still, 0.);
     body.constraints.update(body.bonds, body.problem.scene);
     body.constraints.distribute(after, 0.);
@@ -249,8 +251,10 @@ namespace PeriDeal
     EXPECT_NEAR(sum_of_all(balance.sides["top"]), 0., 1e-12 * size);
 
     // Its sums are those of the bonds when they were last told to have changed.
-    const auto history = body.problem.scene.crack_history();
-    body.bonds.cracks().set_time(history.representative(1.));
+    const auto   history = body.problem.scene.crack_history();
+    ChangeSet<2> change;
+    change.to = history.representative(1.);
+    body.bonds.cracks().apply_change(change);
     const Vector w = body.field(bumpy<2>);
     outside.values(w, 0.5);
     const std::vector<double> of_w = outside.last_values();

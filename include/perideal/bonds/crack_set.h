@@ -67,10 +67,7 @@ namespace PeriDeal
     /** Whether some crack is within a distance of a node; with voids always. */
     bool is_near(const unsigned int node, const double distance) const;
 
-    /** Make the cracks those of the representative time (CrackHistory). */
-    void set_time(const double time);
-
-    /** The cracks after a change, and the bonds that it has broken. */
+    /** Take the cracks after a change, and the bonds that it has broken. */
     void apply_change(const ChangeSet<dim> &change);
 
     /** What another physics of the model has broken. */

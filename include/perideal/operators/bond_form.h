@@ -50,7 +50,7 @@ namespace PeriDeal
     virtual double row_sums(double *sums) const = 0;
 
     /**
-     * The conductances of these owned nodes' bonds have changed (CrackSet::set_time(),
+     * The conductances of these owned nodes' bonds have changed (CrackSet::apply_change(),
      * NodeFactors::set()): take them anew, and write the rows' sums of W_ij to sums[node]. Costs in
      * proportion to the rows, apart from a copy of the stored corrections.
      *

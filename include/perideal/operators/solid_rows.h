@@ -8,6 +8,7 @@
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/node_laws.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -138,6 +139,12 @@ namespace PeriDeal
     unsigned int neighbor(const std::size_t number) const
     {
       return neighbors[number];
+    }
+
+    /** The owned node of which a stored bond is one. */
+    unsigned int node_of(const std::size_t number) const
+    {
+      return std::upper_bound(starts.begin(), starts.end(), number) - starts.begin() - 1;
     }
 
     /** How many of this process's bonds are stored, each counted at both ends. */

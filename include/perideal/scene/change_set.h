@@ -17,10 +17,9 @@ namespace PeriDeal
 
   /**
    * What has changed of a body from one time to another: made by the history of its cracks
-   * (CrackHistory::change()), or by damage (BondBreaking::break_bonds(); for the heat of the same
-   * nodes at the end of a load step), consumed by operators and
-   * their bonds, cells and couplings, which mend only what it names. The same on all processes, but
-   * for the nodes.
+   * (CrackHistory::change()) or by damage (BondBreaking::break_bonds(), and DamageOfSolid for the
+   * heat of the same nodes), consumed by operators and their bonds, cells and couplings, which mend
+   * only what it names. The same on all processes, but for the nodes.
    */
   template <int dim>
   struct ChangeSet

@@ -64,7 +64,10 @@ namespace PeriDeal
     }
 
     /** The mesh follows the solution, and the zone with it. */
-    bool is_adaptive() const;
+    bool is_adaptive() const
+    {
+      return zone == ZoneKind::adaptive;
+    }
 
     /** The entries `Zone` and `Scheme` as given. */
     std::string zone_text() const;

@@ -95,6 +95,12 @@ namespace PeriDeal
       return mesh == CrackMesh::faces;
     }
 
+    /** There are some along faces of the mesh: two nodes are at one place. */
+    bool double_nodes() const
+    {
+      return on_faces() && !cracks.empty();
+    }
+
     /** Cracks or their transmission change with time. */
     bool change() const;
 

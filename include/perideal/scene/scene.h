@@ -111,6 +111,10 @@ namespace PeriDeal
   };
 
 
+  /** Do what concerns Scene::heat: a UserError from there says so. Not collective. */
+  void of_heat_problem(const std::function<void()> &action);
+
+
   /** Whether `Models` names this one. */
   template <int dim>
   bool runs(const Scene<dim> &scene, const ModelKind model)

@@ -80,4 +80,7 @@ namespace PeriDeal
       return fixes_level() ? given + coefficient.value(p) * (ambient.value(p, t) - u) : given;
     }
   };
+
+  /** For messages: entries that fix the level of the solution, "'Dirichlet' or 'Convection'". */
+  std::string entries_that_fix_level();
 } // namespace PeriDeal
