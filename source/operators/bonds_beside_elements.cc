@@ -70,6 +70,7 @@ namespace PeriDeal
         columns.clear();
         for (const unsigned int j : neighbors)
           columns.push_back(layout->local_to_global(j));
+        std::sort(columns.begin(), columns.end()); // which are inserted quicker
         pattern.add_entries(layout->local_to_global(i), columns.begin(), columns.end());
       }
   }

@@ -55,12 +55,6 @@ namespace PeriDeal
   }
 
 
-  bool CrackSideFactors::empty() const
-  {
-    return factors.size() == 0;
-  }
-
-
   void CrackSideFactors::start(const Vector &layout)
   {
     factors.reinit(layout.get_partitioner());
@@ -83,12 +77,6 @@ namespace PeriDeal
   double CrackSideFactors::at(const unsigned int node) const
   {
     return factors.local_element(node);
-  }
-
-
-  double CrackSideFactors::of_bond(const unsigned int i, const unsigned int j) const
-  {
-    return empty() ? 1. : 0.5 * (factors.local_element(i) + factors.local_element(j));
   }
 
 

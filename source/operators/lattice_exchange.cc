@@ -29,12 +29,12 @@ namespace PeriDeal
   void LatticeExchange<dim, Law>::bonds_of(const unsigned int node, std::vector<Bond> &list) const
   {
     list.clear();
+    const bool near_crack = bonds.families.near_crack(node);
     bonds.for_each_bond(node,
                         [&](const unsigned int neighbor, const auto &, const double strength) {
-                          Bond bond;
-                          bond.neighbor = neighbor;
-                          bond.intact   = strength;
-                          bond.weight   = strength * law.kept_fraction(node, neighbor, bond.cut);
+                          Bond bond{neighbor, strength, strength, false};
+                          if (near_crack)
+                            bond.weight *= law.kept_fraction(node, neighbor, bond.cut);
                           list.push_back(bond);
                         });
   }

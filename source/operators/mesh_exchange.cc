@@ -264,13 +264,15 @@ namespace PeriDeal
   void MeshExchange<dim, Law>::bonds_of(const unsigned int node, std::vector<Bond> &list) const
   {
     list.clear();
+    const bool near_crack = own_families.near_crack(node);
     for (const unsigned int number : bonds_of_node[node])
       {
-        const ZoneBond &zone_bond = zone_bonds[number];
-        Bond            bond;
-        bond.neighbor = zone_bond.nodes[zone_bond.nodes[0] == node ? 1 : 0];
-        bond.intact   = zone_bond.intact * zone_bond.scale;
-        bond.weight   = bond.intact * law.kept_fraction(node, bond.neighbor, bond.cut);
+        const ZoneBond    &zone_bond = zone_bonds[number];
+        const unsigned int neighbor  = zone_bond.nodes[zone_bond.nodes[0] == node ? 1 : 0];
+        const double       strength  = zone_bond.intact * zone_bond.scale;
+        Bond               bond{neighbor, strength, strength, false};
+        if (near_crack)
+          bond.weight *= law.kept_fraction(node, neighbor, bond.cut);
         list.push_back(bond);
       }
   }

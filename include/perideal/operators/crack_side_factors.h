@@ -74,7 +74,10 @@ namespace PeriDeal
     };
 
     /** No node has a factor, which is a factor of 1. */
-    bool empty() const;
+    bool empty() const
+    {
+      return factors.size() == 0;
+    }
 
     /** Give each node the factor 1. @p layout of nodes. */
     void start(const Vector &layout);
@@ -86,7 +89,10 @@ namespace PeriDeal
     double at(const unsigned int node) const;
 
     /** By which a bond is multiplied. */
-    double of_bond(const unsigned int i, const unsigned int j) const;
+    double of_bond(const unsigned int i, const unsigned int j) const
+    {
+      return empty() ? 1. : 0.5 * (factors.local_element(i) + factors.local_element(j));
+    }
 
     /** By which a cell with these nodes is multiplied. */
     double of_cell(const std::vector<dealii::types::global_dof_index> &nodes) const;
