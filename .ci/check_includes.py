@@ -13,9 +13,12 @@ import sys
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 # From the bottom up. A room may include itself and the rooms of lower storeys; rooms of one storey
-# do not know each other.
-STOREYS = [["base"], ["scene"], ["mesh", "laws"], ["bonds"], ["operators"], ["solvers", "analysis"], ["output"],
-           ["problems"], ["simulation"], ["study"]]
+# do not know each other. A floor is a folder that lies in rooms itself, and others may include all of these.
+STOREYS = [["base"], ["scene"], ["mesh", "laws"], ["bonds"],
+           ["operators/interface"], ["operators/bounds"], ["operators/parts"], ["operators/lattice"], ["operators/coupling"],
+           ["operators/diffusion", "operators/solid"],
+           ["solvers", "analysis"], ["output"], ["problems"], ["simulation"], ["study"]]
+FLOORS = {room.split("/")[0] for rooms in STOREYS for room in rooms if "/" in room}
 STOREY = {room: number for number, rooms in enumerate(STOREYS) for room in rooms}
 
 MAX_HEADER, MAX_SOURCE = 300, 500
@@ -46,12 +49,17 @@ def files(folder, endings):
 
 
 def room_of(path):
-    parts = path.split("/")
-    if path.startswith("include/perideal/"):
-        return parts[2]
-    if path.startswith("source/"):
-        return parts[1]
+    for start in ("include/perideal/", "source/"):
+        if path.startswith(start):
+            folders = path[len(start):].split("/")[:-1]
+            return "/".join(folders[:2] if folders[:1] and folders[0] in FLOORS else folders[:1])
     return None
+
+
+def check_direction(where, room, path):
+    other = room_of(path)
+    if room and other in STOREY and other != room and STOREY[other] >= STOREY[room]:
+        yield f"{where}: {room} must not include {other} ({path}): it stands above or beside it"
 
 
 def check_includes(path, lines):
@@ -68,9 +76,9 @@ def check_includes(path, lines):
             if not os.path.isfile(os.path.join(ROOT, "include", name)):
                 yield f"{where}: there is no include/{name}"
                 continue
-            other = name.split("/")[1]
-            if room and other != room and STOREY[other] >= STOREY[room]:
-                yield f"{where}: {room} must not include {other} (<{name}>): it stands above or beside it"
+            yield from check_direction(where, room, os.path.join("include", name))
+        elif bracket == '"' and room:
+            yield from check_direction(where, room, os.path.normpath(os.path.join(os.path.dirname(path), name)))
         if room == "laws" and name.startswith("deal.II/") and name not in LAWS_DEAL_II:
             yield f"{where}: laws are functions of numbers and include no <{name}>"
 
@@ -129,7 +137,7 @@ def check_words(path, lines):
 def check_room(path):
     room = room_of(path)
     if room is not None and room not in STOREY:
-        yield f"{path}: '{room}' is not a room; there are {', '.join(STOREY)}"
+        yield f"{path}: '{room or 'no folder'}' is not a room; there are {', '.join(STOREY)}"
 
 
 def check_lists():

@@ -6,7 +6,7 @@
 #include <deal.II/fe/fe_q.h>
 
 #include <perideal/mesh/mesh_builder.h>
-#include <perideal/operators/bond_operator.h>
+#include <perideal/operators/diffusion/bond_operator.h>
 
 #include <chrono>
 #include <ctime>

@@ -7,8 +7,8 @@
 
 #include <deal.II/grid/grid_tools.h>
 
-#include <perideal/operators/coupling.h>
-#include <perideal/operators/fem_operator.h>
+#include <perideal/operators/coupling/coupling.h>
+#include <perideal/operators/diffusion/fem_operator.h>
 #include <perideal/solvers/stepper.h>
 
 #include <filesystem>

@@ -5,7 +5,7 @@
 
 #include <deal.II/fe/fe_dgq.h>
 
-#include <perideal/operators/state_operator.h>
+#include <perideal/operators/solid/state_operator.h>
 #include <perideal/solvers/static_solver.h>
 
 #include "benchmark_findings.h"

@@ -16,8 +16,8 @@
 #include <deal.II/grid/grid_generator.h>
 
 #include <perideal/base/user_error.h>
-#include <perideal/operators/elastic_elements.h>
-#include <perideal/operators/state_operator.h>
+#include <perideal/operators/solid/elastic_elements.h>
+#include <perideal/operators/solid/state_operator.h>
 #include <perideal/solvers/motion_stepper.h>
 #include <perideal/solvers/static_solver.h>
 

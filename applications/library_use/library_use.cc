@@ -17,7 +17,7 @@
 
 #include <perideal/analysis/decay_rate.h>
 #include <perideal/base/user_error.h>
-#include <perideal/operators/bond_operator.h>
+#include <perideal/operators/diffusion/bond_operator.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/stepper.h>
 

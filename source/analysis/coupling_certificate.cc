@@ -4,7 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/analysis/coupling_certificate.h>
-#include <perideal/operators/spectrum.h>
+#include <perideal/operators/bounds/spectrum.h>
 
 #include <algorithm>
 #include <cmath>

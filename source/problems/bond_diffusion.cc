@@ -5,7 +5,7 @@
 #include <deal.II/fe/fe_q.h>
 
 #include <perideal/analysis/heat_flux.h>
-#include <perideal/operators/bond_operator.h>
+#include <perideal/operators/diffusion/bond_operator.h>
 #include <perideal/scene/beyond_sides.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/operators/state_operator.h>
+#include <perideal/operators/solid/state_operator.h>
 #include <perideal/scene/beyond_sides.h>
 #include <perideal/scene/lists.h>
 

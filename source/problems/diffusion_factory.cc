@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/operators/bond_operator.h>
-#include <perideal/operators/fem_operator.h>
+#include <perideal/operators/diffusion/bond_operator.h>
+#include <perideal/operators/diffusion/fem_operator.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/with_formulas.h>

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/operators/operator.h>
+#include <perideal/operators/interface/operator.h>
 #include <perideal/scene/scene.h>
 
 #include <optional>

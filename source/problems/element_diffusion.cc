@@ -8,8 +8,8 @@
 
 #include <perideal/analysis/coupling_certificate.h>
 #include <perideal/base/user_error.h>
-#include <perideal/operators/coupling.h>
-#include <perideal/operators/fem_operator.h>
+#include <perideal/operators/coupling/coupling.h>
+#include <perideal/operators/diffusion/fem_operator.h>
 
 #include <optional>
 

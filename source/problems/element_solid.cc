@@ -7,7 +7,7 @@
 
 #include <perideal/analysis/coupling_certificate.h>
 #include <perideal/base/user_error.h>
-#include <perideal/operators/elastic_elements.h>
+#include <perideal/operators/solid/elastic_elements.h>
 
 #include <limits>
 #include <optional>

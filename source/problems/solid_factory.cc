@@ -5,8 +5,8 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/laws/elasticity.h>
-#include <perideal/operators/elastic_elements.h>
-#include <perideal/operators/state_operator.h>
+#include <perideal/operators/solid/elastic_elements.h>
+#include <perideal/operators/solid/state_operator.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/solid_problem.h>
 #include <perideal/scene/lists.h>

@@ -252,7 +252,7 @@ def torn():
             run = run_scene("prm/fracture/torn_strip.prm", {**more, "Output/Fields": "none"}, ranks=ranks)
             for point, expected in zip(sides, (1., 0.)):
                 what = f"{more}, {ranks} processes: T at {point}"
-                check_close(run.probe(PD, point, column="temperature", time=1.), expected, absolute=2e-3, what=what)
+                check_close(run.probe(PD, point, column="temperature", time=1.), expected, absolute=1.5e-3, what=what)  # exchange 2e-4, bonds alone 1.03e-3
                 check_close(run.probe(PD, point, column="temperature", time=0.1), 1. - point[0], absolute=before, what=f"{what} before")
     whole = run_scene("prm/fracture/torn_strip.prm", {"Elasticity/Broken bonds conduct": "1", "Output/Fields": "none"})
     for point in sides:

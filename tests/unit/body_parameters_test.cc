@@ -10,10 +10,10 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/mesh_builder.h>
-#include <perideal/operators/bond_operator.h>
-#include <perideal/operators/elastic_elements.h>
-#include <perideal/operators/fem_operator.h>
-#include <perideal/operators/state_operator.h>
+#include <perideal/operators/diffusion/bond_operator.h>
+#include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/operators/solid/elastic_elements.h>
+#include <perideal/operators/solid/state_operator.h>
 #include <perideal/scene/scene.h>
 
 #include <gtest/gtest.h>

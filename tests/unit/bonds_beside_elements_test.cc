@@ -3,7 +3,7 @@
 
 // Bonds in a matrix and apart from it, against sums over the bonds of the coupling.
 
-#include <perideal/operators/bonds_beside_elements.h>
+#include <perideal/operators/diffusion/bonds_beside_elements.h>
 
 #include <algorithm>
 #include <numeric>

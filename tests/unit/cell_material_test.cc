@@ -4,7 +4,7 @@
 // Integrals of conductivity and capacity over cells, by hand.
 
 #include <perideal/base/user_error.h>
-#include <perideal/operators/cell_material.h>
+#include <perideal/operators/diffusion/cell_material.h>
 
 #include "operator_test_tools.h"
 

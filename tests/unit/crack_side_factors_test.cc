@@ -8,7 +8,7 @@
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/tria.h>
 
-#include <perideal/operators/crack_side_factors.h>
+#include <perideal/operators/parts/crack_side_factors.h>
 
 #include <gtest/gtest.h>
 

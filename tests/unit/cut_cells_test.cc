@@ -7,7 +7,7 @@
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/tria.h>
 
-#include <perideal/operators/cut_cells.h>
+#include <perideal/operators/parts/cut_cells.h>
 
 #include <gtest/gtest.h>
 

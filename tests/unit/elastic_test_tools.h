@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include <perideal/operators/elastic_elements.h>
-#include <perideal/operators/state_operator.h>
+#include <perideal/operators/solid/elastic_elements.h>
+#include <perideal/operators/solid/state_operator.h>
 
 #include "operator_test_tools.h"
 

@@ -5,7 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/operators/event_work.h>
+#include <perideal/operators/parts/event_work.h>
 
 #include <algorithm>
 

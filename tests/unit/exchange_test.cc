@@ -4,7 +4,7 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <perideal/analysis/coupling_certificate.h>
-#include <perideal/operators/mesh_exchange.h>
+#include <perideal/operators/coupling/mesh_exchange.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include "operator_test_tools.h"

@@ -6,7 +6,7 @@
 
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
-#include <perideal/operators/solid_matrices.h>
+#include <perideal/operators/solid/solid_matrices.h>
 
 #include <cmath>
 

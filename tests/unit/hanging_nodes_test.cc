@@ -12,7 +12,7 @@
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
-#include <perideal/operators/hanging_nodes.h>
+#include <perideal/operators/parts/hanging_nodes.h>
 
 #include <gtest/gtest.h>
 

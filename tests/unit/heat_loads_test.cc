@@ -3,7 +3,7 @@
 
 // Loads of finite elements against integrals by hand.
 
-#include <perideal/operators/heat_loads.h>
+#include <perideal/operators/diffusion/heat_loads.h>
 
 #include "operator_test_tools.h"
 

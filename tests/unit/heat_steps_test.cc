@@ -3,7 +3,7 @@
 
 // The balance of heat since the start: what steppers say has entered, against what the body holds.
 
-#include <perideal/operators/heat_content.h>
+#include <perideal/operators/diffusion/heat_content.h>
 #include <perideal/solvers/stepper.h>
 
 #include "operator_test_tools.h"

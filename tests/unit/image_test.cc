@@ -4,8 +4,8 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <perideal/analysis/phase_statistics.h>
-#include <perideal/operators/elastic_elements.h>
-#include <perideal/operators/state_operator.h>
+#include <perideal/operators/solid/elastic_elements.h>
+#include <perideal/operators/solid/state_operator.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include <filesystem>

@@ -4,7 +4,7 @@
 #include <perideal/analysis/coupling_certificate.h>
 #include <perideal/mesh/cell_geometry.h>
 #include <perideal/mesh/cell_paths.h>
-#include <perideal/operators/mesh_exchange.h>
+#include <perideal/operators/coupling/mesh_exchange.h>
 
 #include <unistd.h>
 

@@ -11,8 +11,8 @@
 
 #include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
-#include <perideal/operators/bond_operator.h>
-#include <perideal/operators/fem_operator.h>
+#include <perideal/operators/diffusion/bond_operator.h>
+#include <perideal/operators/diffusion/fem_operator.h>
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 // Which unknowns of finite elements are held, and by what.
 
 #include <perideal/base/user_error.h>
-#include <perideal/operators/prescribed_values.h>
+#include <perideal/operators/diffusion/prescribed_values.h>
 
 #include "operator_test_tools.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/operators/spectrum.h>
+#include <perideal/operators/bounds/spectrum.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include <numeric>

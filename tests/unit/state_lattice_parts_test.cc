@@ -3,8 +3,8 @@
 
 // The parts of the lattice of elastic bonds, each by itself.
 
-#include "../../source/operators/edge_nodes.h"
-#include "../../source/operators/lattice_stretches.h"
+#include "../../source/operators/lattice/edge_nodes.h"
+#include "../../source/operators/lattice/lattice_stretches.h"
 #include "elastic_test_tools.h"
 
 using namespace PeriDeal;

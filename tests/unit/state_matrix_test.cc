@@ -5,7 +5,7 @@
 
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
-#include <perideal/operators/solid_matrices.h>
+#include <perideal/operators/solid/solid_matrices.h>
 
 #include "elastic_test_tools.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/operators/weighting.h>
+#include <perideal/operators/coupling/weighting.h>
 
 #include <gtest/gtest.h>
 

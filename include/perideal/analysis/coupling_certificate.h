@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include <perideal/operators/elastic_elements.h>
-#include <perideal/operators/fem_operator.h>
+#include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/operators/solid/elastic_elements.h>
 
 #include <optional>
 #include <string>

@@ -7,7 +7,7 @@
 
 #include <perideal/base/types.h>
 #include <perideal/bonds/diffusion_bonds.h>
-#include <perideal/operators/fem_operator.h>
+#include <perideal/operators/diffusion/fem_operator.h>
 
 #include <array>
 

@@ -5,6 +5,7 @@
 
 #include <perideal/bonds/families.h>
 #include <perideal/scene/beyond_sides.h>
+#include <perideal/scene/body_parameters.h>
 
 #include <array>
 #include <vector>
@@ -48,6 +49,9 @@ namespace PeriDeal
       unsigned int      origin = 0; // the node that it is an image of
       double            volume = 0.;
     };
+
+    /** Throws UserError for a body that does not go on beyond its sides. Not collective. */
+    static void require(const BodyParameters<dim> &body);
 
     FictitiousExtension(const Families<dim>                   &families,
                         const std::array<BeyondSide, 2 * dim> &beyond);

@@ -11,7 +11,7 @@
 #include <perideal/base/archive.h>
 #include <perideal/base/timing.h>
 #include <perideal/mesh/nodes.h>
-#include <perideal/operators/operator.h>
+#include <perideal/operators/interface/operator.h>
 #include <perideal/output/field_writer.h>
 
 #include <nlohmann/json_fwd.hpp>

@@ -6,7 +6,7 @@
 #include <perideal/analysis/elastic_stress.h>
 #include <perideal/analysis/phase_statistics.h>
 #include <perideal/analysis/stress_intensity.h>
-#include <perideal/operators/elastic_operator.h>
+#include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/problems/model.h>
 #include <perideal/problems/motion_parts.h>
 #include <perideal/problems/problem.h>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <perideal/base/archive.h>
-#include <perideal/operators/operator.h>
+#include <perideal/operators/interface/operator.h>
 #include <perideal/solvers/preconditioner.h>
 
 #include <memory>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <perideal/base/archive.h>
-#include <perideal/operators/elastic_operator.h>
+#include <perideal/operators/solid/elastic_operator.h>
 
 namespace PeriDeal
 {

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/operators/elastic_operator.h>
+#include <perideal/operators/solid/elastic_operator.h>
 
 #include <initializer_list>
 #include <string>

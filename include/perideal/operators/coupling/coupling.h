@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/full_matrix.h>
+
+#include <perideal/bonds/diffusion_bonds.h>
+#include <perideal/operators/lattice/bond_form.h>
+#include <perideal/scene/zone.h>
+
+#include <memory>
+#include <vector>
+
+namespace PeriDeal
+{
+  template <int dim>
+  class NodeFamilies;
+
+
+  /**
+   * How peridynamic bonds in a zone and finite elements Q1 share one body: which bonds there are,
+   * how strong they are, and what is left of each cell's matrix. Both act on the same nodes, the
+   * vertices of the mesh, with one unknown each where something diffuses, dim in a solid (rows and
+   * columns interleaved). The operators of the elements add up
+   *
+   *   K u = sum of bonds W_ij v (v . (u_i - u_j)) + sum of families K_f u + sum of cells R_c u,
+   *
+   * v = 1 for what diffuses, the bond's vector xi in a solid. Where a dilatation joins all bonds of
+   * a node, they are a family (NodeFamilies).
+   *
+   * Every process asks for the bonds of its own nodes and for its own cells only. Not collective
+   * unless stated.
+   */
+  template <int dim>
+  class Coupling
+  {
+  public:
+    using Bond = typename DiffusionBonds<dim>::Bond;
+    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+
+    virtual ~Coupling() = default;
+
+    /** Throws UserError for a body that cannot have any. */
+    static void require(const BodyParameters<dim> &body);
+
+    /**
+     * What the row of an owned node has of bonds, in a fixed order: `weight` W_ij, and `intact` as
+     * if no crack were there, broken bonds included. @p bonds is overwritten.
+     */
+    virtual void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const = 0;
+
+    /** What acts as families of nodes; null where bonds act one by one. */
+    virtual const NodeFamilies<dim> *node_families() const
+    {
+      return nullptr;
+    }
+
+    /**
+     * Nodes that an owned node may ever have a bond to, however the zone moves. @p neighbors is
+     * overwritten.
+     */
+    virtual void possible_neighbors_of(const unsigned int         node,
+                                       std::vector<unsigned int> &neighbors) const = 0;
+
+    /**
+     * Turn the matrix K_c of an intact cell into what is left of it, R_c; broken bonds count as
+     * whole ones. Returns whether anything has changed.
+     */
+    virtual bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const = 0;
+
+    /** Last change of a cell's matrix, after cracks have cut it. Returns as change_cell(). */
+    virtual bool finish_cell(const Cell &, dealii::FullMatrix<double> &) const
+    {
+      return false;
+    }
+
+    /** Whether change_cell() leaves nothing at all of a cell, now and whatever cracks do. */
+    virtual bool leaves_nothing(const Cell &) const
+    {
+      return false;
+    }
+
+    /**
+     * The bonds are better kept as a form of their own than in a matrix. The same on all processes.
+     */
+    virtual bool has_form() const
+    {
+      return false;
+    }
+
+    /** All of the bonds as one operator. The coupling must outlive it. */
+    virtual std::unique_ptr<BondForm> make_form()
+    {
+      return nullptr;
+    }
+
+    /** Factors of owned nodes and ghosts, by whose mean the form multiplies bonds. */
+    virtual void set_form_factors(std::vector<double>) {}
+
+    /** K is symmetric. */
+    virtual bool symmetric() const
+    {
+      return true;
+    }
+
+    /**
+     * Boxes around the nodes that join the zone on the way to the cracks of that representative
+     * time.
+     */
+    virtual std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const = 0;
+
+    /**
+     * Move on to the cracks after a change, and the zone with them. A bond's strength follows from
+     * the cracks as they are then, their whole way included: bonds that join find themselves broken
+     * where a crack has passed before.
+     */
+    virtual void apply_change(const ChangeSet<dim> &change) = 0;
+
+    /** Part of the bonds' strength that distorted cells leave. Collective. */
+    virtual double kept_share() const
+    {
+      return 1.;
+    }
+
+    /** Share of the body's volume whose nodes are in the zone. Collective. */
+    double zone_share() const;
+
+    /** Whether an owned node is in the zone. */
+    virtual bool in_zone(const unsigned int node) const = 0;
+
+    /** Of all nodes, whole. */
+    virtual const Families<dim> &families() const = 0;
+
+    virtual std::size_t memory_consumption() const = 0;
+  };
+
+
+  /** Of all nodes known here, ghosts included: which are hanging and have no bonds. Collective. */
+  template <int dim>
+  std::vector<bool> hanging_nodes(const Nodes<dim> &nodes);
+
+  /** Throws the UserError of a zone that has no node on any process. Collective. */
+  void throw_if_zone_empty(const double n_nodes, const MPI_Comm communicator);
+
+
+  /** The coupling of what diffuses. Adds the halo to the nodes. Collective. Throws UserError. */
+  template <int dim>
+  std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>                &nodes,
+                                               const BodyParameters<dim> &body,
+                                               const Zone<dim>           &zone,
+                                               const CouplingScheme       scheme);
+
+  /** The coupling of a solid. Otherwise the same. */
+  template <int dim>
+  std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim>                &nodes,
+                                                     const BodyParameters<dim> &body);
+
+  /**
+   * Families of a solid everywhere, with nothing left to the elements: peridynamics alone.
+   * Otherwise the same.
+   */
+  template <int dim>
+  std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim>                &nodes,
+                                                          const BodyParameters<dim> &body);
+} // namespace PeriDeal

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/coupling/coupling.h>
+#include <perideal/operators/coupling/exchange_laws.h>
+#include <perideal/operators/coupling/lattice_bonds.h>
+#include <perideal/scene/body_parameters.h>
+
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Bondwise exchange on a lattice of equal cells (doc/coupling.md): each active bond is added, and
+   * what the finite elements carry along that very bond is taken away from the cells that it
+   * passes,
+   *
+   *   R_c = K_c + k_c S - sum of active bonds W_b share L_b (x) v v^T.
+   *
+   * S is zero on linear fields, so that these conduct or have forces alike with and without bonds,
+   * for any set of them; R_c is positive semidefinite. Bonds of a solid keep the matrix symmetric,
+   * and momentum is conserved. S, v and the stiffness k are those of the law, ConductingBonds or
+   * ElasticBonds; which bonds are active: LatticeBonds.
+   */
+  template <int dim, typename Law>
+  class LatticeExchange : public Coupling<dim>
+  {
+  public:
+    using typename Coupling<dim>::Bond;
+    using typename Coupling<dim>::Cell;
+
+    /** Collective. Throws UserError for a zone without nodes, and as Law::calibrate(). */
+    LatticeExchange(Nodes<dim> &nodes, const BodyParameters<dim> &body, const Zone<dim> &zone);
+
+    void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
+    void possible_neighbors_of(const unsigned int         node,
+                               std::vector<unsigned int> &neighbors) const override;
+    bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
+    bool leaves_nothing(const Cell &cell) const override;
+    bool has_form() const override;
+    std::unique_ptr<BondForm>             make_form() override;
+    void                                  set_form_factors(std::vector<double> factors) override;
+    std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
+    void                                  apply_change(const ChangeSet<dim> &change) override;
+    bool                                  in_zone(const unsigned int node) const override;
+    const Families<dim>                  &families() const override;
+    std::size_t                           memory_consumption() const override;
+
+
+  private:
+    using Site      = typename Lattice<dim>::Index;
+    using Direction = decltype(Law::direction({}));
+
+    LatticeBonds<dim>      bonds;
+    Law                    law;
+    CellSurplus            surplus;
+    std::vector<Direction> directions; // by number of offset
+  };
+} // namespace PeriDeal

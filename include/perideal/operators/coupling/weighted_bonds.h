@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/coupling/weighted_coupling.h>
+
+#include <vector>
+
+namespace PeriDeal
+{
+  /** Splice and blending of what diffuses: bonds that conduct, weighted. */
+  template <int dim>
+  class WeightedBonds : public WeightedCoupling<dim>
+  {
+  public:
+    using typename Coupling<dim>::Bond;
+
+    /** As WeightedCoupling. */
+    WeightedBonds(Nodes<dim>                      &nodes,
+                  const BodyParameters<dim>       &body,
+                  const Zone<dim>                 &zone,
+                  std::unique_ptr<const Weighting> weighting);
+
+    void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
+    void possible_neighbors_of(const unsigned int         node,
+                               std::vector<unsigned int> &neighbors) const override;
+
+  private:
+    std::size_t memory_of_bonds() const override;
+
+    DiffusionBonds<dim> bonds;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/solid/elastic_operator.h>
+#include <perideal/operators/solid/solid_bonds.h>
+#include <perideal/operators/solid/solid_loads.h>
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Bonds that break for good at a stretch e/x of the smaller critical value s of both ends'
+   * materials. It is given, or follows from the fracture energy: what crosses a plane of the
+   * lattice, mean over the axes n, has stored, at this stretch while all else is at rest, s^2 (b B
+   * + c d D) with
+   *   B = 1/q sum over half the family of omega f V xi_n x^2,
+   *   D = h_n sum over the layers on one side of (1/q sum over what crosses of omega f V x^2)^2.
+   * q stays that of the body before.
+   *
+   * Which bonds between nodes are broken, or cut by cracks as they grow, and since when stands here
+   * (broken_state()), of those to fictitious nodes in FictitiousBonds.
+   */
+  template <int dim>
+  class BondBreaking
+  {
+  public:
+    /** Bonds and scene have to outlive this object. Collective. Throws UserError. */
+    BondBreaking(SolidBonds<dim>           &bonds,
+                 const SolidLoads<dim>     &loads,
+                 const BodyParameters<dim> &body);
+
+    /**
+     * Break what is stretched too far at u: of bonds inside the body and beyond its sides those
+     * with at least a share of the largest stretch over critical stretch. Returns what has changed,
+     * or nothing if there were none on any process. Collective.
+     *
+     * @param t      the time of u, kept with each bond
+     * @param energy of the body as it is, collective
+     */
+    std::optional<ChangeSet<dim>> break_bonds(const Vector                  &u,
+                                              const double                   t,
+                                              const double                   share,
+                                              const std::function<double()> &energy);
+
+    /**
+     * What cracks cut as they grow is marked, too. Collective. Throws UserError.
+     * @param marked the change has been loaded with the state of the bonds
+     */
+    void apply_change(const ChangeSet<dim> &change, const bool marked)
+    {
+      bonds.apply_change(change, state, marked);
+    }
+
+    /** What has broken or been cut, and since when. @param keys of the owned nodes. Collective. */
+    void exchange(Archive &archive, const NodeKeys &keys);
+
+    /** As ElasticOperator::broken_since(). */
+    std::vector<NodePair> broken_since(std::size_t &n_known) const;
+
+    /** What has broken so far; null: bonds do not break. */
+    const BreakHistory *history() const
+    {
+      return breaks ? &so_far : nullptr;
+    }
+
+    /** Of the stored bonds. */
+    const BondState &broken_state() const
+    {
+      return state;
+    }
+
+    /** Of the owned nodes and their ghosts; empty where bonds do not break. */
+    const std::vector<double> &critical_stretches() const
+    {
+      return critical;
+    }
+
+    /**
+     * 1 - the volume of neighbours over unbroken bonds over that of the whole family, at the owned
+     * nodes; bonds that cracks of the scene cut count as broken, those that voids cut as none.
+     */
+    std::vector<double> damage() const;
+
+  private:
+    void find_critical_stretches();
+    void find_overstretched(const Vector &u, const double share);
+    void keep_places(); // of what is overstretched
+
+    /** Returns the number of ends of bonds. @param touched the owned nodes that lose a bond */
+    unsigned long long break_overstretched(const double t, std::vector<unsigned int> &touched);
+
+    SolidBonds<dim>           &bonds;
+    const BodyParameters<dim> &body;
+    const bool                 breaks, changes; // some bond may break, or be cut by a growing crack
+    std::vector<double>        critical;
+    BondState                  state;
+    BreakHistory               so_far;
+    std::vector<unsigned int>  loaded_side;    // which in `Traction` is within a horizon of these
+    Overstretched              inside, beyond; // what is to break next, inside by stored bonds
+  };
+} // namespace PeriDeal

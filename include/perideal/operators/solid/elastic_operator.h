@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/interface/operator.h>
+#include <perideal/scene/change_set.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * The forces on a body at rest, each with one component for each direction (N; in 2D per unit
+   * thickness).
+   */
+  struct ForceBalance
+  {
+    std::map<std::string, std::vector<double>> sides; // reactions and tractions, by the side's name
+    std::vector<double>                        body;  // body forces
+
+    /** Length of the sum of all. */
+    double imbalance() const;
+
+    /** Half the sum of the lengths of all: what passes through the body. */
+    double throughput() const;
+  };
+
+
+  /**
+   * Where a body has been turned inside out: nodes have passed through neighbours to which bonds or
+   * elements hold them.
+   */
+  struct Inversion
+  {
+    unsigned long long n_nodes = 0;
+    std::string
+      place; // of the worst of them in the undeformed body, as `(x, y)`; empty if there are none
+  };
+
+
+  /** Where the first bonds of a body broke. */
+  struct BreakPlaces
+  {
+    /**
+     * The middle of the bond that was stretched most of all that broke first; empty: none has
+     * broken.
+     */
+    std::vector<double> first;
+    /**
+     * How many bonds within a horizon of a side or part in `Traction` broke, by its name, before
+     * any did elsewhere.
+     */
+    std::map<std::string, unsigned long long> beside_loads;
+    bool                                      elsewhere = false; // some broke there, too
+
+    /** Collective. */
+    void exchange(Archive &archive);
+  };
+
+
+  /** What has broken of a body so far. The same on all processes. */
+  struct BreakHistory
+  {
+    double             released = 0.; // strain energy
+    unsigned long long n_broken = 0;  // bonds
+    BreakPlaces        places;
+
+    /** Collective. */
+    void exchange(Archive &archive);
+  };
+
+
+  /**
+   * A body of linear elastic material: M u'' = f(t) - K u, u the displacement. Component c of node
+   * i is the unknown dim i + c. K is symmetric and positive semidefinite, its null space the rigid
+   * motions of the body and of parts that nothing holds together. C of the interface is the lumped
+   * mass M.
+   *
+   * Where nonlinear(), residual() is that of the deformed body, and K of apply() and multiply() its
+   * tangent at the last linearize(), at first that of the undeformed body.
+   */
+  class ElasticOperator : public Operator
+  {
+  public:
+    /**
+     * Reactions, tractions and body forces at a state of rest; u must have been through
+     * distribute(u, t). Collective.
+     */
+    virtual ForceBalance forces(const Vector &u, const double t) const = 0;
+
+    /** The strain energy (J; in 2D per unit thickness), thermal strain taken off. Collective. */
+    virtual double energy(const Vector &u) const = 0;
+
+    /** y = K x without conditions. Collective. */
+    virtual void multiply(Vector &y, const Vector &x) const = 0;
+
+    /**
+     * As residual(), but of all unknowns: of those that are prescribed it is minus the force of the
+     * support. Collective.
+     */
+    virtual void unbalanced(Vector &r, const Vector &u, const double t) const = 0;
+
+    /** Gives a vector the layout of one number for each node. Not collective. */
+    virtual void initialize_nodal_vector(Vector &vector) const = 0;
+
+    /**
+     * Let the body be warmer at its nodes by so much than when it is unstressed; K stays as it is.
+     * A new equilibrium is to be found. Collective.
+     */
+    virtual void set_temperature_change(const Vector &nodal) = 0;
+
+    /**
+     * What set_temperature_change() was given, with up-to-date ghosts; empty: the formula of the
+     * scene holds.
+     */
+    const Vector &temperature_change() const
+    {
+      return nodal_change;
+    }
+
+    /**
+     * Tractions and body forces at time t, all unknowns; thermal strain loads nothing. Collective.
+     */
+    virtual void mechanical_loads(Vector &loads, const double t) const = 0;
+
+    /**
+     * y = D v, zero on unknowns that are not free: a viscosity of one second, that is, K's own
+     * forces at the rate v of u. D is symmetric and damps no rigid motion. Collective.
+     */
+    virtual void damping_force(Vector &y, const Vector &v) const
+    {
+      apply(y, v);
+    }
+
+    /** At least the largest eigenvalue of M^{-1} D. Collective. */
+    virtual double damping_bound() const
+    {
+      return spectrum().sharp;
+    }
+
+    /** At least (as sharp_bound() is) the largest eigenvalue of diag(K)^{-1} K. Collective. */
+    double scaled_bound() const;
+
+    /** The forces are not linear in the displacement. Not collective. */
+    virtual bool nonlinear() const
+    {
+      return false;
+    }
+
+    /** Make K the tangent at u. Collective. */
+    virtual void linearize(const Vector &) {}
+
+    /**
+     * The largest |Y|/x - 1, either sign, of unbroken bonds Y that were x long; 0 where nonlinear()
+     * is not. Collective.
+     */
+    virtual double largest_stretch(const Vector & /*u*/) const
+    {
+      return 0.;
+    }
+
+    /**
+     * The nodes at which a corner of a cell that u deforms has no positive volume (cell_corners());
+     * those do not count that have lost a bond, since what has broken off may fold over.
+     * Collective.
+     */
+    virtual Inversion inverted(const Vector & /*u*/) const
+    {
+      return {};
+    }
+
+    /** Null: no bonds of the body may break. Not collective. */
+    virtual const BreakHistory *break_history() const
+    {
+      return nullptr;
+    }
+
+    bool brittle() const
+    {
+      return break_history() != nullptr;
+    }
+
+    /**
+     * The bonds between nodes that have broken since there were @p n_known marks on this process,
+     * which becomes what there are now; each by the process that has its first node. Not
+     * collective.
+     */
+    virtual std::vector<NodePair> broken_since(std::size_t & /*n_known*/) const
+    {
+      return {};
+    }
+
+    /**
+     * Break for good what is stretched too far at u, which must have been through distribute().
+     * Returns how many bonds; K and its diagonal have changed if any, and its spectrum has hardly
+     * grown (none of the springs; dilatations of more than a pressure may a little). Collective.
+     *
+     * @param t     the time of u, kept with each bond
+     * @param share of the largest stretch over critical stretch: only bonds above it
+     */
+    virtual unsigned long long break_bonds(const Vector & /*u*/,
+                                           const double /*t*/,
+                                           const double /*share*/ = 0.)
+    {
+      return 0;
+    }
+
+    /**
+     * Make the cracks of the scene those of the span of time between events that holds t. What they
+     * cut gives up energy at u, which released_energy() counts. Returns whether K has changed: then
+     * its diagonal has, too, and its spectrum may have. Collective. Throws UserError where they
+     * leave a node without hold.
+     */
+    virtual bool grow_cracks(const Vector & /*u*/, const double /*t*/)
+    {
+      return false;
+    }
+
+    /** Some strain energy may be released: bonds break, or cracks grow. Not collective. */
+    bool may_release_energy() const
+    {
+      return brittle() || has_growing_cracks();
+    }
+
+    /** Not collective. */
+    bool has_growing_cracks() const
+    {
+      return next_event(0.) < std::numeric_limits<double>::infinity();
+    }
+
+    /** What growing cracks have released alone. Not collective. */
+    double energy_released_by_growth() const
+    {
+      return released_by_growth;
+    }
+
+    /**
+     * Strain energy that broken bonds, and what growing cracks have cut, have released so far, and
+     * how many bonds have broken. Not collective.
+     */
+    double released_energy() const
+    {
+      return released_by_growth + (brittle() ? break_history()->released : 0.);
+    }
+
+    unsigned long long n_broken_bonds() const
+    {
+      return brittle() ? break_history()->n_broken : 0;
+    }
+
+    /** Where; empty while none have. Not collective. */
+    const BreakPlaces &break_places() const;
+
+    /** Counters, and the temperature that was set. */
+    void exchange(Archive &archive, const NodeKeys &keys) override;
+
+    bool symmetric() const override
+    {
+      return true;
+    }
+
+    bool capacity_is_diagonal() const override
+    {
+      return true;
+    }
+
+    void apply_capacity(Vector &y, const Vector &x) const override
+    {
+      y = x;
+      y.scale(lumped_capacity());
+    }
+
+  protected:
+    /** Numbers that look random but depend on the unknowns' places alone. Not collective. */
+    virtual void fill_noise(Vector &vector) const = 0;
+
+    double released_by_growth = 0.;
+
+    /** Keeps what temperature_change() gives. Collective. */
+    void keep_temperature_change(const Vector &nodal);
+
+  private:
+    Vector nodal_change;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/partitioner.h>
+
+#include <perideal/laws/elasticity.h>
+#include <perideal/operators/solid/displacement_conditions.h>
+#include <perideal/scene/crack_history.h>
+
+#include <memory>
+
+namespace PeriDeal
+{
+  /**
+   * What all models of solids have alike: unknowns, displacements that are prescribed, masses,
+   * loads that are kept while they do not change, thermal strains alpha dT (in plane strain
+   * (1 + nu) alpha dT) from the formula of the scene or from temperatures at nodes, and cracks that
+   * grow.
+   */
+  template <int dim>
+  class SolidOperator : public ElasticOperator
+  {
+  public:
+    /** Throws UserError for a body that no model can deform. Not collective. */
+    static void require(const BodyParameters<dim> &body);
+
+    void initialize_vector(Vector &vector) const override
+    {
+      vector.reinit(unknowns);
+    }
+
+    void initialize_nodal_vector(Vector &vector) const override
+    {
+      vector.reinit(nodes);
+    }
+
+    void apply(Vector &y, const Vector &x) const override;
+    void residual(Vector &r, const Vector &u, const double t) const override;
+    void unbalanced(Vector &r, const Vector &u, const double t) const override;
+    void mechanical_loads(Vector &loads, const double t) const override;
+    void distribute(Vector &u, const double t) const override
+    {
+      conditions->distribute(u, t);
+    }
+
+    void distribute_homogeneous(Vector &x) const override
+    {
+      conditions->mask(x);
+    }
+
+    void clear_constrained(Vector &y) const override
+    {
+      conditions->mask(y);
+    }
+
+    const Vector &lumped_capacity() const override
+    {
+      return mass;
+    }
+
+    const Vector &diagonal() const override
+    {
+      return stiffness_diagonal;
+    }
+
+    bool depends_on_time() const override
+    {
+      return loads_vary || conditions->depends_on_time();
+    }
+
+    bool has_steady_state() const override
+    {
+      return true; // scenes that leave rigid motions free are refused when they are read
+    }
+
+    double next_event(const double t) const override
+    {
+      return history.next_event(t);
+    }
+
+    bool grow_cracks(const Vector &u, const double t) override;
+
+    /** The representative time of the cracks as they are in K (CrackHistory). Not collective. */
+    double crack_time() const
+    {
+      return cracks_of;
+    }
+
+    void exchange(Archive &archive, const NodeKeys &keys) override;
+
+    std::vector<Vector> near_null_space() const override;
+    std::string         place_of(const unsigned int local_index) const override;
+    unsigned int        n_components() const override
+    {
+      return dim;
+    }
+
+    /** Place of a node of this process, by local number. */
+    virtual const dealii::Point<dim> &position(const unsigned int node) const = 0;
+
+  protected:
+    using Layout = std::shared_ptr<const dealii::Utilities::MPI::Partitioner>;
+
+    /** @param of_nodes the layout; if null, set_layout() has to be called by constructors. */
+    explicit SolidOperator(const BodyParameters<dim> &body, const Layout &of_nodes = nullptr);
+
+    /** Sets the layouts and allocates all vectors, to zero. Collective. */
+    void set_layout(const Layout &of_nodes);
+
+    /**
+     * Mend what a change names. Collective. Throws UserError.
+     * @param loaded bonds have been marked already, by what was loaded
+     */
+    virtual void apply_change(const ChangeSet<dim> &change, const bool loaded) = 0;
+
+    /** y = -F(u), without loads. */
+    virtual void find_forces(Vector &y, const Vector &u) const
+    {
+      this->multiply(y, u);
+    }
+
+    /** Thermal ones included. */
+    virtual void find_loads(Vector &loads, const double t) const = 0;
+
+    /** To be called when thermal loads have changed. */
+    void keep_constant_loads()
+    {
+      if (!loads_vary)
+        find_loads(constant_loads, 0.);
+    }
+
+    /** Positive on unknowns that are not free; ghosts up to date. */
+    Vector held_unknowns() const;
+
+    void fill_noise(Vector &vector) const override;
+
+    double temperature_change_at(const unsigned int node) const;
+    double thermal_strain(const dealii::Point<dim> &p, const double temperature_change) const
+    {
+      return thermal_strain_factor(body.material.moduli(p), dim, body.elasticity.plane) *
+             body.material.thermal_expansion.value(p) * temperature_change;
+    }
+
+    double thermal_strain_at(const unsigned int node) const
+    {
+      return thermal_strain(position(node), temperature_change_at(node));
+    }
+
+    const BodyParameters<dim>                   &body;
+    const CrackHistory<dim>                      history;
+    double                                       cracks_of; // representative time of those in K
+    Layout                                       nodes, unknowns;
+    std::unique_ptr<DisplacementConditions<dim>> conditions;
+    const bool                                   loads_vary;
+    Vector                                       mass, stiffness_diagonal, thermal_loads;
+
+  private:
+    void   take(const ChangeSet<dim> &change, const bool loaded);
+    Vector constant_loads;
+
+  protected:
+    mutable Vector scratch;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/bonds/bond_state.h>
+#include <perideal/bonds/families.h>
+#include <perideal/mesh/lattice_sites.h>
+#include <perideal/operators/solid/node_laws.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  template <int dim>
+  class StateLattice;
+
+
+  /**
+   * The bonds of the linear peridynamic solid between nodes of the body (StateOperator), row by
+   * row, and the sums over them that an application takes. On a lattice in 2D and 3D, with linear
+   * kinematics, where nothing breaks and no surface is corrected, nodes store none (StateLattice)
+   * whose bonds no crack cuts, now or later. Other bonds are stored at both ends: W xi, one number,
+   * a column.
+   *
+   * A bond that breaks, or that a growing crack cuts, stays in its row and bears nothing
+   * (release()).
+   */
+  template <int dim>
+  class SolidRows
+  {
+  public:
+    /** A bond of an owned node. */
+    struct Bond
+    {
+      std::size_t            number; // among those that are stored, or not_stored
+      unsigned int           neighbor;
+      dealii::Tensor<1, dim> moment; // W xi, of the tangent W x Y/|Y|
+      double                 spring; // (b_i/q_i + b_j/q_j)/(W x^2)
+    };
+
+    static constexpr std::size_t not_stored = static_cast<std::size_t>(-1);
+
+    /** A bond of a complete family, with volumes of 1. */
+    struct LatticeBond
+    {
+      typename Lattice<dim>::Index offset;
+      dealii::Tensor<1, dim>       moment; // w xi
+      double                       weight; // w x^2
+    };
+
+    /**
+     * Sets q of the owned nodes to the sums over these bonds. Families and laws have to outlive
+     * this object. Collective. Throws UserError: isolated nodes.
+     */
+    SolidRows(const Families<dim> &families, NodeLaws<dim> &laws, const BodyParameters<dim> &body);
+    ~SolidRows();
+
+    /**
+     * To be called once q is final and up to date on ghosts, unless `Surface correction` changes it
+     * here. Collective.
+     */
+    void find_springs(const BodyParameters<dim> &body);
+
+    /** Visit the bonds of an owned node, broken or not, stored or not, in its family's order. */
+    template <typename Visit>
+    void for_each(const unsigned int i, const Visit &visit) const
+    {
+      if (is_on_lattice(i))
+        for_each_of(i, lattice_bonds, visit);
+      else
+        for_each_stored(i, visit);
+    }
+
+    template <typename Visit>
+    void for_each_stored(const unsigned int i, const Visit &visit) const
+    {
+      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+        visit(Bond{k, neighbors[k], moments[k], springs[k]});
+    }
+
+    /** The same of a node that stores none, those of a list. */
+    template <typename Visit>
+    void for_each_of(const unsigned int              i,
+                     const std::vector<LatticeBond> &list,
+                     const Visit                    &visit) const;
+
+    /** The owned node stores no bonds. */
+    bool is_on_lattice(const unsigned int i) const
+    {
+      return !on_lattice.empty() && on_lattice[i];
+    }
+
+    /** Its family and those of its neighbours are like most others. */
+    bool is_regular(const unsigned int i) const;
+
+    /** Those of a complete family, if some nodes store none. */
+    const std::vector<LatticeBond> &bonds_on_lattice() const
+    {
+      return lattice_bonds;
+    }
+
+    /** q of a complete family on the lattice. */
+    double complete_weighted() const;
+
+    /**
+     * tau = c theta/q of the owned nodes, thermal strains left aside. @p u has ghosts. Not
+     * collective.
+     */
+    void find_tensions(double *tau, const double *u) const;
+
+    /**
+     * y = -F of the owned nodes. Owned and ghost values; tau those of the last find_tensions(), or
+     * null: only what the extensions of bonds do. Not collective.
+     */
+    void find_forces(double *y, const double *u, const double *tau) const;
+
+    /** Let a bond bear nothing any more. */
+    void release(const std::size_t number);
+
+    /**
+     * q of the bonds in the body of an owned node that cracks leave it now, broken ones included;
+     * @p message is set, if it is empty, where they do not hold it.
+     */
+    double weight_left(const unsigned int i, std::string &message) const;
+
+    /** Make the springs of the whole bonds of an owned node those of q as it is now. */
+    void renew_springs(const unsigned int i, const BondState &state);
+
+    /** Make a stored bond that of the tangent. */
+    void set_moment(const std::size_t number, const dealii::Tensor<1, dim> &moment)
+    {
+      moments[number] = moment;
+    }
+
+    unsigned int neighbor(const std::size_t number) const
+    {
+      return neighbors[number];
+    }
+
+    /** The owned node of which a stored bond is one. */
+    unsigned int node_of(const std::size_t number) const
+    {
+      return std::upper_bound(starts.begin(), starts.end(), number) - starts.begin() - 1;
+    }
+
+    /** How many of this process's bonds are stored, each counted at both ends. */
+    std::size_t n_stored() const
+    {
+      return neighbors.size();
+    }
+
+    /** Unbroken bonds of this process, those to other processes counted half. */
+    double n_bonds() const
+    {
+      return n_whole;
+    }
+
+    const std::vector<std::size_t> &first_of_nodes() const
+    {
+      return starts;
+    }
+
+    /** The owned nodes that store their bonds. */
+    const std::vector<unsigned int> &nodes_with_rows() const
+    {
+      return stored_nodes;
+    }
+
+    bool has_lattice() const
+    {
+      return lattice != nullptr;
+    }
+
+    std::size_t memory_consumption() const;
+
+    /**
+     * Nodes of all processes that `Surface correction = moments` leaves as they are, and
+     * SurfaceFactors::gap.
+     */
+    unsigned long long n_uncorrected = 0;
+    double             moments_gap   = 0.;
+
+  private:
+    using Family = std::vector<typename Families<dim>::Member>;
+
+    bool              has_complete_family(const unsigned int i) const; // cut or not
+    void              list_lattice_bonds();
+    std::vector<bool> find_changing(const BodyParameters<dim> &body) const;
+    void              store(const unsigned int i, const Family &family, std::string &message);
+    double weight_of(const unsigned int i, const Family &family, std::string &message) const;
+    void   correct_surface(const BodyParameters<dim> &body);
+    void   make_lattice();
+
+    const Families<dim>                &families;
+    NodeLaws<dim>                      &laws;
+    const double                        horizon;
+    std::vector<std::size_t>            starts{0}; // of the bonds of each owned node
+    std::vector<unsigned int>           neighbors;
+    std::vector<dealii::Tensor<1, dim>> moments;
+    std::vector<double>                 springs;      // at first W x^2
+    std::vector<unsigned int>           stored_nodes; // of these the loops are made
+    double                              n_whole = 0.;
+    std::vector<bool>                   on_lattice; // owned nodes that store no bond
+    std::vector<LatticeBond>            lattice_bonds;
+    std::unique_ptr<StateLattice<dim>>  lattice; // or none
+  };
+
+
+  template <int dim>
+  template <typename Visit>
+  inline void SolidRows<dim>::for_each_of(const unsigned int              i,
+                                          const std::vector<LatticeBond> &list,
+                                          const Visit                    &visit) const
+  {
+    const Nodes<dim> &nodes  = families.nodes();
+    const auto        site   = nodes.lattice()->index(nodes.position(i));
+    const double      volume = nodes.volume(i);
+    const double      own    = laws.stiffness(i);
+    for (const LatticeBond &bond : list)
+      {
+        const unsigned int j = families.neighbors().node_at(site + bond.offset);
+        if (j == dealii::numbers::invalid_unsigned_int)
+          continue;
+        const double w = volume * nodes.volume(j);
+        visit(Bond{not_stored, j, w * bond.moment, (own + laws.stiffness(j)) / (w * bond.weight)});
+      }
+  }
+} // namespace PeriDeal

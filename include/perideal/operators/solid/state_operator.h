@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/mesh/cell_corners.h>
+#include <perideal/operators/solid/bond_breaking.h>
+#include <perideal/operators/solid/solid_operator.h>
+#include <perideal/operators/solid/solid_tensors.h>
+
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Linear peridynamic solid (Silling 2007; in 2D Le 2014 section 2 in the corrected form of
+   * doc/elasticity.md), and the bond-based solid as the same without dilatation. With xi the bond,
+   * x its length, M = xi/x, the extension e = M . (u_j - u_i) - s x, s the mean thermal strain of
+   * both ends, and W_ij = V_i V_j omega f (f the volume fraction) over unbroken bonds:
+   *
+   *   q_i = sum_j W_ij x^2 / V_i,  theta_i = d sum_j W_ij x e_ij / (V_i q_i)
+   *   F_i = sum_j W_ij [ (c_i theta_i/q_i + c_j theta_j/q_j) x + (b_i/q_i + b_j/q_j) e_ij ] M
+   *
+   * with d, c, b the factors dilatation, volumetric and extension of StateLaw. The prefactor of
+   * omega drops out. `Surface correction` multiplies W by a bond's factor a in theta and in the
+   * forces from it, by s in those of e, and changes q (surface_factors.h), or lets families go on
+   * beyond the sides (FictitiousBonds). An application takes two passes over the bonds, the
+   * dilatations first.
+   *
+   * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a
+   * rotation makes none (BondKinematics). q is that of the undeformed body.
+   *
+   * Viscosity (Le 2014 eq 2.43) is K without the dilatations. Bonds are those of SolidBonds; which
+   * break, BondBreaking decides.
+   */
+  template <int dim>
+  class StateOperator : public SolidOperator<dim>
+  {
+  public:
+    /** Throws UserError for a body that it cannot deform. Not collective. */
+    static void require(const BodyParameters<dim> &body)
+    {
+      SolidOperator<dim>::require(body);
+      SolidBonds<dim>::require(body);
+      require_traction_layer(body);
+    }
+
+    /** Adds the halo to the nodes. Collective. Throws UserError, among others: isolated nodes. */
+    StateOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body);
+
+    Spectrum spectrum() const override;
+    void     surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    bool     surrogate_is_exact() const override
+    {
+      return false;
+    }
+
+    OperatorSize size() const override;
+    ForceBalance forces(const Vector &u, const double t) const override;
+    double       energy(const Vector &u) const override;
+    void         multiply(Vector &y, const Vector &x) const override;
+    void         set_temperature_change(const Vector &nodal) override;
+    void         damping_force(Vector &y, const Vector &v) const override;
+    double       damping_bound() const override;
+    bool         nonlinear() const override
+    {
+      return solid.kinematics.is_full();
+    }
+
+    void                linearize(const Vector &u) override;
+    double              largest_stretch(const Vector &u) const override;
+    Inversion           inverted(const Vector &u) const override;
+    const BreakHistory *break_history() const override
+    {
+      return breakage.history();
+    }
+
+    std::vector<NodePair> broken_since(std::size_t &n_known) const override
+    {
+      return breakage.broken_since(n_known);
+    }
+
+    unsigned long long break_bonds(const Vector &u, double t, double share = 0.) override;
+    void               exchange(Archive &archive, const NodeKeys &keys) override;
+
+    const dealii::Point<dim> &position(const unsigned int node) const override
+    {
+      return solid.families.nodes().position(node);
+    }
+
+    const SolidBonds<dim> &bonds() const
+    {
+      return solid;
+    }
+
+    const BondBreaking<dim> &breaking() const
+    {
+      return breakage;
+    }
+
+    /** See nodal_tensors(). Collective. */
+    NodalTensors<dim> tensors(const Vector &u) const;
+
+  protected:
+    void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
+    void find_forces(Vector &y, const Vector &u) const override;
+    void find_loads(Vector &loads, const double t) const override;
+
+  private:
+    using SolidOperator<dim>::body;
+    using SolidOperator<dim>::conditions;
+    using SolidOperator<dim>::mass;
+    using SolidOperator<dim>::stiffness_diagonal;
+    using SolidOperator<dim>::thermal_loads;
+    using SolidOperator<dim>::scratch;
+
+    void find_conditions(const Nodes<dim> &nodes);
+    void find_thermal_strains();
+    void find_thermal_loads();
+
+    /** What is found of all bonds, or of those of nodes that have lost some. */
+    void follow_bonds(const std::vector<unsigned int> *of_nodes = nullptr);
+
+    /** tau; the functions below leave ghosts of displacements as they are, up to date. */
+    void find_tensions(const Vector &u, const bool strained) const;
+    void sum_forces(Vector &y, const Vector &x, const bool with_dilatations) const;
+
+    /** Gershgorin's largest, with the norms of the blocks, over the mass, times a factor. */
+    double largest_row(const Vector &of_dilatations, const bool of_tangent, double factor) const;
+
+    bool holds(const CellCorner<dim> &corner) const; // no bond of its node has broken
+
+    SolidBonds<dim>                      solid;
+    SolidLoads<dim>                      loads;
+    BondBreaking<dim>                    breakage;
+    mutable Vector                       tau;     // tau_i = c_i theta_i/q_i; 0 without dilatations
+    mutable std::vector<CellCorner<dim>> corners; // once they have been asked for
+  };
+} // namespace PeriDeal

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/operators/coupling/lattice_exchange.h>
+
+#include <algorithm>
+#include <array>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim, typename Law>
+  LatticeExchange<dim, Law>::LatticeExchange(Nodes<dim>                &nodes,
+                                             const BodyParameters<dim> &body,
+                                             const Zone<dim>           &zone)
+    : bonds(nodes, body, zone, Law::stiffness(body), Law::zone_of_whole_way)
+    , law(bonds.families, body)
+  {
+    if constexpr (Law::has_form)
+      law.check_form(bonds);
+    surplus = Law::calibrate(bonds);
+    for (const auto &offset : bonds.offsets)
+      directions.push_back(Law::direction(bonds.vector_of(offset)));
+  }
+
+
+  template <int dim, typename Law>
+  void LatticeExchange<dim, Law>::bonds_of(const unsigned int node, std::vector<Bond> &list) const
+  {
+    list.clear();
+    const bool near_crack = bonds.families.near_crack(node);
+    bonds.for_each_bond(node,
+                        [&](const unsigned int neighbor, const auto &, const double strength) {
+                          Bond bond{neighbor, strength, strength, false};
+                          if (near_crack)
+                            bond.weight *= law.kept_fraction(node, neighbor, bond.cut);
+                          list.push_back(bond);
+                        });
+  }
+
+
+  template <int dim, typename Law>
+  void LatticeExchange<dim, Law>::possible_neighbors_of(const unsigned int         node,
+                                                        std::vector<unsigned int> &neighbors) const
+  {
+    bonds.possible_neighbors_of(node, neighbors);
+  }
+
+
+  template <int dim, typename Law>
+  bool LatticeExchange<dim, Law>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
+  {
+    if (!bonds.is_of_lattice(cell))
+      return false;
+    if (leaves_nothing(cell))
+      {
+        stiffness = 0.;
+        return true;
+      }
+    constexpr unsigned int    n    = Law::n_components * GeometryInfo<dim>::vertices_per_cell;
+    const Site                site = bonds.families.nodes().lattice()->index(cell->vertex(0));
+    std::array<double, n * n> taken{};
+    bool                      any = false;
+    bonds.for_each_passage(site, [&](const auto &passage, const double share) {
+      any               = true;
+      const auto values = corner_values<Law::n_components>(
+        passage.change,
+        Law::direction(bonds.vector_of(bonds.offsets[passage.offset])));
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j <= i; ++j)
+          taken[i * n + j] += share * values[i] * values[j];
+    });
+    if (!any)
+      return false;
+    stiffness.add(bonds.stiffness_of(site), surplus.matrix);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        stiffness(i, j) -= taken[std::max(i, j) * n + std::min(i, j)];
+    return true;
+  }
+
+
+  template <int dim, typename Law>
+  bool LatticeExchange<dim, Law>::leaves_nothing(const Cell &cell) const
+  {
+    if (!bonds.plain || !bonds.zone.is_everywhere() || !surplus.takes_all)
+      return false;
+    // All bonds that pass a cell far from the body's sides are there, with whole volumes.
+    const Lattice<dim> &lattice = *bonds.families.nodes().lattice();
+    const Site          site    = lattice.index(cell->vertex(0));
+    for (unsigned int d = 0; d < dim; ++d)
+      if (site[d] < bonds.reach[d] || site[d] + 1 + bonds.reach[d] >= lattice.n_sites[d])
+        return false;
+    return true;
+  }
+
+
+  template <int dim, typename Law>
+  bool LatticeExchange<dim, Law>::has_form() const
+  {
+    return Law::has_form && bonds.plain && bonds.zone.is_everywhere();
+  }
+
+  template <int dim, typename Law>
+  std::unique_ptr<BondForm> LatticeExchange<dim, Law>::make_form()
+  {
+    if constexpr (Law::has_form)
+      return law.make_form();
+    return nullptr;
+  }
+
+  template <int dim, typename Law>
+  void LatticeExchange<dim, Law>::set_form_factors(std::vector<double> factors)
+  {
+    if constexpr (Law::has_form)
+      law.set_form_factors(std::move(factors));
+  }
+
+  template <int dim, typename Law>
+  std::vector<BoundingBox<dim>> LatticeExchange<dim, Law>::joining_by(const double time) const
+  {
+    return bonds.joining_by(time);
+  }
+
+  template <int dim, typename Law>
+  void LatticeExchange<dim, Law>::apply_change(const ChangeSet<dim> &change)
+  {
+    bonds.apply_change(change);
+  }
+
+  template <int dim, typename Law>
+  bool LatticeExchange<dim, Law>::in_zone(const unsigned int node) const
+  {
+    return bonds.in_zone(node);
+  }
+
+  template <int dim, typename Law>
+  const Families<dim> &LatticeExchange<dim, Law>::families() const
+  {
+    return bonds.families;
+  }
+
+  template <int dim, typename Law>
+  std::size_t LatticeExchange<dim, Law>::memory_consumption() const
+  {
+    return bonds.memory_consumption() + law.memory_consumption();
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                            \
+  template class LatticeExchange<dim, ConductingBonds<dim>>; \
+  template class LatticeExchange<dim, ElasticBonds<dim>>;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

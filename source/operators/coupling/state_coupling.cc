@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/smallest_eigenvalue.h>
+#include <perideal/operators/coupling/coupling.h>
+#include <perideal/operators/coupling/state_coupling.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  void StateCoupling<dim>::require(const BodyParameters<dim> &body)
+  {
+    const Peridynamics      &pd      = body.peridynamics;
+    const ElasticityControl &control = body.elasticity;
+    const std::string        scheme =
+      "'Scheme = " + body.coupling.scheme_text() + "' in section 'Coupling'";
+    const bool splice = body.coupling.splices();
+    if (pd.completes_families())
+      FictitiousExtension<dim>::require(body);
+    pd.refuse(
+      pd.completes_families() && splice && !body.boundary_conditions.symmetry.empty(),
+      "Surface correction",
+      "'fictitious nodes' and 'Scheme = splice' do not go with 'Symmetry' in section 'Boundary conditions': nothing would tell its lost forces from those of the other half. "
+      "Hold the side by 'Displacement', or use 'blending'.");
+    body.cracks.refuse(
+      body.cracks.double_nodes(),
+      "Mesh",
+      "'faces' is for 'Scheme = exchange' in section 'Coupling': the families of others know one node at each place. Use 'removed'.");
+    body.domain.refuse(
+      !body.domain.has_lattice(),
+      "Shape",
+      "'mesh file' is for 'Scheme = exchange' in section 'Coupling': the families of others lie on a lattice. Use 'box' or 'plate with hole'.");
+    pd.refuse(pd.surface_correction != SurfaceCorrection::none &&
+                pd.surface_correction != SurfaceCorrection::automatic && !pd.completes_families(),
+              "Surface correction",
+              "is for 'Scheme = exchange', not for " + scheme +
+                "; use 'none' or 'fictitious nodes'.");
+    control.refuse(
+      dim > 1 && control.is_bond_based(),
+      "Model",
+      "'bond-based' is not for " + scheme +
+        ": its zone would have a Poisson ratio of its own. Use 'state-based', or 'Scheme = exchange'.");
+    control.refuse(splice && control.solver != ElasticSolver::linear,
+                   "Solver",
+                   "'" + control.solver_name() +
+                     "' needs forces that have an energy, which those of " + scheme +
+                     " have not. Use 'linear', or 'Scheme = blending'.");
+  }
+
+
+  template <int dim>
+  StateCoupling<dim>::StateCoupling(Nodes<dim>                      &nodes,
+                                    const BodyParameters<dim>       &body,
+                                    const Zone<dim>                 &zone,
+                                    std::unique_ptr<const Weighting> weighting)
+    : WeightedCoupling<dim>(nodes, body, zone, std::move(weighting), true)
+  {
+    if (body.peridynamics.completes_families())
+      {
+        symmetry_sides = body.boundary_conditions.symmetry;
+        throw_if_narrow(own_families);
+        extension.emplace(own_families, beyond_sides(body));
+      }
+    find_nodes_that_act();
+    laws.resize(nodes.n_owned());
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      if (acts[i])
+        laws[i] = state_law(body.material.moduli(nodes.position(i)), dim, body.elasticity.plane);
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::find_nodes_that_act()
+  {
+    // A family reaches the zone if its node is in one of the zone's families.
+    const Nodes<dim> &nodes = own_families.nodes();
+    acts.assign(nodes.n_owned(), false);
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      if (weights_now[i] > 0.)
+        {
+          if (i < nodes.n_owned())
+            acts[i] = true;
+          const auto center = site_of(i);
+          for (const FamilyMember<dim> &member : own_families.weights().members())
+            {
+              auto site = center;
+              for (unsigned int d = 0; d < dim; ++d)
+                site[d] += member.offset[d];
+              if (const unsigned int j = own_families.neighbors().node_at(site);
+                  j < nodes.n_owned())
+                acts[j] = true;
+            }
+        }
+  }
+
+
+  template <int dim>
+  const NodeFamilies<dim> *StateCoupling<dim>::node_families() const
+  {
+    return this;
+  }
+
+  template <int dim>
+  void StateCoupling<dim>::bonds_of(const unsigned int, std::vector<Bond> &list) const
+  {
+    list.clear();
+  }
+
+  template <int dim>
+  void StateCoupling<dim>::possible_neighbors_of(const unsigned int,
+                                                 std::vector<unsigned int> &neighbors) const
+  {
+    neighbors.clear();
+  }
+
+  template <int dim>
+  double StateCoupling<dim>::family_weight(const unsigned int node) const
+  {
+    return this->weighting->of_family(weights_now[node]);
+  }
+
+  template <int dim>
+  double StateCoupling<dim>::row_weight(const unsigned int node) const
+  {
+    return this->weighting->of_row(weights_now[node]);
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::visit_family(const unsigned int                         node,
+                                        const bool                                 intact,
+                                        const ThermalStrain                       &strain,
+                                        const std::function<void(const Family &)> &visit) const
+  {
+    std::vector<BondOfFamily> list;
+    Family                    family;
+    if (!find_family(node, intact, strain, family.nodes, list))
+      return;
+    double q = 0.;
+    for (const BondOfFamily &bond : list)
+      q += bond.square / own_families.nodes().volume(node);
+    const double spring = family_weight(node) * laws[node].extension / q;
+    if (dim == 1) // no dilatation: rows of single bonds reach one horizon, not two
+      {
+        for (BondOfFamily &bond : list)
+          {
+            Family alone;
+            for (Part &part : bond.parts)
+              {
+                alone.nodes.push_back(family.nodes[part.place]);
+                part.place = alone.nodes.size() - 1;
+              }
+            set_size(alone);
+            add_bond(bond, spring, alone);
+            scale_rows(alone);
+            visit(alone);
+          }
+        return;
+      }
+    set_size(family);
+    for (const BondOfFamily &bond : list)
+      add_bond(bond, spring, family);
+    add_dilatation(list,
+                   family_weight(node) * laws[node].volumetric * laws[node].dilatation /
+                     (own_families.nodes().volume(node) * q * q),
+                   family);
+    scale_rows(family);
+    visit(family);
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::visit_nodes_of_family(
+    const unsigned int                         node,
+    const std::function<void(const Family &)> &visit) const
+  {
+    std::vector<BondOfFamily> list;
+    Family                    family;
+    if (!find_family(node, true, {}, family.nodes, list))
+      return;
+    if (dim == 1)
+      {
+        for (const BondOfFamily &bond : list)
+          {
+            Family alone;
+            for (const Part &part : bond.parts)
+              alone.nodes.push_back(family.nodes[part.place]);
+            find_rows(alone);
+            visit(alone);
+          }
+        return;
+      }
+    find_rows(family);
+    visit(family);
+  }
+
+
+  template <int dim>
+  bool StateCoupling<dim>::find_family(const unsigned int         node,
+                                       const bool                 intact,
+                                       const ThermalStrain       &strain,
+                                       std::vector<unsigned int> &nodes,
+                                       std::vector<BondOfFamily> &list) const
+  {
+    if (!acts[node] || family_weight(node) == 0.)
+      return false;
+    nodes.assign(1, node);
+    add_neighbors(intact, strain, nodes, list);
+    if (extension)
+      add_fictitious(strain, nodes, list);
+    return !list.empty() && std::any_of(nodes.begin(), nodes.end(), [&](const unsigned int j) {
+      return row_weight(j) > 0.;
+    });
+  }
+
+
+  template <int dim>
+  std::string StateCoupling<dim>::fault_of(const unsigned int node) const
+  {
+    if (dim == 1 || weights_now[node] < 1.)
+      return {};
+    std::vector<BondOfFamily> list;
+    std::vector<unsigned int> nodes{node};
+    add_neighbors(false, {}, nodes, list);
+    SymmetricTensor<2, dim> shape;
+    for (const BondOfFamily &bond : list)
+      shape += symmetrize(outer_product(bond.parts[1].moment, bond.parts[1].moment)) / bond.square;
+    if (list.empty())
+      return " is isolated: no bond of it is left.";
+    if (smallest_eigenvalue(shape) < 1e-9 * trace(shape))
+      return " has bonds in one line or plane only, across which nothing holds it.";
+    return {};
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::add_neighbors(const bool                 intact,
+                                         const ThermalStrain       &strain,
+                                         std::vector<unsigned int> &nodes,
+                                         std::vector<BondOfFamily> &list) const
+  {
+    const unsigned int                          own        = nodes[0];
+    const double                                own_strain = strain ? strain(own) : 0.;
+    std::vector<typename Families<dim>::Member> members;
+    own_families.members_of(own, members);
+    typename FictitiousExtension<dim>::Site site;
+    for (const auto &member : members)
+      {
+        const unsigned int j = member.neighbor;
+        if (member.weight == 0. || (member.cut && !intact))
+          continue;
+        const Tensor<1, dim> xi = own_families.neighbors().bond_vector(own, j);
+        double               w  = member.weight;
+        if (extension && !extension->is_inside(site_of(j)) && extension->find(site_of(j), site))
+          w *= site.volume /
+               own_families.nodes().volume(j); // with what is missing of a node on a side
+        list.push_back({{{0, -w * xi}, {static_cast<unsigned int>(nodes.size()), w * xi}},
+                        w * xi.norm_square(),
+                        strain ? 0.5 * (own_strain + strain(j)) : 0.,
+                        weights_now[own] == 0. ? 0. :
+                        weights_now[j] == 0.   ? 1. :
+                                                 0.5});
+        nodes.push_back(j);
+      }
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::add_fictitious(const ThermalStrain       &strain,
+                                          std::vector<unsigned int> &nodes,
+                                          std::vector<BondOfFamily> &list) const
+  {
+    const unsigned int                      own        = nodes[0];
+    const double                            own_strain = strain ? strain(own) : 0.;
+    const auto                              center     = site_of(own);
+    const Lattice<dim>                     &lattice    = *own_families.nodes().lattice();
+    typename FictitiousExtension<dim>::Site site;
+    for (const FamilyMember<dim> &member : own_families.weights().members())
+      {
+        auto index   = center;
+        bool outside = false;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            index[d] += member.offset[d];
+            outside = outside || index[d] < 0 || index[d] >= lattice.n_sites[d];
+          }
+        if (!outside || !extension->find(index, site))
+          continue;
+        const double   w = own_families.nodes().volume(own) * site.volume * member.weight;
+        Tensor<1, dim> xi;
+        for (unsigned int d = 0; d < dim; ++d)
+          xi[d] = member.offset[d] * lattice.spacing[d];
+        BondOfFamily bond{{{0, -w * xi}}, w * xi.norm_square(), 0.5 * own_strain, 0.};
+        bool reached = true; // no crack separates the node from those that the other one follows
+        for (std::size_t k = 0; k < site.terms.size() && reached; ++k)
+          {
+            const auto &term  = site.terms[k];
+            const auto  place = std::find(nodes.begin(), nodes.end(), term.node);
+            Part        part{static_cast<unsigned int>(place - nodes.begin()), w * xi};
+            for (unsigned int d = 0; d < dim; ++d)
+              part.moment[d] *= term.of_component[d];
+            bond.parts.push_back(part);
+            if (strain)
+              bond.strain += 0.5 * term.factor * strain(term.node);
+            reached = place != nodes.end();
+          }
+        if (reached)
+          list.push_back(bond);
+      }
+  }
+
+
+  template <int dim>
+  typename Lattice<dim>::Index StateCoupling<dim>::site_of(const unsigned int node) const
+  {
+    return own_families.nodes().lattice()->index(own_families.nodes().position(node));
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::set_size(Family &family)
+  {
+    const unsigned int n = dim * family.nodes.size();
+    family.stiffness.reinit(n, n);
+    family.thermal.reinit(n);
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::add_square(const std::vector<Part> &parts,
+                                      const double             factor,
+                                      const double             thermal,
+                                      Family                  &family)
+  {
+    for (const Part &row : parts)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          family.thermal(dim * row.place + d) += factor * thermal * row.moment[d];
+          for (const Part &column : parts)
+            for (unsigned int e = 0; e < dim; ++e)
+              family.stiffness(dim * row.place + d, dim * column.place + e) +=
+                factor * row.moment[d] * column.moment[e];
+        }
+    family.thermal_energy += 0.5 * factor * thermal * thermal;
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::add_bond(const BondOfFamily &bond, const double factor, Family &family)
+  {
+    add_square(bond.parts, factor / bond.square, bond.square * bond.strain, family);
+    family.n_bonds += bond.count;
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::add_dilatation(const std::vector<BondOfFamily> &list,
+                                          const double                     factor,
+                                          Family                          &family)
+  {
+    std::vector<Part> sum(family.nodes.size());
+    for (unsigned int k = 0; k < sum.size(); ++k)
+      sum[k].place = k;
+    double thermal = 0.;
+    for (const BondOfFamily &bond : list)
+      {
+        for (const Part &part : bond.parts)
+          sum[part.place].moment += part.moment;
+        thermal += bond.square * bond.strain;
+      }
+    add_square(sum, factor, thermal, family);
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::find_rows(Family &family) const
+  {
+    for (const unsigned int j : family.nodes)
+      family.has_row.push_back(row_weight(j) > 0.);
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::scale_rows(Family &family) const
+  {
+    family.thermal_energy *= row_weight(family.nodes[0]);
+    find_rows(family);
+    for (unsigned int a = 0; a < family.thermal.size(); ++a)
+      {
+        const double factor = row_weight(family.nodes[a / dim]);
+        family.thermal(a) *= factor;
+        for (unsigned int b = 0; b < family.thermal.size() && factor != 1.; ++b)
+          family.stiffness(a, b) *= factor;
+      }
+  }
+
+
+  template <int dim>
+  std::vector<types::boundary_id> StateCoupling<dim>::mirrors() const
+  {
+    return symmetry_sides;
+  }
+
+  template <int dim>
+  std::size_t StateCoupling<dim>::memory_of_bonds() const
+  {
+    return laws.capacity() * sizeof(StateLaw) + acts.capacity() / 8;
+  }
+
+
+  template class StateCoupling<1>;
+  template class StateCoupling<2>;
+  template class StateCoupling<3>;
+} // namespace PeriDeal

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/operators/coupling/weighted_coupling.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  WeightedCoupling<dim>::WeightedCoupling(Nodes<dim>                      &nodes,
+                                          const BodyParameters<dim>       &body,
+                                          const Zone<dim>                 &zone,
+                                          std::unique_ptr<const Weighting> weighting,
+                                          const bool                       whole_way)
+    : own_families(nodes, body, HaloAround::cells)
+    , overlap(body.coupling.overlap * own_families.weights().horizon())
+    , weighting(std::move(weighting))
+    , weights_now(nodes, zone, overlap)
+    , weights_at_end(weights_now)
+    , zone(zone)
+    , follows(zone.follows_cracks() && !whole_way)
+  {
+    const CrackHistory<dim> &history = own_families.cracks().history();
+    Zone<dim>                at_end  = zone;
+    at_end.set_cracks(history.pieces(body.cracks.end_time));
+    weights_at_end.set(at_end);
+    this->zone.set_cracks(history.pieces(history.representative(0.)));
+    weights_now.set(follows ? this->zone : at_end);
+    throw_if_zone_empty(weights_at_end.n_owned_in_zone(), nodes.communicator());
+  }
+
+
+  template <int dim>
+  bool WeightedCoupling<dim>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
+  {
+    const double kept = weighting->of_cell(weights_now.mean(cell));
+    if (kept == 1.)
+      return false;
+    stiffness *= kept;
+    return true;
+  }
+
+
+  template <int dim>
+  bool WeightedCoupling<dim>::finish_cell(const Cell &cell, FullMatrix<double> &stiffness) const
+  {
+    const unsigned int n_components = stiffness.m() / cell->n_vertices();
+    bool               changed      = false;
+    for (unsigned int a = 0; a < stiffness.m(); ++a)
+      if (const double kept = weighting->of_cell_row(weights_now.at(cell, a / n_components));
+          kept != 1.)
+        {
+          changed = true;
+          for (unsigned int b = 0; b < stiffness.n(); ++b)
+            stiffness(a, b) *= kept;
+        }
+    return changed;
+  }
+
+
+  template <int dim>
+  bool WeightedCoupling<dim>::symmetric() const
+  {
+    return weighting->symmetric();
+  }
+
+
+  template <int dim>
+  std::vector<BoundingBox<dim>> WeightedCoupling<dim>::joining_by(const double time) const
+  {
+    std::vector<BoundingBox<dim>> boxes;
+    if (!follows)
+      return boxes;
+    Zone<dim> then = zone;
+    then.set_cracks(own_families.cracks().history().pieces(time));
+    auto changes = own_families.cracks().history().changes(own_families.cracks().now(), time);
+    for (BoundingBox<dim> &box : changes)
+      box.extend(zone.width() + overlap + own_families.nodes().smallest_spacing());
+    for (unsigned int i = 0; i < own_families.nodes().n_local(); ++i)
+      {
+        const Point<dim> &p = own_families.nodes().position(i);
+        if (std::any_of(changes.begin(),
+                        changes.end(),
+                        [&](const auto &box) { return box.point_inside(p); }) &&
+            then.weight(p, overlap) != weights_now[i])
+          boxes.push_back({{p, p}});
+      }
+    return boxes;
+  }
+
+
+  template <int dim>
+  void WeightedCoupling<dim>::apply_change(const ChangeSet<dim> &change)
+  {
+    own_families.cracks().apply_change(change);
+    zone.set_cracks(own_families.cracks().history().pieces(change.to));
+    if (follows)
+      weights_now.set(zone);
+  }
+
+
+  template <int dim>
+  bool WeightedCoupling<dim>::in_zone(const unsigned int node) const
+  {
+    return weights_now[node] > 0.;
+  }
+
+  template <int dim>
+  const Families<dim> &WeightedCoupling<dim>::families() const
+  {
+    return own_families;
+  }
+
+  template <int dim>
+  std::size_t WeightedCoupling<dim>::memory_consumption() const
+  {
+    return own_families.memory_consumption() + weights_now.memory_consumption() +
+           weights_at_end.memory_consumption() + memory_of_bonds();
+  }
+
+
+  template class WeightedCoupling<1>;
+  template class WeightedCoupling<2>;
+  template class WeightedCoupling<3>;
+} // namespace PeriDeal

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/operators/bounds/spectrum.h>
+#include <perideal/operators/diffusion/cell_matrices.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  CellMatrices<dim>::CellMatrices(const DoFHandler<dim>              &dofs,
+                                  const CellMaterial<dim>            &material,
+                                  const BondsBesideElements<dim>     *bonds,
+                                  CrackSideFactors                   &factors,
+                                  const typename CutCells<dim>::Rule &rule)
+    : dofs(dofs)
+    , material(material)
+    , bonds(bonds)
+    , factors(factors)
+    , cut_by_cracks(dofs, rule)
+    , matrices(dofs.get_fe().n_dofs_per_cell())
+  {}
+
+
+  template <int dim>
+  bool CellMatrices<dim>::assemble_whole(const Cell &cell, const bool with_bonds) const
+  {
+    material.assemble(cell, matrices.stiffness, matrices.mass);
+    cell->get_dof_indices(matrices.indices);
+    return bonds != nullptr && with_bonds &&
+           bonds->coupling().change_cell(cell, matrices.stiffness);
+  }
+
+
+  template <int dim>
+  void CellMatrices<dim>::assemble_cut(const Cell &cell, const bool with_bonds) const
+  {
+    assemble_whole(cell, with_bonds);
+    if (cut_by_cracks.is_cut(cell))
+      cut_by_cracks.cut_matrix(
+        cell,
+        [&] { return material.center_conductivity(cell); },
+        matrices.stiffness);
+    if (bonds != nullptr && with_bonds)
+      bonds->coupling().finish_cell(cell, matrices.stiffness);
+  }
+
+
+  template <int dim>
+  typename CellMatrices<dim>::Matrices &CellMatrices<dim>::assemble(const Cell &cell,
+                                                                    const bool  with_bonds) const
+  {
+    assemble_cut(cell, with_bonds);
+    if (!factors.empty())
+      matrices.stiffness *= factors.of_cell(matrices.indices);
+    return matrices;
+  }
+
+
+  template <int dim>
+  typename CellMatrices<dim>::Matrices &CellMatrices<dim>::assemble_intact(
+    const Cell &cell,
+    const bool  with_bonds) const
+  {
+    assemble_whole(cell, with_bonds);
+    if (bonds != nullptr && with_bonds)
+      bonds->coupling().finish_cell(cell, matrices.stiffness);
+    return matrices;
+  }
+
+
+  template <int dim>
+  void CellMatrices<dim>::find_factors(const Vector &layout)
+  {
+    std::vector<Cell> cells;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        cells.push_back(cell);
+    factors.start(layout);
+    std::vector<unsigned int> nodes(layout.locally_owned_size());
+    std::iota(nodes.begin(), nodes.end(), 0);
+    CrackSideFactors::Sums sums(layout);
+    find_factors(cells, nodes, sums);
+  }
+
+
+  template <int dim>
+  void CellMatrices<dim>::find_factors(const std::vector<Cell>         &cells,
+                                       const std::vector<unsigned int> &nodes,
+                                       CrackSideFactors::Sums          &sums)
+  {
+    std::vector<types::global_dof_index> &indices = matrices.indices;
+    for (const Cell &cell : cells)
+      if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
+        {
+          cell->get_dof_indices(indices);
+          sums.mark(indices);
+        }
+    sums.marked.compress(VectorOperation::max);
+    if (bonds != nullptr)
+      bonds->mark_broken(nodes, sums);
+    sums.marked.update_ghost_values();
+    for (const Cell &cell : cells)
+      if (cell->is_locally_owned())
+        {
+          cell->get_dof_indices(indices);
+          if (!sums.any_marked(indices))
+            continue;
+          assemble_cut(cell, true);
+          sums.add(cell, indices, matrices.stiffness, dim * material.center_conductivity(cell));
+        }
+    sums.compress();
+    if (bonds != nullptr)
+      bonds->add_traces(nodes, sums);
+    factors.find(nodes, sums);
+  }
+
+
+  template <int dim>
+  void CellMatrices<dim>::add_heat(const Vector &u, Balance &balance) const
+  {
+    std::vector<std::pair<unsigned int, int>> crossed;
+    u.update_ghost_values();
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
+        {
+          assemble(cell);
+          const auto &indices = matrices.indices;
+          for (const unsigned int a : cell->vertex_indices())
+            for (unsigned int b = 0; b < a; ++b)
+              {
+                crossed.clear();
+                cut_by_cracks.kept_fraction(
+                  cell,
+                  a,
+                  b,
+                  [&] { return material.center_conductivity(cell); },
+                  &crossed);
+                for (const auto &[crack, side] : crossed)
+                  balance.cracks[crack] +=
+                    side * -matrices.stiffness(a, b) * (u(indices[b]) - u(indices[a]));
+              }
+        }
+    u.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  double CellMatrices<dim>::lowest_remainder() const
+  {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && assemble_whole(cell, true))
+        lowest = std::min(
+          lowest,
+          lowest_eigenvalue(matrices.stiffness) /
+            (material.center_conductivity(cell) * std::pow(cell->measure(), 1. - 2. / dim)));
+    return Utilities::MPI::min(lowest, dofs.get_communicator());
+  }
+
+
+  template class CellMatrices<1>;
+  template class CellMatrices<2>;
+  template class CellMatrices<3>;
+} // namespace PeriDeal

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/operators/parts/crack_side_factors.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  double crack_side_factor(const bool beside_crack, const double expected, const double trace)
+  {
+    return beside_crack && trace > 0. ? std::clamp(expected / trace, 0.5, 4.) : 1.;
+  }
+
+
+  CrackSideFactors::Sums::Sums(const Vector &layout)
+    : marked(layout.get_partitioner())
+    , trace(layout.get_partitioner())
+    , expected(layout.get_partitioner())
+  {}
+
+
+  void CrackSideFactors::Sums::mark(const std::vector<types::global_dof_index> &of_cell)
+  {
+    for (const auto i : of_cell)
+      marked(i) = 1.;
+  }
+
+
+  bool CrackSideFactors::Sums::any_marked(const std::vector<types::global_dof_index> &of_cell) const
+  {
+    return std::any_of(of_cell.begin(), of_cell.end(), [&](const auto i) {
+      return marked(i) > 0.;
+    });
+  }
+
+
+  void CrackSideFactors::Sums::compress()
+  {
+    trace.compress(VectorOperation::add);
+    expected.compress(VectorOperation::add);
+  }
+
+
+  void CrackSideFactors::Sums::clear(const std::vector<unsigned int> &nodes)
+  {
+    for (Vector *v : {&marked, &trace, &expected})
+      {
+        v->zero_out_ghost_values();
+        for (const unsigned int i : nodes)
+          v->local_element(i) = 0.;
+      }
+  }
+
+
+  void CrackSideFactors::start(const Vector &layout)
+  {
+    factors.reinit(layout.get_partitioner());
+    for (unsigned int i = 0; i < factors.locally_owned_size(); ++i)
+      factors.local_element(i) = 1.;
+    factors.update_ghost_values();
+  }
+
+
+  void CrackSideFactors::find(const std::vector<unsigned int> &nodes, const Sums &sums)
+  {
+    for (const unsigned int i : nodes)
+      factors.local_element(i) = crack_side_factor(sums.marked.local_element(i) > 0.,
+                                                   sums.expected.local_element(i),
+                                                   sums.trace.local_element(i));
+    factors.update_ghost_values();
+  }
+
+
+  double CrackSideFactors::at(const unsigned int node) const
+  {
+    return factors.local_element(node);
+  }
+
+
+  double CrackSideFactors::of_cell(const std::vector<types::global_dof_index> &nodes) const
+  {
+    if (empty())
+      return 1.;
+    double mean = 0.;
+    for (const auto i : nodes)
+      mean += factors(i) / nodes.size();
+    return mean;
+  }
+} // namespace PeriDeal

@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/point_order.h>
+#include <perideal/base/user_error.h>
+#include <perideal/operators/solid/bond_breaking.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * What a plane through the full family of a lattice cuts, mean over its normals along the axes
+     * n; lengths.
+     */
+    struct CrossingSums
+    {
+      double bonds = 0.; // sum over half the family of omega f V xi_n x^2, over q
+      // h_n times the sum over the layers of nodes on one side of (sum over what crosses of
+      // omega f V x^2, over q)^2
+      double dilatations = 0.;
+    };
+
+    template <int dim>
+    CrossingSums crossing_sums(const Families<dim> &bonds)
+    {
+      const Tensor<1, dim> &spacing = bonds.nodes().lattice()->spacing;
+      double                q       = 0.;
+      for (const FamilyMember<dim> &member : bonds.weights().members())
+        q += member.weight * member.r * member.r;
+      CrossingSums sums;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          std::vector<double> shares; // of the layers
+          for (const FamilyMember<dim> &member : bonds.weights().members())
+            {
+              const double share = member.weight * member.r * member.r / q;
+              const int    n     = std::max(0, member.offset[d]);
+              sums.bonds += n * spacing[d] * share / dim;
+              shares.resize(std::max<std::size_t>(shares.size(), n), 0.);
+              for (int layer = 0; layer < n; ++layer)
+                shares[layer] += share;
+            }
+          for (const double share : shares)
+            sums.dilatations += spacing[d] * share * share / dim;
+        }
+      return sums;
+    }
+
+
+    /**
+     * The same for a node's own family, where there is no lattice. Half of what lies on both sides
+     * of the node counts for each side, so that families that end at the surface have no smaller
+     * sums than others.
+     */
+    template <int dim>
+    CrossingSums own_crossing_sums(const Families<dim>                         &bonds,
+                                   const unsigned int                           node,
+                                   std::vector<typename Families<dim>::Member> &family)
+    {
+      bonds.members_of(node, family);
+      std::vector<std::pair<double, double>> crossing(family.size()); // distance, share
+      CrossingSums                           sums;
+      double                                 q = 0.;
+      for (const auto &bond : family)
+        q += bond.weight * bonds.neighbors().bond_vector(node, bond.neighbor).norm_square();
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          for (std::size_t k = 0; k < family.size(); ++k)
+            {
+              const Tensor<1, dim> xi = bonds.neighbors().bond_vector(node, family[k].neighbor);
+              crossing[k] = {std::abs(xi[d]), 0.5 * family[k].weight * xi.norm_square() / q};
+            }
+          std::sort(crossing.begin(), crossing.end());
+          // What reaches farther than a plane, as the plane moves away from the node.
+          double beyond = 0.5, last = 0.;
+          for (const auto &[distance, share] : crossing)
+            {
+              sums.bonds += distance * share / dim;
+              sums.dilatations += (distance - last) * beyond * beyond / dim;
+              beyond -= share;
+              last = distance;
+            }
+        }
+      return sums;
+    }
+  } // namespace
+
+
+  template <int dim>
+  BondBreaking<dim>::BondBreaking(SolidBonds<dim>           &bonds,
+                                  const SolidLoads<dim>     &loads,
+                                  const BodyParameters<dim> &body)
+    : bonds(bonds)
+    , body(body)
+    , breaks(body.material.fracture_energy || body.material.critical_stretch)
+    , changes(breaks || bonds.families.cracks().history().changes_ever())
+  {
+    if (changes)
+      state.resize(bonds.rows.n_stored());
+    if (!breaks)
+      return;
+    find_critical_stretches();
+    loaded_side = loads.sides_nearby(bonds.families);
+  }
+
+
+  template <int dim>
+  void BondBreaking<dim>::find_critical_stretches()
+  {
+    const Material    &material   = body.material;
+    const Nodes<dim>  &nodes      = bonds.families.nodes();
+    const bool         converts   = !material.critical_stretch;
+    const CrossingSums of_lattice = converts && nodes.lattice() ? crossing_sums(bonds.families) :
+                                                                  CrossingSums();
+    std::vector<typename Families<dim>::Member> family;
+    std::string                                 message;
+    Vector                                      stretches(nodes.partitioner());
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const Point<dim> &p   = nodes.position(i);
+        const StateLaw   &law = bonds.laws[i];
+        double           &s   = stretches.local_element(i);
+        if (converts)
+          {
+            const CrossingSums sums =
+              nodes.lattice() ? of_lattice : own_crossing_sums(bonds.families, i, family);
+            s = std::sqrt(
+              material.fracture_energy->value(p) /
+              (law.extension * sums.bonds +
+               (bonds.laws.volumetric ? law.volumetric * law.dilatation * sums.dilatations : 0.)));
+          }
+        else
+          s = material.critical_stretch->value(p);
+        if (message.empty() && !(s > 0.))
+          {
+            std::ostringstream where;
+            where << "'" << (converts ? "Fracture energy" : "Critical stretch")
+                  << "' in section 'Material' is not positive at (" << p << ").";
+            message = where.str();
+          }
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+    stretches.update_ghost_values();
+    critical.assign(stretches.begin(), stretches.begin() + nodes.n_local());
+  }
+
+
+  template <int dim>
+  void BondBreaking<dim>::find_overstretched(const Vector &u, const double share)
+  {
+    const Families<dim>       &families   = bonds.families;
+    const BondKinematics<dim> &kinematics = bonds.kinematics;
+    double                     most       = 0.;
+    u.update_ghost_values();
+    inside.clear();
+    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+      bonds.rows.for_each_stored(i, [&](const auto &bond) {
+        if (!state.is_whole(bond.number))
+          return;
+        // W x e and W x^2; the same digits at both ends of a bond.
+        const unsigned int   j     = bond.neighbor;
+        const Tensor<1, dim> xi    = families.neighbors().bond_vector(i, j);
+        const double         all   = kinematics.is_full() ? kinematics.length(bond) * xi.norm() :
+                                                            bond.moment * xi;
+        const double         limit = all * std::min(critical[i], critical[j]);
+        const double         found = kinematics.extension_moment(u.begin(), i, bond);
+        if (found > limit)
+          inside.emplace_back(bond.number, found / limit);
+      });
+    beyond = bonds.beyond ? bonds.beyond->find_overstretched(u.begin(), critical) : Overstretched();
+    u.set_ghost_state(false);
+    if (share <= 0.)
+      return;
+    for (const Overstretched *list : {&inside, &beyond})
+      for (const auto &[number, ratio] : *list)
+        most = std::max(most, ratio);
+    const double at_least = share * Utilities::MPI::max(most, families.nodes().communicator());
+    for (Overstretched *list : {&inside, &beyond})
+      list->erase(std::remove_if(list->begin(),
+                                 list->end(),
+                                 [&](const auto &bond) { return bond.second < at_least; }),
+                  list->end());
+  }
+
+
+  template <int dim>
+  void BondBreaking<dim>::keep_places()
+  {
+    BreakPlaces &places = so_far.places;
+    if (places.elsewhere)
+      return;
+    const bool        is_first = places.first.empty();
+    const Nodes<dim> &nodes    = bonds.families.nodes();
+    const auto       &list     = body.boundary_conditions.traction;
+    // Ends of bonds beside each side, and of those elsewhere.
+    std::vector<double>                        n_ends(list.size() + 1, 0.), all(n_ends);
+    std::vector<std::pair<double, Point<dim>>> broken; // stretch over the critical one, middle
+    const auto                                 add =
+      [&](const unsigned int i, const unsigned int j, const double n, const double ratio) {
+        const unsigned int side = std::min(loaded_side[i], loaded_side[j]);
+        n_ends[side == numbers::invalid_unsigned_int ? list.size() : side] += n;
+        if (is_first)
+          broken.emplace_back(ratio,
+                              nodes.position(i) + 0.5 * (nodes.position(j) - nodes.position(i)));
+      };
+    auto next = inside.begin(); // in the order of their nodes
+    for (unsigned int i = 0; i < nodes.n_owned() && next != inside.end(); ++i)
+      bonds.rows.for_each_stored(i, [&](const auto &bond) {
+        if (next != inside.end() && next->first == bond.number)
+          add(i, bond.neighbor, 1., (next++)->second);
+      });
+    if (bonds.beyond)
+      bonds.beyond->for_each_in(beyond, [&](const auto &bond, const double ratio) {
+        add(bond.node, bond.node, bonds.beyond->n_ends(bond), ratio);
+      });
+    const MPI_Comm communicator = nodes.communicator();
+    Utilities::MPI::sum(n_ends, communicator, all);
+    places.elsewhere = all.back() > 0.;
+    for (unsigned int side = 0; side < list.size() && !places.elsewhere; ++side)
+      if (all[side] > 0.)
+        places.beside_loads[list[side].name] += static_cast<unsigned long long>(0.5 * all[side]);
+    if (!is_first)
+      return;
+    // Of bonds that are stretched alike, but for round-off, the first in space.
+    double most = 0.;
+    for (const auto &[ratio, middle] : broken)
+      most = std::max(most, ratio);
+    most = (1. - 1e-6) * Utilities::MPI::max(most, communicator);
+    std::vector<Point<dim>> first;
+    for (const auto &[ratio, middle] : broken)
+      if (ratio >= most && (first.empty() || comes_first(middle, first[0])))
+        first.assign(1, middle);
+    Point<dim> found;
+    bool       any = false;
+    for (const std::vector<Point<dim>> &of_one : Utilities::MPI::all_gather(communicator, first))
+      if (!of_one.empty() && (!any || comes_first(of_one[0], found)))
+        {
+          found = of_one[0];
+          any   = true;
+        }
+    places.first.assign(found.begin_raw(), found.end_raw());
+  }
+
+
+  template <int dim>
+  unsigned long long BondBreaking<dim>::break_overstretched(const double               t,
+                                                            std::vector<unsigned int> &touched)
+  {
+    std::set<unsigned int> nodes;
+    for (const auto &[number, ratio] : inside)
+      {
+        state.mark(number, BondState::broken, t);
+        bonds.kinematics.release(number);
+        nodes.insert(bonds.rows.node_of(number));
+      }
+    unsigned long long n_ends = inside.size();
+    if (bonds.beyond)
+      {
+        bonds.beyond->for_each_in(beyond, [&](const auto &bond, const double) {
+          n_ends += bonds.beyond->n_ends(bond);
+          bonds.beyond->break_bond(bond.number, BondState::broken, t);
+          nodes.insert(bond.node);
+        });
+        for (const unsigned int i : nodes)
+          {
+            std::vector<unsigned int> lost;
+            bonds.rows.for_each_stored(i, [&](const auto &bond) {
+              if (!state.is_whole(bond.number))
+                lost.push_back(bond.neighbor);
+            });
+            bonds.beyond->break_dependent(i, lost, t);
+          }
+      }
+    touched.assign(nodes.begin(), nodes.end());
+    return n_ends;
+  }
+
+
+  template <int dim>
+  std::optional<ChangeSet<dim>> BondBreaking<dim>::break_bonds(
+    const Vector                  &u,
+    const double                   t,
+    const double                   share,
+    const std::function<double()> &energy)
+  {
+    if (!breaks)
+      return {};
+    find_overstretched(u, share);
+    const MPI_Comm           all     = bonds.families.nodes().communicator();
+    const unsigned long long n_found = inside.size() + beyond.size();
+    if (Utilities::MPI::sum(n_found, all) == 0)
+      return {};
+    keep_places();
+    const double   before = energy();
+    ChangeSet<dim> change;
+    change.since  = t;
+    change.damage = true;
+    so_far.n_broken += Utilities::MPI::sum(break_overstretched(t, change.nodes), all) / 2;
+    so_far.released += before - energy();
+    return change;
+  }
+
+
+  template <int dim>
+  std::vector<NodePair> BondBreaking<dim>::broken_since(std::size_t &n_known) const
+  {
+    const auto           &layout = *bonds.families.nodes().partitioner();
+    std::vector<NodePair> pairs;
+    for (const auto &[number, time] : state.marked_since(n_known))
+      {
+        const NodePair pair{layout.local_to_global(bonds.rows.node_of(number)),
+                            layout.local_to_global(bonds.rows.neighbor(number))};
+        if (state.is_broken(number) && pair[0] < pair[1])
+          pairs.push_back(pair);
+      }
+    return pairs;
+  }
+
+
+  template <int dim>
+  void BondBreaking<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    if (!changes)
+      return;
+    if (breaks)
+      so_far.exchange(archive);
+    for (const std::size_t number : state.exchange(archive, bonds.rows.first_of_nodes(), keys))
+      bonds.kinematics.release(number);
+    if (bonds.beyond)
+      bonds.beyond->exchange(archive, keys);
+  }
+
+
+  template <int dim>
+  std::vector<double> BondBreaking<dim>::damage() const
+  {
+    const Nodes<dim>                           &nodes = bonds.families.nodes();
+    std::vector<typename Families<dim>::Member> family;
+    std::vector<std::pair<unsigned int, int>>   crossed;
+    std::vector<double>                         result(nodes.n_owned());
+    for (const unsigned int i : bonds.rows.nodes_with_rows()) // others have no bond cut
+      {
+        // Bonds are stored in the order of the family, those left out that cracks cut at first.
+        bonds.families.members_of(i, family);
+        double      all = 0., left = 0.;
+        std::size_t k = bonds.rows.first_of_nodes()[i];
+        for (const auto &bond : family)
+          {
+            const double volume = nodes.volume(bond.neighbor);
+            const bool   stored = k < bonds.rows.first_of_nodes()[i + 1] &&
+                                bonds.rows.neighbor(k) == bond.neighbor && bond.weight != 0.;
+            if (!stored)
+              {
+                bonds.families.cracks().crossed_cracks(i, bond.neighbor, crossed);
+                if (!crossed.empty() || bonds.families.is_parted(i, bond.neighbor))
+                  all += volume;
+                continue;
+              }
+            all += volume;
+            left += state.is_whole(k) ? volume : 0.;
+            ++k;
+          }
+        if (bonds.beyond)
+          bonds.beyond->for_each_of(i, [&](const auto &bond) {
+            if (!bonds.beyond->may_break(bond))
+              return;
+            all += bonds.beyond->images()[bond.image].volume;
+            left += bond.whole ? bonds.beyond->images()[bond.image].volume : 0.;
+          });
+        result[i] = all > 0. ? 1. - left / all : 0.;
+      }
+    return result;
+  }
+
+
+  template class BondBreaking<1>;
+  template class BondBreaking<2>;
+  template class BondBreaking<3>;
+} // namespace PeriDeal

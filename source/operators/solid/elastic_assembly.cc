@@ -1,0 +1,458 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <perideal/base/interleaved.h>
+#include <perideal/base/matrix_rows.h>
+#include <perideal/operators/bounds/spectrum.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "elastic_cell_data.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  void ElasticElements<dim>::assemble_cell(CellData &data) const
+  {
+    const unsigned int n        = data.indices.size();
+    const Vector      &at_nodes = this->temperature_change();
+    data.stiffness              = 0.;
+    data.thermal                = 0.;
+    data.mass                   = 0.;
+    data.volume                 = 0.;
+    data.thermal_energy         = 0.;
+    for (const unsigned int q : data.values.quadrature_point_indices())
+      {
+        const Point<dim> &p      = data.values.quadrature_point(q);
+        const double      JxW    = data.values.JxW(q);
+        const Moduli      moduli = body.material.moduli(p);
+        // A bar has E alone.
+        const double lambda = dim == 1 ? 0. : lambda_of(moduli, dim, body.elasticity.plane),
+                     mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear;
+        double change       = 0.; // of the temperature
+        if (at_nodes.size() == 0)
+          change = body.elasticity.temperature_change.value(p);
+        else
+          for (unsigned int a = 0; a < n; ++a)
+            change += at_nodes(data.indices[a]) * data.values.shape_value(a, q);
+        const double strain   = this->thermal_strain(p, change);
+        const double pressure = (dim * lambda + 2. * mu) * strain;
+        const double density  = body.elasticity.is_static() ? 1. : body.material.density.value(p);
+        data.thermal_energy += 0.5 * dim * pressure * strain * JxW;
+        for (unsigned int a = 0; a < n; ++a)
+          {
+            const Tensor<1, dim> &ga = data.values.shape_grad(a, q);
+            data.volume(a) += data.values.shape_value(a, q) * JxW;
+            data.mass(a) += density * data.values.shape_value(a, q) * JxW;
+            for (unsigned int d = 0; d < dim; ++d)
+              data.thermal(dim * a + d) += pressure * ga[d] * JxW;
+            for (unsigned int b = 0; b < n; ++b)
+              {
+                const Tensor<1, dim> &gb      = data.values.shape_grad(b, q);
+                const double          product = mu * (ga * gb) * JxW;
+                for (unsigned int d = 0; d < dim; ++d)
+                  {
+                    data.stiffness(dim * a + d, dim * b + d) += product;
+                    for (unsigned int e = 0; e < dim; ++e)
+                      data.stiffness(dim * a + d, dim * b + e) +=
+                        (lambda * ga[d] * gb[e] + mu * ga[e] * gb[d]) * JxW;
+                  }
+              }
+          }
+      }
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::change_cell(const Cell &cell, CellData &data) const
+  {
+    if (zone_bonds && zone_bonds->leave_remainder(cell, data.stiffness))
+      {
+        // The remainder carries a uniform thermal strain like the whole cell less its bonds.
+        double change = 0.;
+        if (this->temperature_change().size() == 0)
+          change = body.elasticity.temperature_change.value(cell->center());
+        else
+          for (const auto i : data.indices)
+            change += this->temperature_change()(i) / data.indices.size();
+        const double           strain = this->thermal_strain(cell->center(), change);
+        dealii::Vector<double> free(data.thermal.size());
+        for (unsigned int a = 0; a < data.indices.size(); ++a)
+          for (unsigned int d = 0; d < dim; ++d)
+            free(dim * a + d) = strain * (cell->vertex(a)[d] - cell->center()[d]);
+        data.stiffness.vmult(data.thermal, free);
+        data.thermal_energy = 0.5 * (free * data.thermal);
+      }
+    double factor = cut_by_cracks.is_cut(cell) ? 0. : 1.;
+    factor *= crack_factors.of_cell(data.indices);
+    if (factor == 1.)
+      return;
+    data.stiffness *= factor;
+    data.thermal *= factor;
+    data.thermal_energy *= factor;
+  }
+
+
+  template <int dim>
+  TrilinosWrappers::SparsityPattern ElasticElements<dim>::element_pattern() const
+  {
+    const IndexSet owned    = unknowns->locally_owned_range();
+    IndexSet       relevant = unknowns->ghost_indices();
+    relevant.add_indices(owned);
+    TrilinosWrappers::SparsityPattern pattern(owned, owned, relevant, dofs.get_communicator());
+    CellData                         &data = *cell_data;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          data.set_indices(cell);
+          hanging.add_to(pattern, data.unknowns);
+        }
+    return pattern;
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::find_crack_factors()
+  {
+    const Vector           layout(nodes);
+    CrackSideFactors::Sums sums(layout);
+    crack_factors.start(layout); // sums are those without factors
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && cut_by_cracks.is_cut(cell))
+        {
+          cell->get_dof_indices(cell_data->indices);
+          sums.mark(cell_data->indices);
+        }
+    sums.marked.compress(VectorOperation::max);
+    zone_bonds->add_to(sums);
+    for_each_own_cell([&](const Cell &cell, CellData &data) {
+      change_cell(cell, data);
+      const Moduli moduli = body.material.moduli(cell->center());
+      const double mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear,
+                   lambda = dim == 1 ? 0. : lambda_of(moduli, dim, body.elasticity.plane);
+      sums.add(cell, data.indices, data.stiffness, dim * lambda + dim * (dim + 1) * mu);
+    });
+    sums.compress();
+    std::vector<unsigned int> owned(nodes->locally_owned_size());
+    std::iota(owned.begin(), owned.end(), 0);
+    crack_factors.find(owned, sums);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::assemble()
+  {
+    cell_data                                 = std::make_unique<CellData>(dofs.get_fe());
+    TrilinosWrappers::SparsityPattern pattern = element_pattern();
+    if (zone_bonds)
+      zone_bonds->add_pattern(pattern);
+    pattern.compress();
+    stiffness.reinit(pattern);
+    if (scales_beside_cracks())
+      find_crack_factors();
+    mass          = 0.;
+    thermal_loads = 0.;
+    volumes.reinit(nodes);
+    double energy = 0.;
+    for_each_own_cell([&](const Cell &cell, CellData &of_cell) {
+      change_cell(cell, of_cell);
+      add_thermal(of_cell, energy);
+      hanging.add_to(stiffness, of_cell.stiffness, of_cell.unknowns);
+      for (unsigned int i = 0; i < of_cell.unknowns.size(); ++i)
+        mass(of_cell.unknowns[i]) += of_cell.mass(i / dim);
+      for (unsigned int i = 0; i < of_cell.indices.size(); ++i)
+        volumes(of_cell.indices[i]) += of_cell.volume(i);
+    });
+    if (zone_bonds)
+      n_bonds = zone_bonds->add_to(stiffness, crack_factors);
+    finish_thermal(energy);
+    stiffness.compress(VectorOperation::add);
+    mass.compress(VectorOperation::add);
+    hanging.condense(mass);
+    // Their masters have it; as good as nothing, but a mass.
+    hanging.set(mass, std::numeric_limits<double>::epsilon() * mass.l1_norm() / mass.size());
+    volumes.compress(VectorOperation::add);
+    find_diagonal();
+  }
+
+
+  template <int dim>
+  bool ElasticElements<dim>::scales_beside_cracks() const
+  {
+    return body.peridynamics.scales_beside_cracks() && zone_bonds && !body.cracks.cracks.empty();
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::find_diagonal()
+  {
+    for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
+      if (column == unknowns->local_to_global(i))
+        stiffness_diagonal.local_element(i) = value;
+    });
+    conditions->mask(stiffness_diagonal, 1.);
+    throw_if_isolated();
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::add_parts(const std::vector<Cell>         &of_cells,
+                                       const std::vector<unsigned int> &of_nodes,
+                                       const double                     multiple)
+  {
+    for (const Cell &cell : of_cells)
+      if (cell->is_locally_owned())
+        {
+          cell_data->values.reinit(cell);
+          cell_data->set_indices(cell);
+          assemble_cell(*cell_data);
+          change_cell(cell, *cell_data);
+          cell_data->stiffness *= multiple;
+          hanging.add_to(stiffness, cell_data->stiffness, cell_data->unknowns);
+        }
+    if (zone_bonds)
+      n_bonds += zone_bonds->add_to(stiffness, crack_factors, of_nodes, multiple);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::apply_change(const ChangeSet<dim> &change, const bool)
+  {
+    const auto pieces = this->history.pieces(change.to);
+    if (scales_beside_cracks()) // factors of cells and bonds change farther away
+      {
+        cut_by_cracks.set(pieces, 0.);
+        zone_bonds->apply_change(change);
+        assemble();
+      }
+    else
+      {
+        if (!search)
+          search = std::make_unique<CellSearch<dim>>(dofs);
+        std::vector<Cell> cells;
+        search->find(change.cuts, 0., cells);
+        std::sort(cells.begin(), cells.end());
+        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+        const std::vector<unsigned int> near = zone_bonds ? zone_bonds->nodes_near(change) :
+                                                            std::vector<unsigned int>();
+        add_parts(cells, near, -1.);
+        cut_by_cracks.set(cells, pieces, 0.);
+        if (zone_bonds)
+          zone_bonds->apply_change(change);
+        add_parts(cells, near, 1.);
+        stiffness.compress(VectorOperation::add);
+        find_diagonal();
+        if (any_thermal())
+          find_thermal();
+      }
+    this->keep_constant_loads();
+  }
+
+
+  template <int dim>
+  bool ElasticElements<dim>::any_thermal() const
+  {
+    const Expression &change = body.elasticity.temperature_change;
+    return this->temperature_change().size() > 0 || !change.is_constant() ||
+           change.value(Point<dim>()) != 0.;
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::add_thermal(const CellData &data, double &energy)
+  {
+    energy += data.thermal_energy;
+    for (unsigned int i = 0; i < data.unknowns.size(); ++i)
+      thermal_loads(data.unknowns[i]) += data.thermal(i);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::finish_thermal(const double energy)
+  {
+    thermal_energy = Utilities::MPI::sum(energy, dofs.get_communicator());
+    if (zone_bonds && any_thermal())
+      thermal_energy +=
+        Utilities::MPI::sum(zone_bonds->add_thermal(thermal_loads,
+                                                    crack_factors,
+                                                    [this](const unsigned int node) {
+                                                      return this->thermal_strain_at(node);
+                                                    }),
+                            dofs.get_communicator());
+    thermal_loads.compress(VectorOperation::add);
+    hanging.condense(thermal_loads);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::set_temperature_change(const Vector &nodal)
+  {
+    this->keep_temperature_change(nodal);
+    find_thermal();
+    this->keep_constant_loads();
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::find_thermal()
+  {
+    thermal_loads = 0.;
+    thermal_loads.zero_out_ghost_values();
+    double energy = 0.;
+    for_each_own_cell([&](const Cell &cell, CellData &of_cell) {
+      change_cell(cell, of_cell);
+      add_thermal(of_cell, energy);
+    });
+    finish_thermal(energy);
+  }
+
+
+  template <int dim>
+  template <typename Visit>
+  void ElasticElements<dim>::for_each_load(const double t, const Visit &visit) const
+  {
+    CellData   &data  = *cell_data;
+    const auto &force = body.initial_and_source.body_force;
+    const auto  add   = [&](const auto &values, const auto &formula, const auto side) {
+      for (const unsigned int q : values.quadrature_point_indices())
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double f = formula(d).value(values.quadrature_point(q), t) * values.JxW(q);
+            for (unsigned int i = 0; i < data.indices.size(); ++i)
+              visit(side, data.unknowns[dim * i + d], d, f * values.shape_value(i, q));
+          }
+    };
+    for (const auto &cell : dofs.active_cell_iterators())
+      {
+        if (!cell->is_locally_owned() || (force.empty() && !cell->at_boundary()))
+          continue;
+        data.set_indices(cell);
+        if (!force.empty())
+          {
+            data.values.reinit(cell);
+            add(
+              data.values,
+              [&](const unsigned int d) -> const Expression & { return force[d]; },
+              numbers::internal_face_boundary_id);
+          }
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            condition_faces.for_each(
+              body.boundary_conditions.traction,
+              cell,
+              f,
+              data.face_values,
+              [&](const VectorCondition &condition, const auto &values) {
+                add(
+                  values,
+                  [&](const unsigned int d) -> const Expression & { return *condition.values[d]; },
+                  condition.id);
+              });
+      }
+    for (const PartUnknown<dim> &unknown : part_unknowns)
+      for (const VectorCondition &condition : body.boundary_conditions.traction)
+        for (unsigned int d = 0; condition.id == unknown.id && d < dim; ++d)
+          visit(condition.id,
+                dim * nodes->local_to_global(unknown.node) + d,
+                d,
+                unknown.share * condition.values[d]->value(unknown.position, t));
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::find_loads(Vector &loads, const double t) const
+  {
+    loads = thermal_loads;
+    loads.zero_out_ghost_values();
+    for_each_load(t, [&](const auto, const auto unknown, const unsigned int, const double value) {
+      loads(unknown) += value;
+    });
+    loads.compress(VectorOperation::add);
+    hanging.condense(loads);
+  }
+
+
+  template <int dim>
+  ForceBalance ElasticElements<dim>::forces(const Vector &u, const double t) const
+  {
+    Vector loads, reactions;
+    this->initialize_vector(loads);
+    this->initialize_vector(reactions);
+    find_loads(loads, t);
+    multiply(reactions, u);
+    std::map<types::boundary_id, Tensor<1, dim>> sums;
+    if (zone_bonds)
+      for (const types::boundary_id side : zone_bonds->mirrors())
+        for (unsigned int i = side / 2; i < reactions.locally_owned_size(); i += dim)
+          sums[side][side / 2] -= reactions.local_element(i) - thermal_loads.local_element(i);
+    reactions -= loads;
+    conditions->add_reactions(reactions, sums);
+    for_each_load(t, [&](const auto side, const auto, const unsigned int d, const double value) {
+      sums[side][d] += value;
+    });
+    return gather_forces(sums, body, dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &matrix,
+                                             const bool                      with_bonds) const
+  {
+    if (with_bonds)
+      matrix.reinit(stiffness);
+    else
+      {
+        TrilinosWrappers::SparsityPattern pattern = element_pattern();
+        pattern.compress();
+        matrix.reinit(pattern);
+      }
+    for_each_own_cell([&](const Cell &cell, CellData &data) {
+      if (with_bonds && zone_bonds)
+        zone_bonds->leave_remainder(cell, data.stiffness);
+      hanging.add_to(matrix, data.stiffness, data.unknowns);
+    });
+    if (with_bonds && zone_bonds)
+      zone_bonds->add_intact(matrix);
+    matrix.compress(VectorOperation::add);
+  }
+
+
+  template <int dim>
+  double ElasticElements<dim>::lowest_remainder() const
+  {
+    double lowest = std::numeric_limits<double>::infinity();
+    if (zone_bonds)
+      for_each_own_cell([&](const Cell &cell, CellData &data) {
+        if (zone_bonds->leave_remainder(cell, data.stiffness))
+          lowest = std::min(lowest,
+                            lowest_eigenvalue(data.stiffness) /
+                              (body.material.moduli(cell->center()).shear *
+                               std::pow(cell->measure(), 1. - 2. / dim)));
+      });
+    return Utilities::MPI::min(lowest, dofs.get_communicator());
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                               \
+  template void         ElasticElements<dim>::assemble();                                       \
+  template void         ElasticElements<dim>::apply_change(const ChangeSet<dim> &, const bool); \
+  template void         ElasticElements<dim>::set_temperature_change(const Vector &);           \
+  template void         ElasticElements<dim>::find_loads(Vector &, const double) const;         \
+  template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;       \
+  template void         ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &, \
+                                                      const bool) const;                \
+  template double       ElasticElements<dim>::lowest_remainder() const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/operators/solid/fictitious_bonds.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  Tensor<1, dim> FictitiousBonds<dim>::change(const Bond &bond, const double *u) const
+  {
+    Tensor<1, dim> eta;
+    for (unsigned int d = 0; d < dim; ++d)
+      eta[d] = fictitious.value(bond.image)[d] - u[dim * bond.node + d];
+    return eta;
+  }
+
+
+  template <int dim>
+  double FictitiousBonds<dim>::extension_moment(const Bond &bond, const double *u) const
+  {
+    const Tensor<1, dim> eta     = change(bond, u);
+    const double         thermal = strains.empty() ? 0. : strains[bond.number];
+    if (lengths.empty() && thermal == 0.)
+      return bond.moment * eta;
+    const Tensor<1, dim> xi = bond_vector(bond);
+    if (lengths.empty())
+      return bond.moment * eta - thermal * (bond.moment * xi);
+    const double x = xi.norm();
+    return lengths[bond.number] * ((2. * xi + eta) * eta / ((xi + eta).norm() + x) - thermal * x);
+  }
+
+
+  template <int dim>
+  Tensor<1, dim> FictitiousBonds<dim>::direction(const Bond &bond, const double *u) const
+  {
+    if (lengths.empty())
+      return bond.moment;
+    const Tensor<1, dim> y = bond_vector(bond) + change(bond, u);
+    return lengths[bond.number] / y.norm() * y;
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::add_forces(Vector &y, const Vector &x, const double *tau) const
+  {
+    const double *const u = x.begin();
+    fictitious.begin_forces();
+    for (const unsigned int i : list)
+      {
+        Tensor<1, dim> force;
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            const double *const   v       = fictitious.value(image_of_bond[k]);
+            const Tensor<1, dim> &p       = moments[k];
+            double                product = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              product += p[d] * (v[d] - u[dim * i + d]);
+            const double         size    = springs[k] * product + (tau != nullptr ? tau[i] : 0.);
+            const Tensor<1, dim> of_bond = size * p;
+            force += of_bond;
+            fictitious.pull(image_of_bond[k], of_bond);
+          }
+        for (unsigned int d = 0; d < dim; ++d)
+          y.local_element(dim * i + d) -= force[d];
+      }
+    fictitious.pass_on(y);
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::add_tensions(Vector              &tau,
+                                          const Vector        &u,
+                                          const NodeLaws<dim> &laws,
+                                          const bool           strained) const
+  {
+    fictitious.find(u.begin());
+    for (const unsigned int i : list)
+      {
+        double sum = 0.;
+        for_each_of(i, [&](const Bond &bond) {
+          sum += strained ? extension_moment(bond, u.begin()) :
+                            bond.moment * change(bond, u.begin());
+        });
+        tau.local_element(i) += laws.tension(i, sum);
+      }
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::subtract_force(Vector               &y,
+                                            const Bond           &bond,
+                                            const Tensor<1, dim> &force) const
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      y.local_element(dim * bond.node + d) -= force[d];
+    fictitious.pull(bond.image, force);
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::add_strained_forces(Vector       &y,
+                                                 const Vector &u,
+                                                 const Vector &tau) const
+  {
+    fictitious.find(u.begin());
+    fictitious.begin_forces();
+    for_each([&](const Bond &bond) {
+      const double size =
+        bond.spring * extension_moment(bond, u.begin()) + tau.local_element(bond.node);
+      subtract_force(y, bond, size * direction(bond, u.begin()));
+    });
+    fictitious.pass_on(y);
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::linearize(const Vector &u, const Vector &tau)
+  {
+    fictitious.find(u.begin());
+    for_each([&](const Bond &bond) {
+      const double size =
+        bond.spring * extension_moment(bond, u.begin()) + tau.local_element(bond.node);
+      const Tensor<1, dim> y = bond_vector(bond) + change(bond, u.begin());
+      moments[bond.number]   = direction(bond, u.begin());
+      across[bond.number]    = size * length(bond) / y.norm();
+    });
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::add_geometric_forces(Vector &y, const Vector &x) const
+  {
+    fictitious.begin_forces();
+    for_each([&](const Bond &bond) {
+      if (!bond.whole)
+        return;
+      Tensor<1, dim> force = change(bond, x.begin());
+      force -= (bond.moment * force) / (length(bond) * length(bond)) * bond.moment;
+      force *= stiffness_across(bond);
+      subtract_force(y, bond, force);
+    });
+    fictitious.pass_on(y);
+  }
+
+
+  template <int dim>
+  double FictitiousBonds<dim>::energy(const Vector &u) const
+  {
+    double sum = 0.;
+    fictitious.find(u.begin());
+    for_each([&](const Bond &bond) {
+      const double product = extension_moment(bond, u.begin());
+      sum += 0.5 * bond.spring * product * product;
+    });
+    return sum;
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::add_to_diagonal(Vector                    &diagonal,
+                                             const SolidRows<dim>      &rows,
+                                             const std::vector<double> &factor) const
+  {
+    // theta_i is a sum over coefficients of displacements. What images change of these, and what
+    // was counted without them:
+    Vector                      sum(diagonal.get_partitioner());
+    std::vector<Tensor<1, dim>> own(families.nodes().n_local()), change(own.size());
+    std::vector<unsigned int>   touched;
+    std::vector<bool>           is_touched(own.size(), false);
+    const auto                  touch = [&](const unsigned int node) {
+      if (!is_touched[node])
+        touched.push_back(node);
+      is_touched[node] = true;
+    };
+    for (const unsigned int i : list)
+      {
+        touched.clear();
+        for_each_of(i, [&](const Bond &bond) {
+          Tensor<1, dim> of_node = bond.moment;
+          touch(i);
+          change[i] -= bond.moment;
+          fictitious.for_each_term(bond.image, [&](const Term &term) {
+            Tensor<1, dim> p;
+            for (unsigned int d = 0; d < dim; ++d)
+              p[d] = term.of_component[d] * bond.moment[d];
+            if (term.node == i)
+              of_node -= p;
+            else
+              for (unsigned int d = 0; d < dim; ++d)
+                sum.local_element(dim * term.node + d) += bond.spring * p[d] * p[d];
+            touch(term.node);
+            change[term.node] += p;
+          });
+          for (unsigned int d = 0; d < dim; ++d)
+            sum.local_element(dim * i + d) += bond.spring * of_node[d] * of_node[d];
+        });
+        own[i] = Tensor<1, dim>();
+        rows.for_each(i, [&](const auto &bond) {
+          own[bond.neighbor] = bond.moment;
+          own[i] -= bond.moment;
+        });
+        for (const unsigned int node : touched)
+          {
+            for (unsigned int d = 0; d < dim; ++d)
+              sum.local_element(dim * node + d) +=
+                factor[i] * change[node][d] * (change[node][d] + 2. * own[node][d]);
+            change[node]     = Tensor<1, dim>();
+            is_touched[node] = false;
+          }
+        rows.for_each(i, [&](const auto &bond) { own[bond.neighbor] = Tensor<1, dim>(); });
+        own[i] = Tensor<1, dim>();
+      }
+    sum.compress(VectorOperation::add);
+    diagonal += sum;
+  }
+
+
+  template <int dim>
+  Vector FictitiousBonds<dim>::row_sums(const Vector &of_dilatations) const
+  {
+    Vector rows(families.nodes().partitioner());
+    for_each([&](const Bond &bond) {
+      const double p     = bond.moment.norm();
+      const double all   = 1. + fictitious.sum_of_factors(bond.image);
+      const double size  = bond.spring * p * all + of_dilatations.local_element(bond.node);
+      const double aside = std::abs(stiffness_across(bond));
+      rows.local_element(bond.node) += size * p;
+      fictitious.for_each_term(bond.image, [&](const Term &term) {
+        double largest = 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          largest = std::max(largest, std::abs(term.of_component[d]));
+        rows.local_element(term.node) += size * largest * p;
+        rows.local_element(term.node) += largest * aside * all;
+      });
+      rows.local_element(bond.node) += aside * all;
+    });
+    rows.compress(VectorOperation::add);
+    return rows;
+  }
+
+
+  template <int dim>
+  double FictitiousBonds<dim>::sum_of_lengths(const unsigned int i) const
+  {
+    double sum = 0.;
+    for_each_of(i, [&](const Bond &bond) {
+      sum += bond.moment.norm() * (1. + fictitious.sum_of_factors(bond.image));
+    });
+    return sum;
+  }
+
+
+  template <int dim>
+  bool FictitiousBonds<dim>::is_own_image(const Bond &bond) const
+  {
+    const Term &term = fictitious.first_term(bond.image);
+    return may_break(bond) && term.mirrored != 0 && term.node == bond.node;
+  }
+
+
+  template <int dim>
+  unsigned int FictitiousBonds<dim>::n_ends(const Bond &bond) const
+  {
+    const Term      &term = fictitious.first_term(bond.image);
+    const Point<dim> far  = fictitious[bond.image].place;
+    const Point<dim> p    = families.nodes().position(term.node),
+                     i    = families.nodes().position(bond.node);
+    const double slack    = 1e-6 * families.nodes().smallest_spacing();
+    for (unsigned int d = 0; d < dim; ++d)
+      if (((term.mirrored >> d) & 1) && std::abs(far[d] + p[d] - 2. * i[d]) > slack)
+        return 1;
+    return 0;
+  }
+
+
+  template <int dim>
+  Overstretched FictitiousBonds<dim>::find_overstretched(const double              *u,
+                                                         const std::vector<double> &critical) const
+  {
+    Overstretched result;
+    fictitious.find(u);
+    for_each([&](const Bond &bond) {
+      if (!may_break(bond))
+        return;
+      const Tensor<1, dim> xi  = bond_vector(bond);
+      const double         all = lengths.empty() ? bond.moment * xi : length(bond) * xi.norm();
+      const double         limit =
+        all * std::min(critical[bond.node], critical[fictitious[bond.image].origin]);
+      const double found = extension_moment(bond, u);
+      if (found > limit)
+        result.emplace_back(bond.number, found / limit);
+    });
+    return result;
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::break_bond(const std::size_t     number,
+                                        const BondState::Mark mark,
+                                        const double          t)
+  {
+    if (state.size() == 0)
+      state.resize(image_of_bond.size());
+    state.mark(number, mark, t);
+    release(number);
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::release(const std::size_t number)
+  {
+    springs[number] = 0.;
+    moments[number] = Tensor<1, dim>();
+    if (!lengths.empty())
+      lengths[number] = across[number] = 0.;
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    const Archive::Part part(archive, "fictitious nodes");
+    for (const std::size_t number : state.exchange(archive, starts, keys))
+      release(number);
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::break_dependent(const unsigned int               node,
+                                             const std::vector<unsigned int> &lost,
+                                             const double                     t)
+  {
+    if (starts.empty() || starts[node] == starts[node + 1])
+      return;
+    // Images of other nodes that are gone: what is continued from them is, too.
+    std::vector<unsigned int> lost_images;
+    for_each_of(node, [&](const Bond &bond) {
+      if (may_break(bond) && !bond.whole)
+        lost_images.push_back(bond.image);
+    });
+    for_each_of(node, [&](const Bond &bond) {
+      if (!bond.whole)
+        return;
+      bool any_gone = false;
+      fictitious.for_each_term(bond.image, [&](const Term &term) {
+        any_gone =
+          any_gone ||
+          (term.mirrored == 0 ?
+             std::find(lost.begin(), lost.end(), term.node) != lost.end() :
+             std::any_of(lost_images.begin(), lost_images.end(), [&](const unsigned int image) {
+               return fictitious.are_images_of_one(image, bond.image, term);
+             }));
+      });
+      if (any_gone)
+        break_bond(bond.number, BondState::dependent, t);
+    });
+  }
+
+
+  template <int dim>
+  std::size_t FictitiousBonds<dim>::memory_consumption() const
+  {
+    return state.memory_consumption() + fictitious.memory_consumption() +
+           image_of_bond.capacity() *
+             (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
+           (lengths.capacity() + across.capacity() + strains.capacity()) * sizeof(double) +
+           starts.capacity() * sizeof(std::size_t);
+  }
+
+
+  template class FictitiousBonds<1>;
+  template class FictitiousBonds<2>;
+  template class FictitiousBonds<3>;
+} // namespace PeriDeal

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/operators/solid/node_laws.h>
+
+#include <algorithm>
+#include <array>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  NodeLaws<dim>::NodeLaws(const Nodes<dim> &nodes, const BodyParameters<dim> &body)
+    : weighted(nodes.partitioner())
+    , volumetric(!body.elasticity.is_bond_based() && dim > 1)
+    , nodes(nodes)
+  {
+    const PlaneState plane   = body.elasticity.plane;
+    double           largest = 0., smallest = 1e300;
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      {
+        const Moduli moduli = body.material.moduli(nodes.position(i));
+        laws.push_back(body.elasticity.is_bond_based() ? bond_law(moduli, dim, plane) :
+                                                         state_law(moduli, dim, plane));
+        largest  = std::max(largest, laws[i].extension);
+        smallest = std::min(smallest, laws[i].extension);
+      }
+    const MPI_Comm all = nodes.communicator();
+    several_phases     = Utilities::MPI::max(largest, all) >
+                     (1. + 1e-12) * Utilities::MPI::min(smallest, all);
+  }
+
+
+  template <int dim>
+  StateLaw NodeLaws<dim>::reference() const
+  {
+    using Numbers              = std::array<double, 3>;
+    const MPI_Comm     all     = nodes.communicator();
+    const unsigned int n_owned = nodes.n_owned();
+    const auto         law_of  = [&](const unsigned int i) {
+      return Numbers{{laws[i].extension, laws[i].volumetric, laws[i].dilatation}};
+    };
+    std::vector<Numbers> extremes; // of this process
+    for (unsigned int i = 0; i < n_owned; ++i)
+      {
+        extremes.resize(2, law_of(i));
+        extremes[0] = std::min(extremes[0], law_of(i));
+        extremes[1] = std::max(extremes[1], law_of(i));
+      }
+    std::vector<Numbers> found;
+    for (const std::vector<Numbers> &others : Utilities::MPI::all_gather(all, extremes))
+      found.insert(found.end(), others.begin(), others.end());
+    const auto            limits = std::minmax_element(found.begin(), found.end());
+    std::array<double, 2> counts{{0., 0.}};
+    for (unsigned int i = 0; i < n_owned; ++i)
+      {
+        counts[0] += law_of(i) == *limits.first ? 1. : 0.;
+        counts[1] += law_of(i) == *limits.second ? 1. : 0.;
+      }
+    for (double &count : counts)
+      count = Utilities::MPI::sum(count, all);
+    // s of all others is written as a difference to it, which must not lose digits in the soft
+    // ones.
+    constexpr double most_contrast = 100.;
+    const bool       softest       = counts[0] >= counts[1] ||
+                         (*limits.second)[0] > most_contrast * (*limits.first)[0];
+    const Numbers &chosen = softest ? *limits.first : *limits.second;
+    StateLaw       law;
+    law.extension  = chosen[0];
+    law.volumetric = chosen[1];
+    law.dilatation = chosen[2];
+    return law;
+  }
+
+
+  template class NodeLaws<1>;
+  template class NodeLaws<2>;
+  template class NodeLaws<3>;
+} // namespace PeriDeal

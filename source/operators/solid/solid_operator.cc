@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/interleaved.h>
+#include <perideal/base/place_text.h>
+#include <perideal/base/user_error.h>
+#include <perideal/laws/elasticity.h>
+#include <perideal/operators/bounds/spectrum.h>
+#include <perideal/operators/solid/solid_operator.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    bool loads_depend_on_time(const BodyParameters<dim> &body)
+    {
+      const auto &force = body.initial_and_source.body_force;
+      bool        any   = std::any_of(force.begin(), force.end(), [](const Expression &e) {
+        return e.depends_on_time();
+      });
+      for (const VectorCondition &condition : body.boundary_conditions.traction)
+        for (const auto &value : condition.values)
+          any = any || (value && value->depends_on_time());
+      return any;
+    }
+  } // namespace
+
+
+  template <int dim>
+  void SolidOperator<dim>::require(const BodyParameters<dim> &body)
+  {
+    const Domain<dim>       &domain    = body.domain;
+    const MaterialProperty  &expansion = body.material.thermal_expansion;
+    const ElasticityControl &control   = body.elasticity;
+    control.refuse((control.computes_temperature || !is_zero(control.temperature_change)) &&
+                     expansion.is_constant() && expansion.value(Point<dim>()) == 0.,
+                   "Temperature change",
+                   "has no effect: 'Thermal expansion' in section 'Material' is 0.");
+    domain.refuse(
+      domain.has_extra_layers() && control.computes_temperature,
+      "Extra layers",
+      "cannot be used with 'Temperature change = computed' in section 'Elasticity', whose heat would flow through them. Use 0, or a formula there.");
+    for (const CrackPiece<dim> &piece : body.cracks.pieces(body.cracks.end_time))
+      for (const Point<dim> &p : piece.corners)
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double slack = 1e-9 * (domain.extra.body_upper[d] - domain.extra.body_lower[d]);
+            domain.refuse(
+              (domain.extra.layers[2 * d] > 0 && p[d] < domain.extra.body_lower[d] + slack) ||
+                (domain.extra.layers[2 * d + 1] > 0 && p[d] > domain.extra.body_upper[d] - slack),
+              "Extra layers",
+              "a crack ends at a side of the body that has some, and would be closed by them. Leave them out at that side.");
+          }
+    DisplacementConditions<dim>::require(body);
+  }
+
+
+  template <int dim>
+  SolidOperator<dim>::SolidOperator(const BodyParameters<dim> &body, const Layout &of_nodes)
+    : body(body)
+    , history(body.crack_history())
+    , cracks_of(history.representative(0.))
+    , loads_vary(loads_depend_on_time(body))
+  {
+    if (of_nodes)
+      set_layout(of_nodes);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::set_layout(const Layout &of_nodes)
+  {
+    nodes    = of_nodes;
+    unknowns = interleaved(*nodes, dim);
+    for (Vector *v : {&mass, &stiffness_diagonal, &thermal_loads, &constant_loads, &scratch})
+      initialize_vector(*v);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    if (history.changes_ever())
+      {
+        double time = cracks_of, first = history.representative(0.);
+        archive.exchange("cracks of the start", first);
+        AssertThrow(first == history.representative(0.),
+                    UserError("The cracks grow in other steps than those of the checkpoint. Go on "
+                              "with the same 'End time' in section 'Time'."));
+        archive.exchange("cracks of", time);
+        archive.exchange("released by growth", this->released_by_growth);
+        if (const auto change = history.change(cracks_of, time); change && archive.loads())
+          take(*change, true);
+      }
+    conditions->exchange(archive, keys);
+    ElasticOperator::exchange(archive, keys);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::take(const ChangeSet<dim> &change, const bool loaded)
+  {
+    try
+      {
+        apply_change(change, loaded);
+      }
+    catch (const UserError &fault)
+      {
+        std::ostringstream message;
+        message << "With the cracks as they are from t = " << change.since
+                << " on: " << fault.message();
+        throw UserError(message.str());
+      }
+    cracks_of = change.to;
+  }
+
+
+  template <int dim>
+  bool SolidOperator<dim>::grow_cracks(const Vector &u, const double t)
+  {
+    const auto change = history.change(cracks_of, t);
+    if (!change || change->to < cracks_of) // what has been cut stays cut
+      return false;
+    const double before = this->energy(u);
+    take(*change, false);
+    this->released_by_growth += before - this->energy(u);
+    return true;
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::apply(Vector &y, const Vector &x) const
+  {
+    ++this->applications;
+    this->multiply(y, x);
+    conditions->mask(y);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::residual(Vector &r, const Vector &u, const double t) const
+  {
+    unbalanced(r, u, t);
+    conditions->mask(r);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::unbalanced(Vector &r, const Vector &u, const double t) const
+  {
+    ++this->applications;
+    find_forces(r, u);
+    if (loads_vary)
+      find_loads(scratch, t);
+    r.sadd(-1., 1., loads_vary ? scratch : constant_loads);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::mechanical_loads(Vector &loads, const double t) const
+  {
+    find_loads(loads, t);
+    loads -= thermal_loads;
+  }
+
+
+  template <int dim>
+  Vector SolidOperator<dim>::held_unknowns() const
+  {
+    Vector held(unknowns);
+    conditions->mask(held, 1.);
+    held.update_ghost_values();
+    return held;
+  }
+
+  template <int dim>
+  std::string SolidOperator<dim>::place_of(const unsigned int local_index) const
+  {
+    return place_text(position(local_index / dim));
+  }
+
+  template <int dim>
+  void SolidOperator<dim>::fill_noise(Vector &vector) const
+  {
+    for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+      vector.local_element(i) = position_noise(position(i / dim)) * (1. + i % dim);
+  }
+
+
+  template <int dim>
+  double SolidOperator<dim>::temperature_change_at(const unsigned int node) const
+  {
+    const Vector &at_nodes = this->temperature_change();
+    return at_nodes.size() > 0 ? at_nodes.local_element(node) :
+                                 body.elasticity.temperature_change.value(position(node));
+  }
+
+
+  template <int dim>
+  std::vector<Vector> SolidOperator<dim>::near_null_space() const
+  {
+    // Rotations about the middle of the body's nodes, of a size near one.
+    const unsigned int n_nodes = mass.locally_owned_size() / dim;
+    Point<dim>         sum;
+    double             n = n_nodes;
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      sum += position(i);
+    const MPI_Comm communicator = mass.get_mpi_communicator();
+    const auto total = Utilities::MPI::sum(static_cast<const Tensor<1, dim> &>(sum), communicator);
+    const Point<dim> middle(total / Utilities::MPI::sum(n, communicator));
+    double           farthest = 0.;
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      farthest = std::max(farthest, position(i).distance(middle));
+    farthest = Utilities::MPI::max(farthest, communicator);
+    std::vector<Vector> motions;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        motions.emplace_back(unknowns);
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          motions.back().local_element(dim * i + d) = 1.;
+      }
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = a + 1; b < dim; ++b)
+        {
+          motions.emplace_back(unknowns);
+          for (unsigned int i = 0; i < n_nodes; ++i)
+            {
+              const Tensor<1, dim> x                    = (position(i) - middle) / farthest;
+              motions.back().local_element(dim * i + a) = -x[b];
+              motions.back().local_element(dim * i + b) = x[a];
+            }
+        }
+    return motions;
+  }
+
+
+  template class SolidOperator<1>;
+  template class SolidOperator<2>;
+  template class SolidOperator<3>;
+} // namespace PeriDeal

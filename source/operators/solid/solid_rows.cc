@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Which bonds are stored, and which the lattice knows.
+
+#include <perideal/base/place_text.h>
+#include <perideal/base/smallest_eigenvalue.h>
+#include <perideal/base/user_error.h>
+#include <perideal/operators/lattice/bond_form.h>
+#include <perideal/operators/solid/solid_rows.h>
+#include <perideal/operators/solid/surface_factors.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "../lattice/state_lattice.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * What a node that bonds do not hold needs: a longer horizon, if this one spans few cells of
+     * its size, else other cracks.
+     */
+    std::string advice_on_horizon(const double horizon, const double volume, const unsigned int dim)
+    {
+      constexpr double few = 2.5, enough = 3.; // cells in a horizon
+      const double     size = std::pow(volume, 1. / dim);
+      if (horizon >= few * size)
+        return "Check the cracks in section 'Cracks': they leave it too few bonds.";
+      std::ostringstream text;
+      text.precision(3);
+      text << "Cells there are as large as " << size
+           << ", and 'Horizon' in section 'Peridynamics' is " << horizon << ": take "
+           << enough * size << " or more, or smaller cells there.";
+      return text.str();
+    }
+
+
+    template <int dim>
+    bool may_leave_out_bonds(const Families<dim> &families, const BodyParameters<dim> &body)
+    {
+      const std::string reason = families.neighbors().has_unique_sites() ?
+                                   StateLattice<dim>::obstacle(body) :
+                                   "the nodes are not on a lattice with one node per site";
+      // Bonds of bars take little, and differences of displacements round less than convolutions.
+      return takes_lattice_form(body.peridynamics.form, reason, dim > 1);
+    }
+  } // namespace
+
+
+  template <int dim>
+  SolidRows<dim>::SolidRows(const Families<dim>       &families,
+                            NodeLaws<dim>             &laws,
+                            const BodyParameters<dim> &body)
+    : families(families)
+    , laws(laws)
+    , horizon(body.horizon())
+  {
+    const Nodes<dim> &nodes     = families.nodes();
+    const bool        leave_out = may_leave_out_bonds(families, body);
+    const double      q         = leave_out ? complete_weighted() : 0.;
+    Family            family;
+    std::string       message;
+    std::vector<bool> changing;
+    if (leave_out)
+      {
+        list_lattice_bonds();
+        changing = find_changing(body);
+      }
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const bool complete = leave_out && has_complete_family(i);
+        if (complete && !families.near_crack(i) && !changing[i])
+          n_whole += 0.5 * static_cast<double>(lattice_bonds.size()); // at each end
+        else
+          {
+            families.members_of(i, family);
+            if (leave_out)
+              on_lattice[i] = !changing[i] &&
+                              std::none_of(family.begin(), family.end(), [](const auto &bond) {
+                                return bond.cut || bond.weight == 0.;
+                              });
+            store(i, family, message);
+          }
+        if (complete && on_lattice[i])
+          laws.weighted.local_element(i) = q; // to the last bit
+        starts.push_back(neighbors.size());
+        if (!leave_out || !on_lattice[i])
+          stored_nodes.push_back(i);
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+  }
+
+
+  template <int dim>
+  SolidRows<dim>::~SolidRows() = default;
+
+
+  template <int dim>
+  std::vector<bool> SolidRows<dim>::find_changing(const BodyParameters<dim> &body) const
+  {
+    constexpr unsigned int   n_spans = 64; // boxes around parts of a crooked way take in less
+    const CrackHistory<dim> &history = families.cracks().history();
+    std::vector<bool>        changing(families.nodes().n_owned(), false);
+    if (!history.changes_ever())
+      return changing;
+    // q of a node whose bonds are cut changes the springs of its neighbours.
+    const double distance = 2. * families.weights().reach();
+    const double end      = body.cracks.end_time;
+    for (unsigned int k = 0; k < n_spans; ++k)
+      for (const unsigned int i : families.neighbors().nodes_near(
+             history.changes(end * k / n_spans, end * (k + 1) / n_spans),
+             distance))
+        changing[i] = true;
+    return changing;
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::list_lattice_bonds()
+  {
+    const Nodes<dim> &nodes = families.nodes();
+    on_lattice.assign(nodes.n_owned(), true);
+    for (const FamilyMember<dim> &member : families.weights().members())
+      {
+        LatticeBond bond;
+        bond.offset = member.offset;
+        for (unsigned int d = 0; d < dim; ++d)
+          bond.moment[d] = member.weight * (member.offset[d] * nodes.lattice()->spacing[d]);
+        bond.weight = member.weight * member.r * member.r;
+        lattice_bonds.push_back(bond);
+      }
+  }
+
+
+  template <int dim>
+  bool SolidRows<dim>::has_complete_family(const unsigned int i) const
+  {
+    const Nodes<dim> &nodes  = families.nodes();
+    const double      volume = nodes.lattice()->cell_volume();
+    if (nodes.volume(i) != volume)
+      return false;
+    const auto site = nodes.lattice()->index(nodes.position(i));
+    for (const FamilyMember<dim> &member : families.weights().members())
+      {
+        const unsigned int j = families.neighbors().node_at(site + member.offset);
+        if (j == numbers::invalid_unsigned_int || nodes.volume(j) != volume)
+          return false;
+      }
+    return true;
+  }
+
+
+  template <int dim>
+  double SolidRows<dim>::complete_weighted() const
+  {
+    double q = 0.;
+    for (const FamilyMember<dim> &member : families.weights().members())
+      q += families.nodes().lattice()->cell_volume() * member.weight * member.r * member.r;
+    return q;
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::store(const unsigned int i, const Family &family, std::string &message)
+  {
+    const bool stored = !is_on_lattice(i);
+    for (const auto &bond : family)
+      {
+        if (bond.cut || bond.weight == 0.)
+          continue;
+        AssertIndexRange(bond.neighbor, families.nodes().n_local()); // no fictitious nodes
+        n_whole += 0.5;                                              // at each end
+        if (!stored)
+          continue;
+        const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
+        neighbors.push_back(bond.neighbor);
+        moments.push_back(bond.weight * xi);
+        springs.push_back(bond.weight * xi.norm_square());
+      }
+    laws.weighted.local_element(i) = weight_of(i, family, message);
+  }
+
+
+  template <int dim>
+  double SolidRows<dim>::weight_of(const unsigned int i,
+                                   const Family      &family,
+                                   std::string       &message) const
+  {
+    const Nodes<dim>       &nodes = families.nodes();
+    SymmetricTensor<2, dim> shape;
+    double                  q = 0.;
+    for (const auto &bond : family)
+      if (!bond.cut && bond.weight != 0.)
+        {
+          const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
+          q += bond.weight * xi.norm_square() / nodes.volume(i);
+          shape += bond.weight * symmetrize(outer_product(xi, xi));
+        }
+    if (!message.empty())
+      return q;
+    if (!(q > 0.))
+      message =
+        "The node at " + place_text(nodes.position(i)) + " is isolated: no bond of it is left. ";
+    else if (smallest_eigenvalue(shape) < 1e-9 * trace(shape))
+      message = "All bonds of the node at " + place_text(nodes.position(i)) +
+                " lie in one line or plane, across which nothing holds it. ";
+    if (!message.empty())
+      message += advice_on_horizon(horizon, nodes.volume(i), dim);
+    return q;
+  }
+
+
+  template <int dim>
+  double SolidRows<dim>::weight_left(const unsigned int i, std::string &message) const
+  {
+    Family family;
+    families.members_of(i, family);
+    return weight_of(i, family, message);
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::renew_springs(const unsigned int i, const BondState &state)
+  {
+    Family family;
+    families.members_of(i, family);
+    std::size_t k = starts[i];
+    for (const auto &bond : family)
+      if (k < starts[i + 1] && neighbors[k] == bond.neighbor && bond.weight != 0.)
+        {
+          const double square =
+            bond.weight * families.neighbors().bond_vector(i, bond.neighbor).norm_square();
+          if (state.is_whole(k))
+            springs[k] = (laws.stiffness(i) + laws.stiffness(neighbors[k])) / square;
+          ++k;
+        }
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::correct_surface(const BodyParameters<dim> &body)
+  {
+    // Springs still are W x^2.
+    const SurfaceFactors factors =
+      surface_factors(families, body.peridynamics, {starts, neighbors, springs});
+    std::string message;
+    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+      if (message.empty() && laws.volumetric &&
+          laws[i].extension + laws[i].volumetric * laws[i].dilatation * factors.ratio[i] <= 0.)
+        message =
+          "'Surface correction' in section 'Peridynamics': with this Poisson ratio the energy of the node at " +
+          place_text(families.nodes().position(i)) +
+          " would not be positive. Use 'moments' or 'none'.";
+    throw_on_all_if_any(families.nodes().communicator(), message);
+    for (std::size_t k = 0; k < neighbors.size(); ++k)
+      {
+        moments[k] *= factors.dilatation[k];
+        springs[k] *= factors.dilatation[k] * factors.dilatation[k] / factors.extension[k];
+      }
+    laws.weighted = factors.q;
+    n_uncorrected = factors.n_left;
+    moments_gap   = factors.gap;
+    laws.weighted.update_ghost_values();
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::find_springs(const BodyParameters<dim> &body)
+  {
+    if (body.peridynamics.corrects_elastic_bonds())
+      correct_surface(body);
+    for (const unsigned int i : stored_nodes)
+      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+        springs[k] = (laws.stiffness(i) + laws.stiffness(neighbors[k])) / springs[k]; // W x^2
+    if (!lattice_bonds.empty())
+      make_lattice();
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::make_lattice()
+  {
+    const StateLaw      law = laws.reference();
+    const double        q   = complete_weighted();
+    LatticeCoefficients coefficients;
+    coefficients.stiffness  = law.extension / q;
+    coefficients.dilatation = laws.volumetric ? law.volumetric * law.dilatation / (q * q) : 0.;
+    for (unsigned int i = 0; i < families.nodes().n_local(); ++i)
+      {
+        const double own = laws.weighted.local_element(i);
+        coefficients.stiffnesses.push_back(laws.stiffness(i));
+        if (laws.volumetric && i < families.nodes().n_owned())
+          coefficients.dilatations.push_back(laws[i].volumetric * laws[i].dilatation / (own * own));
+      }
+    lattice = std::make_unique<StateLattice<dim>>(families, coefficients, on_lattice);
+  }
+
+
+  template <int dim>
+  bool SolidRows<dim>::is_regular(const unsigned int i) const
+  {
+    return lattice && on_lattice[i] && lattice->is_regular(i);
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::find_tensions(double *tau, const double *u) const
+  {
+    if (lattice)
+      lattice->dilatation_forces(tau, u);
+    for (const unsigned int i : stored_nodes)
+      {
+        Tensor<1, dim> own;
+        for (unsigned int d = 0; d < dim; ++d)
+          own[d] = u[dim * i + d];
+        double sum = 0.;
+        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+          {
+            const double *const   v = u + dim * neighbors[k];
+            const Tensor<1, dim> &p = moments[k];
+            for (unsigned int d = 0; d < dim; ++d)
+              sum += p[d] * (v[d] - own[d]);
+          }
+        tau[i] = laws.tension(i, sum);
+      }
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::find_forces(double *y, const double *u, const double *tau) const
+  {
+    if (lattice)
+      lattice->forces(y, u, tau);
+    const auto sum_row = [&](const unsigned int i, const auto &tension) {
+      Tensor<1, dim> own, force;
+      for (unsigned int d = 0; d < dim; ++d)
+        own[d] = u[dim * i + d];
+      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+        {
+          const double *const   v       = u + dim * neighbors[k];
+          const Tensor<1, dim> &p       = moments[k];
+          double                product = 0.;
+          for (unsigned int d = 0; d < dim; ++d)
+            product += p[d] * (v[d] - own[d]);
+          const double size = tension(springs[k] * product, neighbors[k]);
+          for (unsigned int d = 0; d < dim; ++d)
+            force[d] += size * p[d];
+        }
+      for (unsigned int d = 0; d < dim; ++d)
+        y[dim * i + d] = -force[d];
+    };
+    for (const unsigned int i : stored_nodes)
+      if (tau != nullptr)
+        sum_row(i, [tau, own = tau[i]](const double of_spring, const unsigned int j) {
+          return of_spring + own + tau[j];
+        });
+      else
+        sum_row(i, [](const double of_spring, const unsigned int) { return of_spring; });
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::release(const std::size_t number)
+  {
+    springs[number] = 0.;
+    moments[number] = Tensor<1, dim>();
+    n_whole -= 0.5;
+  }
+
+
+  template <int dim>
+  std::size_t SolidRows<dim>::memory_consumption() const
+  {
+    return neighbors.size() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
+           starts.size() * sizeof(std::size_t) + stored_nodes.size() * sizeof(unsigned int) +
+           (lattice ? lattice->memory_consumption() : 0);
+  }
+
+
+  template class SolidRows<1>;
+  template class SolidRows<2>;
+  template class SolidRows<3>;
+} // namespace PeriDeal

@@ -1,0 +1,462 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/operators/bounds/spectrum.h>
+#include <perideal/operators/solid/solid_matrices.h>
+#include <perideal/operators/solid/state_operator.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "inversion.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  StateOperator<dim>::StateOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body)
+    : SolidOperator<dim>(body)
+    , solid(nodes, body)
+    , loads(solid, body)
+    , breakage(solid, loads, body)
+  {
+    this->set_layout(nodes.partitioner());
+    tau.reinit(nodes.partitioner());
+    find_conditions(nodes);
+    for (unsigned int k = 0; k < mass.locally_owned_size(); ++k)
+      mass.local_element(k) =
+        nodes.volume(k / dim) *
+        (body.elasticity.is_static() ? 1. : body.material.density.value(position(k / dim)));
+    find_stiffness_diagonal(solid, stiffness_diagonal);
+    conditions->mask(stiffness_diagonal, 1.);
+    find_thermal_strains();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_conditions(const Nodes<dim> &nodes)
+  {
+    std::vector<NodeOnSide<dim>> on_sides;
+    for (const BoundaryShare &share : nodes.condition_shares())
+      if (share.inside)
+        on_sides.push_back({share.node, share.id, nodes.position(share.node)});
+    std::vector<Point<dim>> positions;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      positions.push_back(nodes.position(i));
+    const bool at_centers = body.domain.has_nodes_at_centers();
+    conditions            = std::make_unique<DisplacementConditions<dim>>(on_sides,
+                                                               positions,
+                                                               body,
+                                                               at_centers,
+                                                               nodes.communicator());
+    conditions->pin(positions, body, at_centers);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::set_temperature_change(const Vector &nodal)
+  {
+    this->keep_temperature_change(nodal);
+    thermal_loads = 0.;
+    find_thermal_strains();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_thermal_strains()
+  {
+    const Nodes<dim> &nodes = solid.families.nodes();
+    solid.thermal.set(
+      nodes.n_local(),
+      [&](const unsigned int i) { return this->thermal_strain_at(i); },
+      nodes.communicator());
+    find_thermal_loads();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_thermal_loads()
+  {
+    if (solid.beyond && (solid.thermal.any() || this->temperature_change().size() > 0))
+      solid.beyond->set_thermal_strains(solid.thermal);
+    if (solid.thermal.any() && !nonlinear()) // with full kinematics it is in the extensions
+      {
+        scratch = 0.;
+        find_tensions(scratch, true);
+        const double *const t = tau.begin();
+        for (unsigned int i = 0; i < solid.families.nodes().n_owned(); ++i)
+          {
+            Tensor<1, dim> force;
+            solid.rows.for_each(i, [&](const auto &bond) {
+              force += (bond.spring * solid.kinematics.extension_moment(scratch.begin(), i, bond) +
+                        t[i] + t[bond.neighbor]) *
+                       bond.moment;
+            });
+            for (unsigned int d = 0; d < dim; ++d)
+              thermal_loads.local_element(dim * i + d) = force[d];
+          }
+        if (solid.beyond)
+          {
+            thermal_loads *= -1.;
+            solid.beyond->add_strained_forces(thermal_loads, scratch, tau);
+            solid.beyond->keep_forces();
+            thermal_loads *= -1.;
+          }
+      }
+    this->keep_constant_loads();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_tensions(const Vector &u, const bool strained) const
+  {
+    if (!solid.laws.volumetric)
+      return;
+    if (strained)
+      solid.kinematics.find_tensions(tau.begin(), u.begin(), solid.laws);
+    else
+      solid.rows.find_tensions(tau.begin(), u.begin());
+    if (solid.beyond)
+      solid.beyond->add_tensions(tau, u, solid.laws, strained);
+    tau.update_ghost_values();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::sum_forces(Vector &y, const Vector &x, const bool with_dilatations) const
+  {
+    const bool          volumetric = with_dilatations && solid.laws.volumetric;
+    const double *const tensions   = volumetric ? tau.begin() : nullptr;
+    if (volumetric)
+      find_tensions(x, false);
+    solid.rows.find_forces(y.begin(), x.begin(), tensions);
+    if (!solid.beyond)
+      return;
+    if (!volumetric) // else they have been found
+      solid.beyond->images().find(x.begin());
+    solid.beyond->add_forces(y, x, tensions);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::multiply(Vector &y, const Vector &x) const
+  {
+    x.update_ghost_values();
+    sum_forces(y, x, true);
+    if (nonlinear())
+      solid.kinematics.add_geometric_forces(y, x.begin(), breakage.broken_state());
+    if (nonlinear() && solid.beyond)
+      solid.beyond->add_geometric_forces(y, x);
+    x.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::damping_force(Vector &y, const Vector &v) const
+  {
+    v.update_ghost_values();
+    sum_forces(y, v, false);
+    v.set_ghost_state(false);
+    conditions->mask(y);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_forces(Vector &y, const Vector &u) const
+  {
+    if (!nonlinear())
+      {
+        multiply(y, u);
+        return;
+      }
+    u.update_ghost_values();
+    find_tensions(u, true);
+    solid.kinematics.find_forces(y, u.begin(), tau);
+    if (solid.beyond)
+      solid.beyond->add_strained_forces(y, u, tau);
+    u.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::linearize(const Vector &u)
+  {
+    if (!nonlinear())
+      return;
+    u.update_ghost_values();
+    find_tensions(u, true);
+    solid.kinematics.linearize(u.begin(), tau);
+    if (solid.beyond)
+      solid.beyond->linearize(u, tau);
+    u.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::largest_stretch(const Vector &u) const
+  {
+    if (!nonlinear())
+      return 0.;
+    u.update_ghost_values();
+    const double largest = solid.kinematics.largest_stretch(u.begin(), breakage.broken_state());
+    u.set_ghost_state(false);
+    return largest;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::find_loads(Vector &all_loads, const double t) const
+  {
+    all_loads = thermal_loads;
+    loads.for_each(t, [&](const auto, const unsigned int unknown, const double value) {
+      all_loads.local_element(unknown) += value;
+    });
+  }
+
+
+  template <int dim>
+  ForceBalance StateOperator<dim>::forces(const Vector &u, const double t) const
+  {
+    Vector all_loads, reactions;
+    this->initialize_vector(all_loads);
+    this->initialize_vector(reactions);
+    find_loads(all_loads, t);
+    find_forces(reactions, u);
+    reactions -= all_loads;
+    std::map<types::boundary_id, Tensor<1, dim>> sums;
+    conditions->add_reactions(reactions, sums);
+    if (solid.beyond)
+      {
+        // Bonds to mirror images pull at the body; those of the last application are known.
+        for (const auto &[side, force] : solid.beyond->images().forces_of_planes())
+          if (force != Tensor<1, dim>())
+            sums[side] += force;
+      }
+    loads.for_each(t, [&](const auto side, const unsigned int unknown, const double value) {
+      sums[side][unknown % dim] += value;
+    });
+    return gather_forces(sums, body, solid.families.nodes().communicator());
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::energy(const Vector &u) const
+  {
+    const Nodes<dim> &nodes = solid.families.nodes();
+    u.update_ghost_values();
+    find_tensions(u, solid.kinematics.is_strained());
+    double sum = solid.beyond ? solid.beyond->energy(u) : 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        solid.rows.for_each(i, [&](const auto &bond) {
+          const double product = solid.kinematics.extension_moment(u.begin(), i, bond);
+          sum += 0.25 * bond.spring * product * product;
+        });
+        const StateLaw &law = solid.laws[i];
+        if (solid.laws.volumetric && law.volumetric != 0.)
+          {
+            const double theta =
+              tau.local_element(i) * solid.laws.weighted.local_element(i) / law.volumetric;
+            sum += 0.5 * law.volumetric / law.dilatation * nodes.volume(i) * theta * theta;
+          }
+      }
+    u.set_ghost_state(false);
+    return Utilities::MPI::sum(sum, nodes.communicator());
+  }
+
+
+  template <int dim>
+  NodalTensors<dim> StateOperator<dim>::tensors(const Vector &u) const
+  {
+    u.update_ghost_values();
+    find_tensions(u, solid.kinematics.is_strained());
+    return nodal_tensors(solid, u, tau);
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::largest_row(const Vector &of_dilatations,
+                                         const bool    of_tangent,
+                                         const double  factor) const
+  {
+    const Nodes<dim> &nodes   = solid.families.nodes();
+    const Vector      beyond  = solid.beyond ? solid.beyond->row_sums(of_dilatations) :
+                                               Vector(nodes.partitioner());
+    double            largest = 0.;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        double         row = beyond.local_element(i);
+        Tensor<1, dim> sum;
+        solid.rows.for_each(i, [&](const auto &bond) {
+          row += 2. * bond.spring * bond.moment.norm_square() +
+                 of_dilatations.local_element(bond.neighbor) * bond.moment.norm();
+          sum += bond.moment;
+        });
+        if (of_tangent && nonlinear())
+          solid.rows.for_each_stored(i, [&](const auto &bond) {
+            row += 2. * std::abs(solid.kinematics.stiffness_across(bond));
+          });
+        row += of_dilatations.local_element(i) * sum.norm();
+        largest = std::max(largest, factor * row / mass.local_element(dim * i));
+      }
+    return Utilities::MPI::max(largest, nodes.communicator());
+  }
+
+
+  template <int dim>
+  double StateOperator<dim>::damping_bound() const
+  {
+    return largest_row(Vector(solid.families.nodes().partitioner()), false, 1.);
+  }
+
+
+  template <int dim>
+  Spectrum StateOperator<dim>::spectrum() const
+  {
+    // Rows of |K|: twice the springs, and for the dilatations |c_ij| summed over both of their
+    // ends.
+    const Nodes<dim> &nodes = solid.families.nodes();
+    Vector            of_dilatations(nodes.partitioner());
+    for (unsigned int i = 0; i < nodes.n_owned() && solid.laws.volumetric; ++i)
+      {
+        double         length = 0.;
+        Tensor<1, dim> sum;
+        solid.rows.for_each(i, [&](const auto &bond) {
+          length += bond.moment.norm();
+          sum += bond.moment;
+        });
+        length += solid.beyond ? solid.beyond->sum_of_lengths(i) : 0.;
+        length += sum.norm();
+        of_dilatations.local_element(i) = std::abs(solid.laws.tension(i, length));
+      }
+    of_dilatations.update_ghost_values();
+    const double bound = largest_row(of_dilatations, true, std::sqrt(static_cast<double>(dim)));
+    return {bound, sharp_bound(*this, bound, [&](Vector &vector) { this->fill_noise(vector); })};
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    assemble_surrogate(solid,
+                       breakage.broken_state(),
+                       body,
+                       stiffness_diagonal,
+                       this->held_unknowns(),
+                       matrix);
+  }
+
+  template <int dim>
+  bool StateOperator<dim>::holds(const CellCorner<dim> &corner) const
+  {
+    if (solid.rows.is_on_lattice(corner.node))
+      return true;
+    unsigned int n_found = 0;
+    bool         broken  = false;
+    solid.rows.for_each_stored(corner.node, [&](const auto &bond) {
+      broken = broken || !breakage.broken_state().is_whole(bond.number);
+      if (std::find(corner.others.begin(), corner.others.end(), bond.neighbor) !=
+          corner.others.end())
+        ++n_found;
+    });
+    return !broken && n_found == dim; // no crack of the scene has cut one
+  }
+
+
+  template <int dim>
+  Inversion StateOperator<dim>::inverted(const Vector &u) const
+  {
+    const Nodes<dim> &nodes  = solid.families.nodes();
+    const auto       &layout = *nodes.partitioner();
+    if (corners.empty())
+      corners = cell_corners<dim>(nodes.dof_handler(),
+                                  nodes.n_owned(),
+                                  [&](const types::global_dof_index i) {
+                                    return layout.in_local_range(i) || layout.is_ghost_entry(i) ?
+                                             layout.global_to_local(i) :
+                                             numbers::invalid_unsigned_int;
+                                  });
+    u.update_ghost_values();
+    const Inversion result = find_inverted<dim>(
+      corners,
+      u,
+      [&](const unsigned int node) { return nodes.position(node); },
+      [&](const CellCorner<dim> &corner) { return holds(corner); },
+      nodes.communicator());
+    u.set_ghost_state(false);
+    return result;
+  }
+
+
+  template <int dim>
+  unsigned long long StateOperator<dim>::break_bonds(const Vector &u,
+                                                     const double  t,
+                                                     const double  share)
+  {
+    const unsigned long long before = this->n_broken_bonds();
+    const auto change = breakage.break_bonds(u, t, share, [&]() { return energy(u); });
+    if (!change)
+      return 0;
+    apply_change(*change, true);
+    return this->n_broken_bonds() - before;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::apply_change(const ChangeSet<dim> &change, const bool loaded)
+  {
+    if (!change.damage)
+      breakage.apply_change(change, loaded);
+    follow_bonds(change.damage && !solid.beyond ? &change.nodes : nullptr);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *of_nodes)
+  {
+    if (of_nodes)
+      mend_stiffness_diagonal(solid, *of_nodes, stiffness_diagonal);
+    else
+      find_stiffness_diagonal(solid, stiffness_diagonal);
+    conditions->mask(stiffness_diagonal, 1.);
+    if (solid.thermal.any())
+      find_thermal_loads();
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  {
+    breakage.exchange(archive, keys);
+    if (archive.loads() && this->brittle())
+      follow_bonds();
+    SolidOperator<dim>::exchange(archive, keys);
+  }
+
+
+  template <int dim>
+  OperatorSize StateOperator<dim>::size() const
+  {
+    const MPI_Comm        all  = solid.families.nodes().communicator();
+    const SolidRows<dim> &rows = solid.rows;
+    OperatorSize          size;
+    size.unknowns = mass.size();
+    size.bonds    = std::llround(Utilities::MPI::sum(rows.n_bonds(), all));
+    size.nonzeros =
+      std::llround(Utilities::MPI::sum(static_cast<double>(rows.n_stored()) * (dim + 1.), all));
+    size.memory = solid.families.memory_consumption() +
+                  breakage.broken_state().memory_consumption() + solid.laws.memory_consumption() +
+                  solid.thermal.memory_consumption() + rows.memory_consumption() +
+                  (solid.beyond ? solid.beyond->memory_consumption() : 0);
+    size.form = rows.has_lattice() ? "lattice" : "stored";
+    return size;
+  }
+
+
+  template class StateOperator<1>;
+  template class StateOperator<2>;
+  template class StateOperator<3>;
+} // namespace PeriDeal
