@@ -35,13 +35,16 @@ namespace PeriDeal
         add("work", "work of loads and supports", energy.work);
         if (problem.op().may_release_energy())
           {
-            const double by_growth = problem.op().energy_released_by_growth();
+            const double by_growth  = problem.op().energy_released_by_growth(),
+                         by_joining = problem.op().energy_released_by_joining();
             if (problem.op().brittle())
               add("released",
                   "energy released by broken bonds",
-                  problem.op().released_energy() - by_growth);
+                  problem.op().released_energy() - by_growth - by_joining);
             if (problem.op().has_growing_cracks())
               add("released by cracks", "energy released by cracks", by_growth);
+            if (problem.op().zone_follows_cracks())
+              add("released by joining", "energy released by nodes joining the zone", by_joining);
             add("dissipated", "energy dissipated", lost);
           }
         if (problem.op().brittle())

@@ -44,7 +44,7 @@ namespace PeriDeal
       "Ends that move: `end point: start time, velocity`, and after another comma the time at which it stops; several "
       "separated by `;`. End points are counted from 1 through Segments, in 3D corners through Polygons, whose corners may move outwards "
       "in their plane. What has been cut stays cut. Bodies that deform find their equilibrium with the cracks as they are then; in motion cracks "
-      "grow between two steps, and the zone of `Models = coupled` is that of the whole way from the start.");
+      "grow between two steps. Nodes join the zone `cracks` of `Models = coupled` as a crack comes near them.");
     declare(
       "Paths",
       EntryType::list,

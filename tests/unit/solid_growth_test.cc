@@ -8,6 +8,7 @@
 
 #include <perideal/mesh/node_keys.h>
 
+#include "distorted_mesh.h"
 #include "elastic_test_tools.h"
 #include "scene_test_tools.h"
 
@@ -97,10 +98,23 @@ namespace PeriDeal
         whole(base + (dim == 3 ? square : start), model),
         built(base + (dim == 3 ? grown_square : grown), model);
       const Vector u = body.values(bumpy_vector<dim>);
-      if (model != ModelKind::coupled) // the zone is that of the whole way
+      // The mesh is shared out by what cells have to do at last: nodes may lie elsewhere.
+      EXPECT_NEAR(body.op().energy(u),
+                  whole.op().energy(whole.values(bumpy_vector<dim>)),
+                  tolerance * body.op().energy(u));
+      EXPECT_EQ(body.op().size().bonds, whole.op().size().bonds);
+      if (model != ModelKind::coupled)
         expect_equal(body, whole, tolerance);
+      const auto n_bonds = body.op().size().bonds;
       grow(body, u);
       expect_equal(body, built, tolerance);
+      if (!body.op().zone_follows_cracks())
+        EXPECT_EQ(body.op().energy_released_by_joining(), 0.);
+      else
+        {
+          EXPECT_NE(body.op().energy_released_by_joining(), 0.);
+          EXPECT_GT(body.op().size().bonds, n_bonds); // but for those that are cut
+        }
     }
   } // namespace
 
@@ -175,6 +189,30 @@ namespace PeriDeal
                     zone + Settings{{"Peridynamics/Surface correction", "crack scaling"}},
                     ModelKind::coupled);
     expect_grown<3>("exchange", zone, ModelKind::coupled);
+  }
+
+
+  TEST(SolidGrowth, coupled_on_a_distorted_mesh)
+  {
+    const Settings mesh{{"Domain/Shape", "mesh file"},
+                        {"Domain/Mesh file", distorted_mesh<2>(20, 0.25)},
+                        {"Peridynamics/Horizon", "0.15"},
+                        {"Material/Young modulus", "3"},
+                        {"Material/Poisson ratio", "0.2"},
+                        {"Boundary conditions/Displacement", "0: 0, 0"},
+                        {"Cracks/Growth step", "0.0125"}};
+    for (const char *const zone : {"cracks: 1", "cracks: 0.4"})
+      for (const Settings &more : {Settings(), warm})
+        {
+          const Settings base = mesh + more + Settings{{"Coupling/Zone", zone}};
+          const Body<2>  body(base + growing, ModelKind::coupled),
+            built(base + grown, ModelKind::coupled);
+          const auto n_bonds = body.op().size().bonds;
+          grow(body, body.values(bumpy_vector<2>));
+          expect_equal(body, built, 1e-12);
+          EXPECT_NE(body.op().energy_released_by_joining(), 0.);
+          EXPECT_GT(body.op().size().bonds, n_bonds);
+        }
   }
 
 

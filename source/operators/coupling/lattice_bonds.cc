@@ -18,8 +18,7 @@ namespace PeriDeal
   LatticeBonds<dim>::LatticeBonds(Nodes<dim>                &nodes,
                                   const BodyParameters<dim> &body,
                                   const Zone<dim>           &zone,
-                                  const CellStiffness<dim>  &stiffness,
-                                  const bool                 whole_way)
+                                  const CellStiffness<dim>  &stiffness)
     : families(nodes, body, HaloAround::cells)
     , zone(zone)
     , last(body.cracks.end_time)
@@ -29,7 +28,7 @@ namespace PeriDeal
     if (uniform && nodes.n_local() > 0)
       uniform_stiffness = stiffness.at(nodes.position(0));
     find_offsets();
-    find_sites(body, whole_way);
+    find_sites(body);
     find_cells(body, stiffness);
   }
 
@@ -106,14 +105,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeBonds<dim>::find_sites(const BodyParameters<dim> &body, const bool whole_way)
+  void LatticeBonds<dim>::find_sites(const BodyParameters<dim> &body)
   {
     const Nodes<dim>        &nodes   = families.nodes();
     const Lattice<dim>      &lattice = *nodes.lattice();
     const CrackHistory<dim> &history = families.cracks().history();
     Zone<dim>                at_end  = zone;
     at_end.set_cracks(history.pieces(last));
-    zone.set_cracks(history.pieces(whole_way ? last : history.representative(0.)));
+    zone.set_cracks(history.pieces(history.representative(0.)));
     const std::vector<bool> hanging = hanging_nodes(nodes);
     std::vector<bool>       candidates(nodes.n_local());
     double                  n_in_zone = 0.;
@@ -252,12 +251,19 @@ namespace PeriDeal
 
 
   template <int dim>
+  void LatticeBonds<dim>::join(const double time)
+  {
+    for (const BoundingBox<dim> &box : joining_by(time))
+      own(families.nodes().lattice()->index(box.get_boundary_points().first)).in_zone = true;
+    zone.set_cracks(families.cracks().history().pieces(time));
+  }
+
+
+  template <int dim>
   void LatticeBonds<dim>::apply_change(const ChangeSet<dim> &change)
   {
-    for (const BoundingBox<dim> &box : joining_by(change.to))
-      own(families.nodes().lattice()->index(box.get_boundary_points().first)).in_zone = true;
+    join(change.to);
     families.cracks().apply_change(change);
-    zone.set_cracks(families.cracks().history().pieces(change.to));
   }
 
 

@@ -14,7 +14,7 @@ namespace PeriDeal
   LatticeExchange<dim, Law>::LatticeExchange(Nodes<dim>                &nodes,
                                              const BodyParameters<dim> &body,
                                              const Zone<dim>           &zone)
-    : bonds(nodes, body, zone, Law::stiffness(body), Law::zone_of_whole_way)
+    : bonds(nodes, body, zone, Law::stiffness(body))
     , law(bonds.families, body)
   {
     if constexpr (Law::has_form)
@@ -118,9 +118,21 @@ namespace PeriDeal
   }
 
   template <int dim, typename Law>
+  bool LatticeExchange<dim, Law>::zone_follows_cracks() const
+  {
+    return bonds.zone.follows_cracks();
+  }
+
+  template <int dim, typename Law>
   std::vector<BoundingBox<dim>> LatticeExchange<dim, Law>::joining_by(const double time) const
   {
     return bonds.joining_by(time);
+  }
+
+  template <int dim, typename Law>
+  void LatticeExchange<dim, Law>::join(const double time)
+  {
+    bonds.join(time);
   }
 
   template <int dim, typename Law>

@@ -58,8 +58,7 @@ namespace PeriDeal
   {
     const CrackHistory<dim> &history = own_families.cracks().history();
     const Zone<dim>          at_end  = zone_at_end(zone, body);
-    this->zone.set_cracks(
-      history.pieces(Law::zone_of_whole_way ? body.cracks.end_time : history.representative(0.)));
+    this->zone.set_cracks(history.pieces(history.representative(0.)));
     const std::vector<bool> hanging   = hanging_nodes(nodes);
     double                  n_in_zone = 0.;
     joined.resize(nodes.n_local());
@@ -350,6 +349,12 @@ namespace PeriDeal
 
 
   template <int dim, typename Law>
+  bool MeshExchange<dim, Law>::zone_follows_cracks() const
+  {
+    return zone.follows_cracks();
+  }
+
+  template <int dim, typename Law>
   std::vector<BoundingBox<dim>> MeshExchange<dim, Law>::joining_by(const double time) const
   {
     std::vector<BoundingBox<dim>> boxes;
@@ -369,11 +374,10 @@ namespace PeriDeal
 
 
   template <int dim, typename Law>
-  void MeshExchange<dim, Law>::apply_change(const ChangeSet<dim> &change)
+  void MeshExchange<dim, Law>::join(const double time)
   {
     bool any = false;
-    own_families.cracks().apply_change(change);
-    zone.set_cracks(own_families.cracks().history().pieces(change.to));
+    zone.set_cracks(own_families.cracks().history().pieces(time));
     for (unsigned int i = 0; i < joined.size() && zone.follows_cracks(); ++i)
       if (may_join[i] && !joined[i] && zone.contains(own_families.nodes().position(i)))
         {
@@ -382,6 +386,14 @@ namespace PeriDeal
         }
     if (Utilities::MPI::max(any ? 1 : 0, own_families.nodes().communicator()) > 0)
       find_bonds();
+  }
+
+
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::apply_change(const ChangeSet<dim> &change)
+  {
+    join(change.to);
+    own_families.cracks().apply_change(change);
   }
 
 

@@ -57,7 +57,7 @@ namespace PeriDeal
                                     const BodyParameters<dim>       &body,
                                     const Zone<dim>                 &zone,
                                     std::unique_ptr<const Weighting> weighting)
-    : WeightedCoupling<dim>(nodes, body, zone, std::move(weighting), true)
+    : WeightedCoupling<dim>(nodes, body, zone, std::move(weighting))
   {
     if (body.peridynamics.completes_families())
       {
@@ -76,11 +76,12 @@ namespace PeriDeal
   template <int dim>
   void StateCoupling<dim>::find_nodes_that_act()
   {
-    // A family reaches the zone if its node is in one of the zone's families.
+    // A family reaches the zone if its node is in one of the zone's families; once cracks have
+    // grown.
     const Nodes<dim> &nodes = own_families.nodes();
     acts.assign(nodes.n_owned(), false);
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
-      if (weights_now[i] > 0.)
+      if (weights_at_end[i] > 0.)
         {
           if (i < nodes.n_owned())
             acts[i] = true;
@@ -118,19 +119,6 @@ namespace PeriDeal
   }
 
   template <int dim>
-  double StateCoupling<dim>::family_weight(const unsigned int node) const
-  {
-    return this->weighting->of_family(weights_now[node]);
-  }
-
-  template <int dim>
-  double StateCoupling<dim>::row_weight(const unsigned int node) const
-  {
-    return this->weighting->of_row(weights_now[node]);
-  }
-
-
-  template <int dim>
   void StateCoupling<dim>::visit_family(const unsigned int                         node,
                                         const bool                                 intact,
                                         const ThermalStrain                       &strain,
@@ -138,12 +126,13 @@ namespace PeriDeal
   {
     std::vector<BondOfFamily> list;
     Family                    family;
-    if (!find_family(node, intact, strain, family.nodes, list))
+    if (!find_family(weights_now, node, intact, strain, family.nodes, list))
       return;
     double q = 0.;
     for (const BondOfFamily &bond : list)
       q += bond.square / own_families.nodes().volume(node);
-    const double spring = family_weight(node) * laws[node].extension / q;
+    const double weight = this->weighting->of_family(weights_now[node]),
+                 spring = weight * laws[node].extension / q;
     if (dim == 1) // no dilatation: rows of single bonds reach one horizon, not two
       {
         for (BondOfFamily &bond : list)
@@ -165,7 +154,7 @@ namespace PeriDeal
     for (const BondOfFamily &bond : list)
       add_bond(bond, spring, family);
     add_dilatation(list,
-                   family_weight(node) * laws[node].volumetric * laws[node].dilatation /
+                   weight * laws[node].volumetric * laws[node].dilatation /
                      (own_families.nodes().volume(node) * q * q),
                    family);
     scale_rows(family);
@@ -180,7 +169,7 @@ namespace PeriDeal
   {
     std::vector<BondOfFamily> list;
     Family                    family;
-    if (!find_family(node, true, {}, family.nodes, list))
+    if (!find_family(weights_at_end, node, true, {}, family.nodes, list))
       return;
     if (dim == 1)
       {
@@ -189,31 +178,32 @@ namespace PeriDeal
             Family alone;
             for (const Part &part : bond.parts)
               alone.nodes.push_back(family.nodes[part.place]);
-            find_rows(alone);
+            find_rows(weights_at_end, alone);
             visit(alone);
           }
         return;
       }
-    find_rows(family);
+    find_rows(weights_at_end, family);
     visit(family);
   }
 
 
   template <int dim>
-  bool StateCoupling<dim>::find_family(const unsigned int         node,
+  bool StateCoupling<dim>::find_family(const NodeWeights<dim>    &weights,
+                                       const unsigned int         node,
                                        const bool                 intact,
                                        const ThermalStrain       &strain,
                                        std::vector<unsigned int> &nodes,
                                        std::vector<BondOfFamily> &list) const
   {
-    if (!acts[node] || family_weight(node) == 0.)
+    if (!acts[node] || this->weighting->of_family(weights[node]) == 0.)
       return false;
     nodes.assign(1, node);
     add_neighbors(intact, strain, nodes, list);
     if (extension)
       add_fictitious(strain, nodes, list);
     return !list.empty() && std::any_of(nodes.begin(), nodes.end(), [&](const unsigned int j) {
-      return row_weight(j) > 0.;
+      return this->weighting->of_row(weights[j]) > 0.;
     });
   }
 
@@ -377,21 +367,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateCoupling<dim>::find_rows(Family &family) const
+  void StateCoupling<dim>::find_rows(const NodeWeights<dim> &weights, Family &family) const
   {
     for (const unsigned int j : family.nodes)
-      family.has_row.push_back(row_weight(j) > 0.);
+      family.has_row.push_back(this->weighting->of_row(weights[j]) > 0.);
   }
 
 
   template <int dim>
   void StateCoupling<dim>::scale_rows(Family &family) const
   {
-    family.thermal_energy *= row_weight(family.nodes[0]);
-    find_rows(family);
+    family.thermal_energy *= this->weighting->of_row(weights_now[family.nodes[0]]);
+    find_rows(weights_now, family);
     for (unsigned int a = 0; a < family.thermal.size(); ++a)
       {
-        const double factor = row_weight(family.nodes[a / dim]);
+        const double factor = this->weighting->of_row(weights_now[family.nodes[a / dim]]);
         family.thermal(a) *= factor;
         for (unsigned int b = 0; b < family.thermal.size() && factor != 1.; ++b)
           family.stiffness(a, b) *= factor;

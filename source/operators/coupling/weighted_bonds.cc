@@ -10,7 +10,7 @@ namespace PeriDeal
                                     const BodyParameters<dim>       &body,
                                     const Zone<dim>                 &zone,
                                     std::unique_ptr<const Weighting> weighting)
-    : WeightedCoupling<dim>(nodes, body, zone, std::move(weighting), false)
+    : WeightedCoupling<dim>(nodes, body, zone, std::move(weighting))
     , bonds(this->own_families, body)
   {}
 

@@ -15,15 +15,14 @@ namespace PeriDeal
   WeightedCoupling<dim>::WeightedCoupling(Nodes<dim>                      &nodes,
                                           const BodyParameters<dim>       &body,
                                           const Zone<dim>                 &zone,
-                                          std::unique_ptr<const Weighting> weighting,
-                                          const bool                       whole_way)
+                                          std::unique_ptr<const Weighting> weighting)
     : own_families(nodes, body, HaloAround::cells)
     , overlap(body.coupling.overlap * own_families.weights().horizon())
     , weighting(std::move(weighting))
     , weights_now(nodes, zone, overlap)
     , weights_at_end(weights_now)
     , zone(zone)
-    , follows(zone.follows_cracks() && !whole_way)
+    , follows(zone.follows_cracks())
   {
     const CrackHistory<dim> &history = own_families.cracks().history();
     Zone<dim>                at_end  = zone;
@@ -71,6 +70,12 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool WeightedCoupling<dim>::zone_follows_cracks() const
+  {
+    return follows;
+  }
+
+  template <int dim>
   std::vector<BoundingBox<dim>> WeightedCoupling<dim>::joining_by(const double time) const
   {
     std::vector<BoundingBox<dim>> boxes;
@@ -95,12 +100,19 @@ namespace PeriDeal
 
 
   template <int dim>
-  void WeightedCoupling<dim>::apply_change(const ChangeSet<dim> &change)
+  void WeightedCoupling<dim>::join(const double time)
   {
-    own_families.cracks().apply_change(change);
-    zone.set_cracks(own_families.cracks().history().pieces(change.to));
+    zone.set_cracks(own_families.cracks().history().pieces(time));
     if (follows)
       weights_now.set(zone);
+  }
+
+
+  template <int dim>
+  void WeightedCoupling<dim>::apply_change(const ChangeSet<dim> &change)
+  {
+    join(change.to);
+    own_families.cracks().apply_change(change);
   }
 
 

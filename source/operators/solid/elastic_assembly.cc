@@ -8,6 +8,7 @@
 #include <perideal/base/interleaved.h>
 #include <perideal/base/matrix_rows.h>
 #include <perideal/operators/bounds/spectrum.h>
+#include <perideal/operators/parts/event_work.h>
 
 #include <algorithm>
 #include <cmath>
@@ -225,35 +226,63 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticElements<dim>::apply_change(const ChangeSet<dim> &change, const bool)
+  template <typename Change>
+  void ElasticElements<dim>::mend(const Boxes &boxes, const double of_cells, const Change &change)
   {
-    const auto pieces = this->history.pieces(change.to);
     if (scales_beside_cracks()) // factors of cells and bonds change farther away
       {
-        cut_by_cracks.set(pieces, 0.);
-        zone_bonds->apply_change(change);
+        change(nullptr);
         assemble();
+        return;
       }
-    else
-      {
-        if (!search)
-          search = std::make_unique<CellSearch<dim>>(dofs);
-        std::vector<Cell> cells;
-        search->find(change.cuts, 0., cells);
-        std::sort(cells.begin(), cells.end());
-        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-        const std::vector<unsigned int> near = zone_bonds ? zone_bonds->nodes_near(change) :
-                                                            std::vector<unsigned int>();
-        add_parts(cells, near, -1.);
-        cut_by_cracks.set(cells, pieces, 0.);
-        if (zone_bonds)
-          zone_bonds->apply_change(change);
-        add_parts(cells, near, 1.);
-        stiffness.compress(VectorOperation::add);
-        find_diagonal();
-        if (any_thermal())
-          find_thermal();
-      }
+    if (!search)
+      search = std::make_unique<CellSearch<dim>>(dofs);
+    std::vector<Cell> cells;
+    search->find(boxes, of_cells, cells);
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    const std::vector<unsigned int> near = zone_bonds ? zone_bonds->nodes_near(boxes) :
+                                                        std::vector<unsigned int>();
+    add_parts(cells, near, -1.);
+    change(&cells);
+    add_parts(cells, near, 1.);
+    stiffness.compress(VectorOperation::add);
+    find_diagonal();
+    if (any_thermal())
+      find_thermal();
+  }
+
+
+  template <int dim>
+  bool ElasticElements<dim>::join_zone(const ChangeSet<dim> &change)
+  {
+    if (!zone_bonds)
+      return false;
+    const Boxes joins = boxes_beside(change.cuts,
+                                     zone_bonds->coupling().joining_by(change.to),
+                                     dofs.get_communicator());
+    if (joins.empty())
+      return false;
+    mend(joins, zone_bonds->reach(), [&](const std::vector<Cell> *) {
+      zone_bonds->join(change.to);
+    });
+    return true;
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::apply_change(const ChangeSet<dim> &change, const bool)
+  {
+    join_zone(change);
+    const auto pieces = this->history.pieces(change.to);
+    mend(change.cuts, 0., [&](const std::vector<Cell> *cells) {
+      if (cells)
+        cut_by_cracks.set(*cells, pieces, 0.);
+      else
+        cut_by_cracks.set(pieces, 0.);
+      if (zone_bonds)
+        zone_bonds->apply_change(change);
+    });
     this->keep_constant_loads();
   }
 
@@ -444,6 +473,7 @@ namespace PeriDeal
 
 #define PERIDEAL_INSTANTIATE(dim)                                                               \
   template void         ElasticElements<dim>::assemble();                                       \
+  template bool         ElasticElements<dim>::join_zone(const ChangeSet<dim> &);                \
   template void         ElasticElements<dim>::apply_change(const ChangeSet<dim> &, const bool); \
   template void         ElasticElements<dim>::set_temperature_change(const Vector &);           \
   template void         ElasticElements<dim>::find_loads(Vector &, const double) const;         \

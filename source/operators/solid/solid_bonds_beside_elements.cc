@@ -100,15 +100,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<unsigned int> SolidBondsBesideElements<dim>::nodes_near(
-    const ChangeSet<dim> &change) const
-  {
-    const Families<dim> &families = coupled->families();
-    return families.neighbors().nodes_near(change.cuts, families.weights().reach());
-  }
-
-
-  template <int dim>
   double SolidBondsBesideElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix &matrix,
                                                   const CrackSideFactors         *factors,
                                                   const unsigned int              node,

@@ -97,6 +97,7 @@ namespace PeriDeal
                               "with the same 'End time' in section 'Time'."));
         archive.exchange("cracks of", time);
         archive.exchange("released by growth", this->released_by_growth);
+        archive.exchange("released by joining", this->released_by_joining);
         if (const auto change = history.change(cracks_of, time); change && archive.loads())
           take(*change, true);
       }
@@ -129,7 +130,13 @@ namespace PeriDeal
     const auto change = history.change(cracks_of, t);
     if (!change || change->to < cracks_of) // what has been cut stays cut
       return false;
-    const double before = this->energy(u);
+    double before = this->energy(u);
+    if (join_zone(*change))
+      {
+        const double joined = this->energy(u);
+        this->released_by_joining += before - joined;
+        before = joined;
+      }
     take(*change, false);
     this->released_by_growth += before - this->energy(u);
     return true;

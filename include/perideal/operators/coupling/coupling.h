@@ -105,16 +105,22 @@ namespace PeriDeal
       return true;
     }
 
+    /** Nodes join the zone as cracks grow. The same on all processes. */
+    virtual bool zone_follows_cracks() const = 0;
+
     /**
      * Boxes around the nodes that join the zone on the way to the cracks of that representative
      * time.
      */
     virtual std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const = 0;
 
+    /** The nodes join that joining_by() names; cracks stay as they are. Collective. */
+    virtual void join(const double time) = 0;
+
     /**
      * Move on to the cracks after a change, and the zone with them. A bond's strength follows from
      * the cracks as they are then, their whole way included: bonds that join find themselves broken
-     * where a crack has passed before.
+     * where a crack has passed before. Collective.
      */
     virtual void apply_change(const ChangeSet<dim> &change) = 0;
 

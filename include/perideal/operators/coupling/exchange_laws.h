@@ -54,9 +54,6 @@ namespace PeriDeal
   public:
     static constexpr unsigned int n_components = 1;
 
-    /** Nodes join the zone as cracks grow. */
-    static constexpr bool zone_of_whole_way = false;
-
     static std::array<double, 1> direction(const dealii::Tensor<1, dim> &)
     {
       return {{1.}};
@@ -122,12 +119,6 @@ namespace PeriDeal
   {
   public:
     static constexpr unsigned int n_components = dim;
-
-    /**
-     * The zone around cracks that grow is that of their whole way from the start: the energy that a
-     * step of the crack releases is then that of the crack, not of nodes that join.
-     */
-    static constexpr bool zone_of_whole_way = true;
 
     static dealii::Tensor<1, dim> direction(const dealii::Tensor<1, dim> &xi)
     {

@@ -66,15 +66,11 @@ namespace PeriDeal
       typename BondPiece<dim>::Corners change; // over the square root of the length
     };
 
-    /**
-     * Adds the halo to the nodes. Collective. Throws UserError for a zone without nodes.
-     * @param whole_way the zone around cracks that grow is that of their whole way from the start
-     */
+    /** Adds the halo to the nodes. Collective. Throws UserError for a zone without nodes. */
     LatticeBonds(Nodes<dim>                &nodes,
                  const BodyParameters<dim> &body,
                  const Zone<dim>           &zone,
-                 const CellStiffness<dim>  &stiffness,
-                 const bool                 whole_way);
+                 const CellStiffness<dim>  &stiffness);
 
     /** xi. */
     dealii::Tensor<1, dim> vector_of(const Offset &offset) const;
@@ -107,6 +103,7 @@ namespace PeriDeal
     double stiffness_of(const Site &cell) const;
 
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const;
+    void                                  join(const double time);
     void                                  apply_change(const ChangeSet<dim> &change);
     bool                                  in_zone(const unsigned int node) const;
     std::size_t                           memory_consumption() const;
@@ -120,7 +117,7 @@ namespace PeriDeal
 
   private:
     void find_offsets();
-    void find_sites(const BodyParameters<dim> &body, const bool whole_way);
+    void find_sites(const BodyParameters<dim> &body);
     void set_table_around(const std::vector<bool> &candidates);
     void find_cells(const BodyParameters<dim> &body, const CellStiffness<dim> &stiffness);
     const SiteData *at(const Site &site) const;

@@ -42,7 +42,9 @@ namespace PeriDeal
     bool has_form() const override;
     std::unique_ptr<BondForm>             make_form() override;
     void                                  set_form_factors(std::vector<double> factors) override;
+    bool                                  zone_follows_cracks() const override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
+    void                                  join(const double time) override;
     void                                  apply_change(const ChangeSet<dim> &change) override;
     bool                                  in_zone(const unsigned int node) const override;
     const Families<dim>                  &families() const override;

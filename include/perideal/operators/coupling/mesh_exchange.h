@@ -46,7 +46,9 @@ namespace PeriDeal
     void possible_neighbors_of(const unsigned int         node,
                                std::vector<unsigned int> &neighbors) const override;
     bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
+    bool zone_follows_cracks() const override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
+    void                                  join(const double time) override;
     void                                  apply_change(const ChangeSet<dim> &change) override;
     bool                                  in_zone(const unsigned int node) const override;
     const Families<dim>                  &families() const override;

@@ -34,7 +34,7 @@ namespace PeriDeal
    *
    * With blending, since no K_i strains a rigid motion, forces and moments balance. With splice
    * linear fields are exact where the zone with its overlap stays more than two horizons clear of
-   * the surface. The zone is that of the whole way of cracks that grow.
+   * the surface.
    */
   template <int dim>
   class StateCoupling : public WeightedCoupling<dim>, public NodeFamilies<dim>
@@ -71,12 +71,7 @@ namespace PeriDeal
 
     using WeightedCoupling<dim>::own_families;
     using WeightedCoupling<dim>::weights_now;
-
-    /** What the family of a node counts. */
-    double family_weight(const unsigned int node) const;
-
-    /** What is multiplied to the rows of a node. */
-    double row_weight(const unsigned int node) const;
+    using WeightedCoupling<dim>::weights_at_end;
 
     struct Part
     {
@@ -95,7 +90,8 @@ namespace PeriDeal
     void find_nodes_that_act();
 
     /** The bonds of an owned node whose family has a weight. */
-    bool find_family(const unsigned int         node,
+    bool find_family(const NodeWeights<dim>    &weights,
+                     const unsigned int         node,
                      const bool                 intact,
                      const ThermalStrain       &strain,
                      std::vector<unsigned int> &nodes,
@@ -112,7 +108,7 @@ namespace PeriDeal
 
     typename Lattice<dim>::Index site_of(const unsigned int node) const;
     static void                  set_size(Family &family);
-    void                         find_rows(Family &family) const;
+    void                         find_rows(const NodeWeights<dim> &weights, Family &family) const;
 
     /** Add the energy factor/2 (sum of moments times displacements - thermal)^2. */
     static void add_square(const std::vector<Part> &parts,
@@ -127,8 +123,8 @@ namespace PeriDeal
 
     std::optional<FictitiousExtension<dim>> extension;
     std::vector<dealii::types::boundary_id> symmetry_sides; // with an extension
-    std::vector<bool>                       acts; // of owned nodes: the family reaches the zone
-    std::vector<StateLaw>                   laws; // of owned nodes that act
+    std::vector<bool>     acts; // of owned nodes: the family ever reaches the zone
+    std::vector<StateLaw> laws; // of owned nodes that act
   };
 
 } // namespace PeriDeal

@@ -31,20 +31,18 @@ namespace PeriDeal
   public:
     using typename Coupling<dim>::Cell;
 
-    /**
-     * Collective. Throws UserError for a zone without nodes.
-     * @param whole_way the zone around cracks that grow is that of their whole way from the start
-     */
+    /** Collective. Throws UserError for a zone without nodes. */
     WeightedCoupling(Nodes<dim>                      &nodes,
                      const BodyParameters<dim>       &body,
                      const Zone<dim>                 &zone,
-                     std::unique_ptr<const Weighting> weighting,
-                     const bool                       whole_way);
+                     std::unique_ptr<const Weighting> weighting);
 
     bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
     bool finish_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
     bool symmetric() const override;
+    bool zone_follows_cracks() const override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
+    void                                  join(const double time) override;
     void                                  apply_change(const ChangeSet<dim> &change) override;
     bool                                  in_zone(const unsigned int node) const override;
     const Families<dim>                  &families() const override;

@@ -70,6 +70,12 @@ namespace PeriDeal
       return !zone_bonds || zone_bonds->coupling().symmetric();
     }
 
+    bool zone_follows_cracks() const override
+    {
+      return zone_bonds && zone_bonds->coupling().zone_follows_cracks() &&
+             this->has_growing_cracks();
+    }
+
     ForceBalance forces(const Vector &u, const double t) const override;
     double       energy(const Vector &u) const override;
     void         multiply(Vector &y, const Vector &x) const override
@@ -139,6 +145,7 @@ namespace PeriDeal
     double lowest_remainder() const;
 
   protected:
+    bool join_zone(const ChangeSet<dim> &change) override;
     void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
     void find_loads(Vector &loads, const double t) const override;
 
@@ -152,7 +159,8 @@ namespace PeriDeal
     using SolidOperator<dim>::thermal_loads;
 
     struct CellData;
-    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+    using Cell  = typename dealii::DoFHandler<dim>::active_cell_iterator;
+    using Boxes = std::vector<dealii::BoundingBox<dim>>;
 
     /** Of cells alone, with rows of other processes; not compressed. */
     dealii::TrilinosWrappers::SparsityPattern element_pattern() const;
@@ -172,6 +180,14 @@ namespace PeriDeal
     void add_parts(const std::vector<Cell>         &of_cells,
                    const std::vector<unsigned int> &of_nodes,
                    const double                     multiple);
+    /**
+     * Make a change of what comes within a distance of boxes, of cells, or a family's reach, of
+     * bonds, and take anew what these add to K. Collective.
+     *
+     * @param change gets the cells, or null where all are taken anew
+     */
+    template <typename Change>
+    void mend(const Boxes &boxes, const double of_cells, const Change &change);
     void throw_if_isolated() const;
     template <typename Visit>
     void for_each_own_cell(const Visit &visit) const;

@@ -209,10 +209,10 @@ namespace PeriDeal
     }
 
     /**
-     * Make the cracks of the scene those of the span of time between events that holds t. What they
-     * cut gives up energy at u, which released_energy() counts. Returns whether K has changed: then
-     * its diagonal has, too, and its spectrum may have. Collective. Throws UserError where they
-     * leave a node without hold.
+     * Make the cracks of the scene those of the span of time between events that holds t: nodes
+     * join the zone of a coupling, then bonds and cells are cut. Both give up energy at u, which
+     * released_energy() counts. Returns whether K has changed: then its diagonal has, too, and its
+     * spectrum may have. Collective. Throws UserError where they leave a node without hold.
      */
     virtual bool grow_cracks(const Vector & /*u*/, const double /*t*/)
     {
@@ -231,19 +231,29 @@ namespace PeriDeal
       return next_event(0.) < std::numeric_limits<double>::infinity();
     }
 
+    /** Nodes join the zone of a coupling as cracks grow. Not collective. */
+    virtual bool zone_follows_cracks() const
+    {
+      return false;
+    }
+
     /** What growing cracks have released alone. Not collective. */
     double energy_released_by_growth() const
     {
       return released_by_growth;
     }
 
-    /**
-     * Strain energy that broken bonds, and what growing cracks have cut, have released so far, and
-     * how many bonds have broken. Not collective.
-     */
+    /** By nodes that joined a zone: bonds store another energy than the cells they replace. */
+    double energy_released_by_joining() const
+    {
+      return released_by_joining;
+    }
+
+    /** All strain energy released so far, by broken bonds, too. Not collective. */
     double released_energy() const
     {
-      return released_by_growth + (brittle() ? break_history()->released : 0.);
+      return released_by_growth + released_by_joining +
+             (brittle() ? break_history()->released : 0.);
     }
 
     unsigned long long n_broken_bonds() const
@@ -277,7 +287,7 @@ namespace PeriDeal
     /** Numbers that look random but depend on the unknowns' places alone. Not collective. */
     virtual void fill_noise(Vector &vector) const = 0;
 
-    double released_by_growth = 0.;
+    double released_by_growth = 0., released_by_joining = 0.;
 
     /** Keeps what temperature_change() gives. Collective. */
     void keep_temperature_change(const Vector &nodal);

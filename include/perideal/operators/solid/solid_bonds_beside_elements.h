@@ -51,6 +51,12 @@ namespace PeriDeal
       coupled->apply_change(change);
     }
 
+    /** As Coupling::join(). */
+    void join(const double time)
+    {
+      coupled->join(time);
+    }
+
     /** NodeFamilies::mirrors(), if the coupling has families. */
     std::vector<dealii::types::boundary_id> mirrors() const
     {
@@ -69,8 +75,17 @@ namespace PeriDeal
       return coupled->finish_cell(cell, stiffness) || changed;
     }
 
-    /** Owned nodes whose bonds or families may change with the cracks, in ascending order. */
-    std::vector<unsigned int> nodes_near(const ChangeSet<dim> &change) const;
+    /** How far bonds and families reach. */
+    double reach() const
+    {
+      return coupled->families().weights().reach();
+    }
+
+    /** Owned nodes whose bonds or families may change with what is in boxes, ascending. */
+    std::vector<unsigned int> nodes_near(const std::vector<dealii::BoundingBox<dim>> &boxes) const
+    {
+      return coupled->families().neighbors().nodes_near(boxes, reach());
+    }
 
     void add_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
 

@@ -110,7 +110,16 @@ namespace PeriDeal
     void set_layout(const Layout &of_nodes);
 
     /**
-     * Mend what a change names. Collective. Throws UserError.
+     * Let the nodes join the zone that do so with a change, and cut nothing yet. Returns whether K
+     * has changed. Collective. Throws UserError.
+     */
+    virtual bool join_zone(const ChangeSet<dim> & /*change*/)
+    {
+      return false;
+    }
+
+    /**
+     * Mend what a change names, nodes that join included. Collective. Throws UserError.
      * @param loaded bonds have been marked already, by what was loaded
      */
     virtual void apply_change(const ChangeSet<dim> &change, const bool loaded) = 0;
