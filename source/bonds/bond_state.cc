@@ -53,35 +53,39 @@ namespace PeriDeal
   }
 
 
-  std::vector<std::size_t> BondState::exchange(Archive                        &archive,
-                                               const std::vector<std::size_t> &starts,
-                                               const NodeKeys                 &keys)
+  std::vector<BondState::Kept> BondState::exchange(Archive                        &archive,
+                                                   const std::vector<std::size_t> &starts,
+                                                   const NodeKeys                 &keys,
+                                                   const std::size_t               n_first)
   {
-    KeyedPairs               pairs; // a node, and the number of its bond among its own
-    std::vector<std::size_t> numbers;
+    KeyedPairs        pairs; // a node, and the number of its bond among its own
+    std::vector<Kept> kept;
     if (!archive.loads())
-      for (const auto &[number, time] : times)
+      for (std::size_t k = 0; k < times.size(); ++k)
         {
-          const auto        next = std::upper_bound(starts.begin(), starts.end(), number);
-          const std::size_t node = next - starts.begin() - 1;
+          const auto [number, time] = times[k];
+          const auto        next    = std::upper_bound(starts.begin(), starts.end(), number);
+          const std::size_t node    = next - starts.begin() - 1;
           pairs.keys.push_back({keys[node], number - starts[node]});
-          pairs.values.insert(pairs.values.end(), {time, static_cast<double>(marks[number])});
+          pairs.values.insert(pairs.values.end(),
+                              {time, static_cast<double>(marks[number]), k < n_first ? 1. : 0.});
         }
     archive.exchange("bonds", pairs, keys);
     if (!archive.loads() || pairs.keys.empty())
-      return numbers;
+      return kept;
     std::unordered_map<std::uint64_t, std::size_t> node_of;
     for (std::size_t node = 0; node < keys.size(); ++node)
       node_of[keys[node]] = node;
     resize(starts.back());
     for (std::size_t k = 0; k < pairs.keys.size(); ++k)
-      {
-        const std::size_t number = starts[node_of.at(pairs.keys[k][0])] + pairs.keys[k][1];
-        mark(number, static_cast<Mark>(pairs.values[2 * k + 1]), pairs.values[2 * k]);
-        numbers.push_back(number);
-      }
-    std::sort(numbers.begin(), numbers.end());
-    return numbers;
+      kept.push_back({starts[node_of.at(pairs.keys[k][0])] + pairs.keys[k][1],
+                      static_cast<Mark>(pairs.values[3 * k + 1]),
+                      pairs.values[3 * k],
+                      pairs.values[3 * k + 2] > 0.});
+    std::sort(kept.begin(), kept.end(), [](const Kept &a, const Kept &b) {
+      return a.number < b.number;
+    });
+    return kept;
   }
 
 

@@ -61,7 +61,7 @@ namespace PeriDeal
   void MultigridPreconditioner::initialize(const double a, const double b)
   {
     const Vector &capacity = op.lumped_capacity();
-    const Vector &diagonal = op.diagonal();
+    const Vector &diagonal = op.surrogate_diagonal();
     Vector        is_free;
     op.initialize_vector(is_free);
     is_free = 1.;

@@ -61,15 +61,33 @@ namespace PeriDeal
     /** Since when a bond is not whole; infinity while it is, 0 if it is parted from the start. */
     double since(const std::size_t number) const;
 
+    /** A mark from an archive, to be set by who knows what follows from it. */
+    struct Kept
+    {
+      std::size_t number;
+      Mark        mark;
+      double      time;
+      bool        is_first; // it is among the marks that were told to be
+    };
+
     /**
-     * The marks of bonds that have been whole at first, and since when: they are set in a list in
-     * which these are whole. @param starts of the bonds of each owned node in the list
-     * Returns the numbers of the bonds that have been marked by that, in ascending order.
+     * Archive the marks of bonds that have been whole at first, and since when, or return those of
+     * the archive, in ascending order of numbers. The list has its size then; marks are not set.
      * Collective.
+     *
+     * @param starts  of the bonds of each owned node in the list
+     * @param n_first so many marks were set at first, n_marks() of an earlier time
      */
-    std::vector<std::size_t> exchange(Archive                        &archive,
-                                      const std::vector<std::size_t> &starts,
-                                      const NodeKeys                 &keys);
+    std::vector<Kept> exchange(Archive                        &archive,
+                               const std::vector<std::size_t> &starts,
+                               const NodeKeys                 &keys,
+                               const std::size_t               n_first);
+
+    /** Those at the start apart. */
+    std::size_t n_marks() const
+    {
+      return times.size();
+    }
 
     /**
      * Numbers and times of what has been marked since there were @p n_known such marks, which

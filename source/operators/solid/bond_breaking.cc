@@ -328,16 +328,39 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondBreaking<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  void BondBreaking<dim>::exchange(Archive                     &archive,
+                                   const NodeKeys              &keys,
+                                   Count                       &n_first,
+                                   const std::function<void()> &at_first)
   {
     if (!changes)
       return;
     if (breaks)
       so_far.exchange(archive);
-    for (const std::size_t number : state.exchange(archive, bonds.rows.first_of_nodes(), keys))
-      bonds.kinematics.release(number);
-    if (bonds.beyond)
-      bonds.beyond->exchange(archive, keys);
+    using List            = std::vector<BondState::Kept>;
+    const List of_body    = state.exchange(archive, bonds.rows.first_of_nodes(), keys, n_first[0]);
+    const List of_outside = bonds.beyond ? bonds.beyond->exchange(archive, keys, n_first[1]) :
+                                           List();
+    if (!archive.loads())
+      return;
+    const auto take = [&](const bool first) {
+      for (const BondState::Kept &kept : of_body)
+        if (kept.is_first == first)
+          {
+            state.mark(kept.number, kept.mark, kept.time);
+            bonds.kinematics.release(kept.number);
+          }
+      for (const BondState::Kept &kept : of_outside)
+        if (kept.is_first == first)
+          bonds.beyond->break_bond(kept.number, kept.mark, kept.time);
+    };
+    take(true);
+    n_first                         = n_marks();
+    const unsigned long long n_kept = of_body.size() + of_outside.size();
+    if (Utilities::MPI::sum(n_kept - n_first[0] - n_first[1],
+                            bonds.families.nodes().communicator()) > 0)
+      at_first();
+    take(false);
   }
 
 

@@ -322,11 +322,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FictitiousBonds<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  std::vector<BondState::Kept> FictitiousBonds<dim>::exchange(Archive          &archive,
+                                                              const NodeKeys   &keys,
+                                                              const std::size_t n_first)
   {
     const Archive::Part part(archive, "fictitious nodes");
-    for (const std::size_t number : state.exchange(archive, starts, keys))
-      release(number);
+    return state.exchange(archive, starts, keys, n_first);
   }
 
 

@@ -341,6 +341,21 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
+    if (latest.matrix)
+      {
+        matrix.copy_from(*latest.matrix);
+        latest.matrix.reset();
+        return;
+      }
+    latest.diagonal.reinit(0);
+    latest.n_marks = breakage.n_marks();
+    assemble(matrix);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::assemble(TrilinosWrappers::SparseMatrix &matrix) const
+  {
     assemble_surrogate(solid,
                        breakage.broken_state(),
                        body,
@@ -430,7 +445,14 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
-    breakage.exchange(archive, keys);
+    breakage.exchange(archive, keys, latest.n_marks, [this]() {
+      if (this->has_growing_cracks()) // these are as they were at the start still
+        return;
+      follow_bonds();
+      latest.matrix = std::make_unique<TrilinosWrappers::SparseMatrix>();
+      assemble(*latest.matrix);
+      latest.diagonal = stiffness_diagonal;
+    });
     if (archive.loads() && this->brittle())
       follow_bonds();
     SolidOperator<dim>::exchange(archive, keys);

@@ -158,6 +158,12 @@ namespace PeriDeal
     /** Diagonal of K, one on unknowns that are not free. Not collective. */
     virtual const Vector &diagonal() const = 0;
 
+    /** That of K when surrogate() was what it last was. Not collective. */
+    virtual const Vector &surrogate_diagonal() const
+    {
+      return diagonal();
+    }
+
     /** Bounds of the spectrum of C^{-1} K (with diagonal C). Kept until K may have grown. */
     virtual Spectrum spectrum() const = 0;
 

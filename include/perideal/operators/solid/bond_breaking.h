@@ -7,6 +7,7 @@
 #include <perideal/operators/solid/solid_bonds.h>
 #include <perideal/operators/solid/solid_loads.h>
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -56,8 +57,26 @@ namespace PeriDeal
       bonds.apply_change(change, state, marked);
     }
 
-    /** What has broken or been cut, and since when. @param keys of the owned nodes. Collective. */
-    void exchange(Archive &archive, const NodeKeys &keys);
+    /** How many bonds are not whole any more, inside and beyond; those at the start apart. */
+    using Count = std::array<std::size_t, 2>;
+
+    Count n_marks() const
+    {
+      return {state.n_marks(), bonds.beyond ? bonds.beyond->n_marks() : 0};
+    }
+
+    /**
+     * What has broken or been cut, and since when. Collective.
+     *
+     * @param keys    of the owned nodes
+     * @param n_first an earlier n_marks(), which is archived
+     * @param at_first what is to be done to a body that is loaded as it was then, if it is another
+     *                 now
+     */
+    void exchange(Archive                     &archive,
+                  const NodeKeys              &keys,
+                  Count                       &n_first,
+                  const std::function<void()> &at_first);
 
     /** As ElasticOperator::broken_since(). */
     std::vector<NodePair> broken_since(std::size_t &n_known) const;

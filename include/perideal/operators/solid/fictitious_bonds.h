@@ -203,8 +203,16 @@ namespace PeriDeal
     /** Where cracks grow: make the springs of a node those of b_i/q_i as it is now. */
     void renew_springs(const unsigned int node, const NodeLaws<dim> &laws);
 
-    /** What has broken. @param keys of the owned nodes. Collective. */
-    void exchange(Archive &archive, const NodeKeys &keys);
+    /** As BondState::exchange(); what is returned is to be broken. */
+    std::vector<BondState::Kept> exchange(Archive          &archive,
+                                          const NodeKeys   &keys,
+                                          const std::size_t n_first);
+
+    /** How many are not whole. */
+    std::size_t n_marks() const
+    {
+      return state.n_marks();
+    }
 
     std::size_t memory_consumption() const;
 

@@ -8,6 +8,7 @@
 #include <perideal/operators/solid/solid_operator.h>
 #include <perideal/operators/solid/solid_tensors.h>
 
+#include <memory>
 #include <vector>
 
 namespace PeriDeal
@@ -48,9 +49,14 @@ namespace PeriDeal
     /** Adds the halo to the nodes. Collective. Throws UserError, among others: isolated nodes. */
     StateOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body);
 
-    Spectrum spectrum() const override;
-    void     surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
-    bool     surrogate_is_exact() const override
+    Spectrum      spectrum() const override;
+    void          surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    const Vector &surrogate_diagonal() const override
+    {
+      return latest.diagonal.size() > 0 ? latest.diagonal : stiffness_diagonal;
+    }
+
+    bool surrogate_is_exact() const override
     {
       return false;
     }
@@ -114,6 +120,18 @@ namespace PeriDeal
     using SolidOperator<dim>::thermal_loads;
     using SolidOperator<dim>::scratch;
 
+    /**
+     * What the latest preconditioner was made for. Where a body is loaded that has broken more
+     * since, the next one is to be made for the same, so that the solver's digits are the same.
+     */
+    struct Surrogate
+    {
+      typename BondBreaking<dim>::Count                       n_marks{};
+      std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> matrix; // of a loaded body
+      Vector                                                  diagonal;
+    };
+
+    void assemble(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
     void find_conditions(const Nodes<dim> &nodes);
     void find_thermal_strains();
     void find_thermal_loads();
@@ -133,6 +151,7 @@ namespace PeriDeal
     SolidBonds<dim>                      solid;
     SolidLoads<dim>                      loads;
     BondBreaking<dim>                    breakage;
+    mutable Surrogate                    latest;
     mutable Vector                       tau;     // tau_i = c_i theta_i/q_i; 0 without dilatations
     mutable std::vector<CellCorner<dim>> corners; // once they have been asked for
   };
