@@ -197,7 +197,7 @@ namespace PeriDeal
   }
 
   template <int dim>
-  void ElasticElements<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
+  void ElasticElements<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
     matrix.copy_from(stiffness);
     hold_unknowns(matrix, this->held_unknowns());

@@ -162,12 +162,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void assemble_surrogate(const SolidBonds<dim>          &bonds,
-                          const BondState                &state,
-                          const BodyParameters<dim>      &body,
-                          const Vector                   &diagonal,
-                          const Vector                   &held,
-                          TrilinosWrappers::SparseMatrix &matrix)
+  void make_surrogate(const SolidBonds<dim>          &bonds,
+                      const BondState                &state,
+                      const BodyParameters<dim>      &body,
+                      const Vector                   &diagonal,
+                      const Vector                   &held,
+                      TrilinosWrappers::SparseMatrix &matrix)
   {
     using LatticeBond                           = typename SolidRows<dim>::LatticeBond;
     const Families<dim>               &families = bonds.families;
@@ -381,12 +381,12 @@ namespace PeriDeal
                                 const BondState &,                          \
                                 const Utilities::MPI::Partitioner &,        \
                                 TrilinosWrappers::SparseMatrix &);          \
-  template void assemble_surrogate(const SolidBonds<dim> &,                 \
-                                   const BondState &,                       \
-                                   const BodyParameters<dim> &,             \
-                                   const Vector &,                          \
-                                   const Vector &,                          \
-                                   TrilinosWrappers::SparseMatrix &);
+  template void make_surrogate(const SolidBonds<dim> &,                     \
+                               const BondState &,                           \
+                               const BodyParameters<dim> &,                 \
+                               const Vector &,                              \
+                               const Vector &,                              \
+                               TrilinosWrappers::SparseMatrix &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

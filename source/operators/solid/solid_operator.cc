@@ -86,20 +86,61 @@ namespace PeriDeal
 
 
   template <int dim>
+  void SolidOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    if (latest.matrix)
+      {
+        matrix.copy_from(*latest.matrix);
+        latest.matrix.reset();
+        return;
+      }
+    latest.diagonal.reinit(0);
+    latest.is_made   = true;
+    latest.cracks_of = cracks_of;
+    surrogate_made();
+    assemble_surrogate(matrix);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::take_loaded(const double time)
+  {
+    if (const auto change = history.change(cracks_of, time))
+      take(*change, true);
+  }
+
+
+  template <int dim>
   void SolidOperator<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
+    double time = cracks_of;
+    archive.exchange("has surrogate", latest.is_made);
     if (history.changes_ever())
       {
-        double time = cracks_of, first = history.representative(0.);
+        double first = history.representative(0.);
         archive.exchange("cracks of the start", first);
         AssertThrow(first == history.representative(0.),
                     UserError("The cracks grow in other steps than those of the checkpoint. Go on "
                               "with the same 'End time' in section 'Time'."));
         archive.exchange("cracks of", time);
+        archive.exchange("cracks of the surrogate", latest.cracks_of);
         archive.exchange("released by growth", this->released_by_growth);
         archive.exchange("released by joining", this->released_by_joining);
-        if (const auto change = history.change(cracks_of, time); change && archive.loads())
-          take(*change, true);
+      }
+    const auto keep_surrogate = [&]() {
+      if (!latest.is_made)
+        return;
+      take_loaded(latest.cracks_of);
+      latest.matrix = std::make_unique<TrilinosWrappers::SparseMatrix>();
+      assemble_surrogate(*latest.matrix);
+      latest.diagonal = stiffness_diagonal;
+    };
+    exchange_bonds(archive, keys, keep_surrogate);
+    if (archive.loads() && history.changes_ever())
+      {
+        if (latest.cracks_of != time && !latest.matrix)
+          keep_surrogate();
+        take_loaded(time);
       }
     conditions->exchange(archive, keys);
     ElasticOperator::exchange(archive, keys);

@@ -339,29 +339,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
+  void StateOperator<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    if (latest.matrix)
-      {
-        matrix.copy_from(*latest.matrix);
-        latest.matrix.reset();
-        return;
-      }
-    latest.diagonal.reinit(0);
-    latest.n_marks = breakage.n_marks();
-    assemble(matrix);
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::assemble(TrilinosWrappers::SparseMatrix &matrix) const
-  {
-    assemble_surrogate(solid,
-                       breakage.broken_state(),
-                       body,
-                       stiffness_diagonal,
-                       this->held_unknowns(),
-                       matrix);
+    make_surrogate(solid,
+                   breakage.broken_state(),
+                   body,
+                   stiffness_diagonal,
+                   this->held_unknowns(),
+                   matrix);
   }
 
   template <int dim>
@@ -443,19 +428,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateOperator<dim>::exchange(Archive &archive, const NodeKeys &keys)
+  void StateOperator<dim>::exchange_bonds(Archive                     &archive,
+                                          const NodeKeys              &keys,
+                                          const std::function<void()> &at_surrogate)
   {
-    breakage.exchange(archive, keys, latest.n_marks, [this]() {
-      if (this->has_growing_cracks()) // these are as they were at the start still
-        return;
+    breakage.exchange(archive, keys, marks_of_surrogate, [&]() {
       follow_bonds();
-      latest.matrix = std::make_unique<TrilinosWrappers::SparseMatrix>();
-      assemble(*latest.matrix);
-      latest.diagonal = stiffness_diagonal;
+      at_surrogate();
     });
     if (archive.loads() && this->brittle())
       follow_bonds();
-    SolidOperator<dim>::exchange(archive, keys);
   }
 
 

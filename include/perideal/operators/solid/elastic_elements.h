@@ -58,7 +58,6 @@ namespace PeriDeal
     ~ElasticElements() override;
 
     Spectrum spectrum() const override;
-    void     surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
     bool     surrogate_is_exact() const override
     {
       return true;
@@ -145,6 +144,7 @@ namespace PeriDeal
     double lowest_remainder() const;
 
   protected:
+    void assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
     bool join_zone(const ChangeSet<dim> &change) override;
     void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
     void find_loads(Vector &loads, const double t) const override;

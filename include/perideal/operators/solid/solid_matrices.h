@@ -46,10 +46,10 @@ namespace PeriDeal
    * not free, its ghosts up to date. Collective.
    */
   template <int dim>
-  void assemble_surrogate(const SolidBonds<dim>                  &bonds,
-                          const BondState                        &state,
-                          const BodyParameters<dim>              &body,
-                          const Vector                           &diagonal,
-                          const Vector                           &held,
-                          dealii::TrilinosWrappers::SparseMatrix &matrix);
+  void make_surrogate(const SolidBonds<dim>                  &bonds,
+                      const BondState                        &state,
+                      const BodyParameters<dim>              &body,
+                      const Vector                           &diagonal,
+                      const Vector                           &held,
+                      dealii::TrilinosWrappers::SparseMatrix &matrix);
 } // namespace PeriDeal

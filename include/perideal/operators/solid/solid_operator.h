@@ -9,6 +9,7 @@
 #include <perideal/operators/solid/displacement_conditions.h>
 #include <perideal/scene/crack_history.h>
 
+#include <functional>
 #include <memory>
 
 namespace PeriDeal
@@ -34,6 +35,12 @@ namespace PeriDeal
     void initialize_nodal_vector(Vector &vector) const override
     {
       vector.reinit(nodes);
+    }
+
+    void          surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const final;
+    const Vector &surrogate_diagonal() const final
+    {
+      return latest.diagonal.size() > 0 ? latest.diagonal : stiffness_diagonal;
     }
 
     void apply(Vector &y, const Vector &x) const override;
@@ -130,6 +137,23 @@ namespace PeriDeal
       this->multiply(y, u);
     }
 
+    /** What surrogate() gives, of the body as it is now. Collective. */
+    virtual void assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const = 0;
+
+    /** surrogate() is made for the body as it is now. Not collective. */
+    virtual void surrogate_made() const {}
+
+    /**
+     * Exchange the state of the bonds. Collective.
+     *
+     * @param at_surrogate to be called once when a body is loaded that has changed since
+     *                     surrogate_made(), when it has only changed as far as then
+     */
+    virtual void exchange_bonds(Archive & /*archive*/,
+                                const NodeKeys & /*keys*/,
+                                const std::function<void()> & /*at_surrogate*/)
+    {}
+
     /** Thermal ones included. */
     virtual void find_loads(Vector &loads, const double t) const = 0;
 
@@ -166,8 +190,22 @@ namespace PeriDeal
     Vector                                       mass, stiffness_diagonal, thermal_loads;
 
   private:
-    void   take(const ChangeSet<dim> &change, const bool loaded);
-    Vector constant_loads;
+    /**
+     * What the latest preconditioner was made for. Where a body is loaded that has changed since,
+     * the next one is made for the same, so that the solver's digits are the same.
+     */
+    struct Surrogate
+    {
+      bool                                                    is_made   = false;
+      double                                                  cracks_of = 0.;
+      std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> matrix; // of a loaded body
+      Vector                                                  diagonal;
+    };
+
+    void              take(const ChangeSet<dim> &change, const bool loaded);
+    void              take_loaded(const double time);
+    Vector            constant_loads;
+    mutable Surrogate latest;
 
   protected:
     mutable Vector scratch;

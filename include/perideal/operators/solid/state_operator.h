@@ -8,7 +8,6 @@
 #include <perideal/operators/solid/solid_operator.h>
 #include <perideal/operators/solid/solid_tensors.h>
 
-#include <memory>
 #include <vector>
 
 namespace PeriDeal
@@ -49,14 +48,8 @@ namespace PeriDeal
     /** Adds the halo to the nodes. Collective. Throws UserError, among others: isolated nodes. */
     StateOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body);
 
-    Spectrum      spectrum() const override;
-    void          surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
-    const Vector &surrogate_diagonal() const override
-    {
-      return latest.diagonal.size() > 0 ? latest.diagonal : stiffness_diagonal;
-    }
-
-    bool surrogate_is_exact() const override
+    Spectrum spectrum() const override;
+    bool     surrogate_is_exact() const override
     {
       return false;
     }
@@ -87,7 +80,6 @@ namespace PeriDeal
     }
 
     unsigned long long break_bonds(const Vector &u, double t, double share = 0.) override;
-    void               exchange(Archive &archive, const NodeKeys &keys) override;
 
     const dealii::Point<dim> &position(const unsigned int node) const override
     {
@@ -108,6 +100,15 @@ namespace PeriDeal
     NodalTensors<dim> tensors(const Vector &u) const;
 
   protected:
+    void assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    void surrogate_made() const override
+    {
+      marks_of_surrogate = breakage.n_marks();
+    }
+
+    void exchange_bonds(Archive                     &archive,
+                        const NodeKeys              &keys,
+                        const std::function<void()> &at_surrogate) override;
     void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
     void find_forces(Vector &y, const Vector &u) const override;
     void find_loads(Vector &loads, const double t) const override;
@@ -120,18 +121,6 @@ namespace PeriDeal
     using SolidOperator<dim>::thermal_loads;
     using SolidOperator<dim>::scratch;
 
-    /**
-     * What the latest preconditioner was made for. Where a body is loaded that has broken more
-     * since, the next one is to be made for the same, so that the solver's digits are the same.
-     */
-    struct Surrogate
-    {
-      typename BondBreaking<dim>::Count                       n_marks{};
-      std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> matrix; // of a loaded body
-      Vector                                                  diagonal;
-    };
-
-    void assemble(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
     void find_conditions(const Nodes<dim> &nodes);
     void find_thermal_strains();
     void find_thermal_loads();
@@ -148,11 +137,11 @@ namespace PeriDeal
 
     bool holds(const CellCorner<dim> &corner) const; // no bond of its node has broken
 
-    SolidBonds<dim>                      solid;
-    SolidLoads<dim>                      loads;
-    BondBreaking<dim>                    breakage;
-    mutable Surrogate                    latest;
-    mutable Vector                       tau;     // tau_i = c_i theta_i/q_i; 0 without dilatations
-    mutable std::vector<CellCorner<dim>> corners; // once they have been asked for
+    SolidBonds<dim>                           solid;
+    SolidLoads<dim>                           loads;
+    BondBreaking<dim>                         breakage;
+    mutable typename BondBreaking<dim>::Count marks_of_surrogate{};
+    mutable Vector                            tau; // tau_i = c_i theta_i/q_i; 0 without dilatations
+    mutable std::vector<CellCorner<dim>>      corners; // once they have been asked for
   };
 } // namespace PeriDeal
