@@ -26,9 +26,8 @@ namespace PeriDeal
       heat.units              = scene.units;
       heat.general.physics    = Physics::heat;
       heat.domain.notes.clear();
-      if (scene.domain.image) // islands are others for heat
-        heat.domain.image = std::make_shared<PhaseMap>(*scene.domain.image);
-      heat.boundary_conditions = scene.boundary_conditions;
+      heat.domain.islands.cells_are_given = true;
+      heat.boundary_conditions            = scene.boundary_conditions;
       heat.boundary_conditions.displacement.clear();
       heat.boundary_conditions.traction.clear();
       // Where no lattice mirrors its nodes in it, a plane of symmetry is an insulated side.

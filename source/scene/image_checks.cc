@@ -294,6 +294,59 @@ namespace PeriDeal
     }
 
 
+    /** Parts that no side holds, the largest first. */
+    struct Islands
+    {
+      std::vector<int>       part_of; // of each cell
+      std::vector<ImagePart> parts;
+      std::size_t            n_cells = 0, n_solid = 0; // of these parts, of all
+    };
+
+
+    Islands find_islands(const Scene<2> &scene)
+    {
+      const PhaseMap &map = *scene.domain.image;
+      Islands         islands{map.parts(connections(scene)), {}, 0, 0};
+      const Holding   holding(scene);
+      for (const ImagePart &part : find_parts(map, islands.part_of))
+        {
+          islands.n_solid += part.cells.size();
+          if (!holding.holds(part))
+            {
+              islands.parts.push_back(part);
+              islands.n_cells += part.cells.size();
+            }
+        }
+      std::stable_sort(
+        islands.parts.begin(),
+        islands.parts.end(),
+        [](const ImagePart &a, const ImagePart &b) { return a.cells.size() > b.cells.size(); });
+      return islands;
+    }
+
+
+    std::string number_of_parts(const Islands &islands)
+    {
+      return std::to_string(islands.parts.size()) +
+             (islands.parts.size() == 1 ? " part" : " parts");
+    }
+
+
+    /** The steady temperature of a body, which keeps the parts that it holds. */
+    void refuse_islands_of_heat(const Scene<2> &heat)
+    {
+      if (!heat.time.steady || !heat.domain.image->has_voids())
+        return;
+      const Islands islands = find_islands(heat);
+      if (!islands.parts.empty())
+        entry_error(
+          heat.domain.where("Islands"),
+          "no side holds the temperature of " + number_of_parts(islands) +
+            " of the body in the image (" + describe(islands.parts) +
+            "), whose steady state is not determined. Give conditions of the temperature on a side that each part touches, or compute it in time ('Steady = false' in section 'Time').");
+    }
+
+
     void treat_islands(Scene<2> &scene)
     {
       Domain<2> &domain     = scene.domain;
@@ -304,27 +357,10 @@ namespace PeriDeal
         entry_error(domain.where("Islands"), "'pin' is for 'Physics = elasticity'; use 'remove'.");
       if ((determined && domain.islands.rule != IslandRule::remove) || !map.has_voids())
         return;
-      const std::vector<int> part_of = map.parts(connections(scene));
-      const Holding          holding(scene);
-      std::vector<ImagePart> islands;
-      std::size_t            n_cells = 0, n_solid = 0;
-      for (const ImagePart &part : find_parts(map, part_of))
-        {
-          n_solid += part.cells.size();
-          if (!holding.holds(part))
-            {
-              islands.push_back(part);
-              n_cells += part.cells.size();
-            }
-        }
-      if (islands.empty())
+      const Islands found = find_islands(scene);
+      if (found.parts.empty())
         return;
-      std::stable_sort(islands.begin(), islands.end(), [](const ImagePart &a, const ImagePart &b) {
-        return a.cells.size() > b.cells.size();
-      });
-      const std::string parts =
-        std::to_string(islands.size()) + (islands.size() == 1 ? " part" : " parts");
-      const std::string what = describe(islands);
+      const std::string parts = number_of_parts(found), what = describe(found.parts);
       if (domain.islands.rule == IslandRule::error)
         entry_error(domain.where("Islands"),
                     "no side holds " + parts + " of the body in the image (" + what + "), whose " +
@@ -332,14 +368,14 @@ namespace PeriDeal
                       " is not determined. Use '" +
                       (is_elastic(scene) ? "remove' or 'pin" : "remove") +
                       "', or give conditions on a side that each part touches.");
-      if (2 * n_cells > n_solid && domain.islands.rule == IslandRule::remove)
+      if (2 * found.n_cells > found.n_solid && domain.islands.rule == IslandRule::remove)
         entry_error(domain.where("Islands"),
-                    "'remove' would take away " + percent(double(n_cells) / n_solid) +
+                    "'remove' would take away " + percent(double(found.n_cells) / found.n_solid) +
                       " of the body, because no side holds " + parts + " of it (" + what +
                       "). Give conditions on a side that the body touches.");
-      for (const ImagePart &island : islands)
+      for (const ImagePart &island : found.parts)
         if (domain.islands.rule == IslandRule::pin)
-          pin(scene, part_of, island);
+          pin(scene, found.part_of, island);
         else
           for (const std::size_t c : island.cells)
             map.phases[c] = PhaseMap::empty;
@@ -406,9 +442,11 @@ namespace PeriDeal
   void check_image(Scene<dim> &scene)
   {
     if constexpr (dim == 2)
-      if (scene.domain.image)
+      if (scene.domain.image && !scene.domain.islands.cells_are_given)
         {
           treat_islands(scene);
+          if (scene.heat)
+            of_heat_problem([&] { refuse_islands_of_heat(*scene.heat); });
           note_areas(scene.domain);
           note_thin_voids(scene);
         }

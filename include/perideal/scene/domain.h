@@ -100,8 +100,9 @@ namespace PeriDeal
     /** Parts of an image that nothing joins to the rest. */
     struct Islands
     {
-      IslandRule            rule = IslandRule::error;
-      std::vector<Pin<dim>> pins; // set by Scene
+      IslandRule            rule            = IslandRule::error;
+      bool                  cells_are_given = false; // by the body whose heat this is
+      std::vector<Pin<dim>> pins;                    // set by Scene
     };
     Islands islands;
 
