@@ -54,7 +54,7 @@ namespace PeriDeal
         // Its fields would have to be mirrored, too.
         if (model == ModelKind::coupled && scene.coupling.certificate &&
             elements->mirrors().empty())
-          examine();
+          examine(on);
       }
 
       std::string name() const override
@@ -266,10 +266,20 @@ namespace PeriDeal
       /**
        * Exchange that is not exact must not run; of the others the user is told how wrong they are.
        */
-      void examine()
+      void examine(Model<dim> &on)
       {
         Timings::Scope scope(this->timings, "certificate");
-        certificate             = examine_coupling(*elements);
+        // Where nodes join the zone later, as if they had.
+        std::unique_ptr<ElasticElements<dim>> at_end;
+        if (elements->zone_follows_cracks())
+          {
+            at_end = std::make_unique<ElasticElements<dim>>(
+              handler,
+              scene,
+              make_solid_coupling(on.nodes(scene, NodalVolume::partial), scene));
+            at_end->join_whole_way();
+          }
+        certificate             = examine_coupling(at_end ? *at_end : *elements);
         const std::string fault = certificate->fault();
         AssertThrow(fault.empty() || !scene.coupling.exchanges(),
                     UserError("The coupling of section 'Coupling' is not sound: " + fault +

@@ -40,7 +40,7 @@ namespace PeriDeal
             if (problem.op().brittle())
               add("released",
                   "energy released by broken bonds",
-                  problem.op().released_energy() - by_growth - by_joining);
+                  problem.op().break_history()->released);
             if (problem.op().has_growing_cracks())
               add("released by cracks", "energy released by cracks", by_growth);
             if (problem.op().zone_follows_cracks())

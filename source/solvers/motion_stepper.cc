@@ -225,8 +225,6 @@ namespace PeriDeal
     if (limit)
       limit->exchange(archive);
     exchange_own(archive);
-    if (archive.loads() && op.has_growing_cracks())
-      operator_changed();
   }
 
 

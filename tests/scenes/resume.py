@@ -8,7 +8,7 @@
     resume.py signals                               stopped by SIGTERM and SIGKILL at random moments, on 1 and 2 processes (long)
 
 On the same number of processes all is the same to the last bit, also with solvers, whose preconditioner is made for what it was made for; there 1e-12 of
-the largest value of a column is allowed (5e-14 seen: `newmark` beside a growing crack, which is cut out of the matrix in one go).
+the largest value of a column is allowed (5e-14 seen by hand: `newmark` beside a growing crack, which is cut out of the matrix in one go).
 """
 
 import csv

@@ -210,6 +210,81 @@ namespace
   }
 
 
+  /** All bonds of the node nearest to a point. */
+  ChangeSet<2> freeing(const Families<2> &families, const dealii::Point<2> &p)
+  {
+    ChangeSet<2>                              damage;
+    std::vector<typename Families<2>::Member> members;
+    std::vector<NodePair>                     own;
+    const Nodes<2>                           &nodes = families.nodes();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      if (nodes.position(i).distance(p) < 0.01)
+        {
+          families.members_of(i, members);
+          for (const auto &bond : members)
+            {
+              const auto a = nodes.partitioner()->local_to_global(i),
+                         b = nodes.partitioner()->local_to_global(bond.neighbor);
+              own.push_back({std::min(a, b), std::max(a, b)});
+            }
+        }
+    for (const auto &list : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, own))
+      damage.broken.insert(damage.broken.end(), list.begin(), list.end());
+    std::sort(damage.broken.begin(), damage.broken.end());
+    damage.cuts.push_back(dealii::BoundingBox<2>({p, p}));
+    damage.cuts.back().extend(1e-3);
+    damage.damage = true;
+    return damage;
+  }
+
+
+  TEST(BrokenBonds, of_a_node_that_is_free_and_a_crack_that_grows_past)
+  {
+    const Settings         start{{"Cracks/Segments", "0,0.53 ; 0.3,0.505"},
+                         {"Cracks/Growth", "2: 0, 0.5,-0.04, 0.7"}};
+    const Settings         grown{{"Cracks/Segments", "0,0.53 ; 0.65,0.477"}};
+    const dealii::Point<2> free(5. / 12., 0.5);
+    for (const auto &[more, model] :
+         {std::make_pair(Settings{{"Peridynamics/Boundary treatment", "none"}},
+                         ModelKind::peridynamics),
+          std::make_pair(Settings{{"Coupling/Zone", "0.9 - x"}}, ModelKind::coupled)})
+      {
+        const Settings settings = square + more +
+                                  Settings{{"Domain/Nodes", "vertices"},
+                                           {"Peridynamics/Horizon ratio", "3"},
+                                           {"Cracks/Growth step", "0.02"}};
+        const Following<2> body(settings + start, model), built(settings + grown, model);
+        const auto         families = [&, model = model ](const Problem<2> &problem) -> const auto &
+        {
+          return model == ModelKind::coupled ? problem.fem->bonds().families() :
+                                               problem.bonds->diffusion_bonds().families();
+        };
+        const auto follow = [&, model = model](const Problem<2> &problem) {
+          const ChangeSet<2> damage = freeing(families(problem), free);
+          EXPECT_GT(damage.broken.size(), 20u);
+          return model == ModelKind::coupled ? problem.fem->follow(damage) :
+                                               problem.bonds->follow(damage);
+        };
+        EXPECT_TRUE(follow(body));
+        for (double t = 0.; t < 1.; t = body.op().next_event(t))
+          body.op().update(t);
+        EXPECT_TRUE(follow(built));
+        const Vector x = body.values(bumpy<2>);
+        Vector       y = body.vector(), expected = built.vector();
+        body.op().apply(y, x);
+        built.op().apply(expected, x);
+        const double size = expected.linfty_norm();
+        EXPECT_LT(largest_difference(y, expected), 1e-13 * size);
+        // Nothing flows to the node any more.
+        for (unsigned int i = 0; i < body.nodes->n_owned(); ++i)
+          if (body.nodes->position(i).distance(free) < 0.01)
+            {
+              EXPECT_LT(std::abs(y.local_element(i)), 1e-14 * size);
+            }
+      }
+  }
+
+
   TEST(BrokenBonds, let_through_what_they_are_told)
   {
     BrokenBonds broken(0.25);

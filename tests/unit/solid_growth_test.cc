@@ -192,6 +192,26 @@ namespace PeriDeal
   }
 
 
+  TEST(SolidGrowth, in_a_linear_field_joining_releases_nothing)
+  {
+    // With two horizons no bond that joins reaches back to what the crack has cut before.
+    const Settings zone{{"Coupling/Zone", "cracks: 2"}, {"Peridynamics/Horizon ratio", "2"}};
+    const auto     check = [](const auto &body) {
+      const Vector u      = body.values([](auto p) {
+        p *= 0.3;
+        p[0] += 0.7 * p[1];
+        return p;
+      });
+      const double before = body.op().energy(u);
+      grow(body, u);
+      EXPECT_NEAR(body.op().energy_released_by_joining(), 0., 1e-12 * before);
+      EXPECT_GT(body.op().energy_released_by_growth(), 1e-3 * before);
+    };
+    check(Body<2>(box<2>() + zone + growing, ModelKind::coupled));
+    check(Body<3>(box<3>() + zone + growing_square, ModelKind::coupled));
+  }
+
+
   TEST(SolidGrowth, coupled_on_a_distorted_mesh)
   {
     const Settings mesh{{"Domain/Shape", "mesh file"},

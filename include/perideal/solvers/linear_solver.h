@@ -46,9 +46,9 @@ namespace PeriDeal
     void operator_changed();
 
     /**
-     * What the preconditioner was made for, so that a run that goes on has the same, unless K has
-     * changed since it was made: then it is made for K as it is. That is done with the next
-     * solution, when the operator has been loaded, too. Collective.
+     * What the preconditioner was made for, so that a run that goes on has the same: made with the
+     * next solution, when the operator has been loaded, too, from what Operator::surrogate() gives
+     * then. Collective.
      */
     void exchange(Archive &archive);
 

@@ -26,7 +26,7 @@ namespace PeriDeal
     double kinetic = 0., strain = 0.;
     double start    = 0.; // kinetic and strain energy at the start
     double work     = 0.; // of loads and supports since then
-    double released = 0.; // by broken bonds since then
+    double released = 0.; // by bonds that broke or joined a zone, and by cracks, since then
     double drift =
       0.; // change of what the steps keep, less the work: of linear bodies round-off at any step
     // The most that start and work together have been so far: what the others are to be compared

@@ -226,12 +226,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  template <typename Change>
-  void ElasticElements<dim>::mend(const Boxes &boxes, const double of_cells, const Change &change)
+  template <typename MakeChange>
+  void ElasticElements<dim>::mend(const Boxes      &boxes,
+                                  const double      of_cells,
+                                  const MakeChange &make_change)
   {
     if (scales_beside_cracks()) // factors of cells and bonds change farther away
       {
-        change(nullptr);
+        make_change(nullptr);
         assemble();
         return;
       }
@@ -244,10 +246,9 @@ namespace PeriDeal
     const std::vector<unsigned int> near = zone_bonds ? zone_bonds->nodes_near(boxes) :
                                                         std::vector<unsigned int>();
     add_parts(cells, near, -1.);
-    change(&cells);
+    make_change(&cells);
     add_parts(cells, near, 1.);
     stiffness.compress(VectorOperation::add);
-    find_diagonal();
     if (any_thermal())
       find_thermal();
   }
@@ -256,7 +257,7 @@ namespace PeriDeal
   template <int dim>
   bool ElasticElements<dim>::join_zone(const ChangeSet<dim> &change)
   {
-    if (!zone_bonds)
+    if (!zone_bonds || change.cuts.empty())
       return false;
     const Boxes joins = boxes_beside(change.cuts,
                                      zone_bonds->coupling().joining_by(change.to),
@@ -273,7 +274,6 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::apply_change(const ChangeSet<dim> &change, const bool)
   {
-    join_zone(change);
     const auto pieces = this->history.pieces(change.to);
     mend(change.cuts, 0., [&](const std::vector<Cell> *cells) {
       if (cells)
@@ -283,6 +283,7 @@ namespace PeriDeal
       if (zone_bonds)
         zone_bonds->apply_change(change);
     });
+    find_diagonal();
     this->keep_constant_loads();
   }
 

@@ -106,7 +106,7 @@ namespace PeriDeal
   void SolidOperator<dim>::take_loaded(const double time)
   {
     if (const auto change = history.change(cracks_of, time))
-      take(*change, true);
+      take(*change, nullptr);
   }
 
 
@@ -148,11 +148,19 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidOperator<dim>::take(const ChangeSet<dim> &change, const bool loaded)
+  void SolidOperator<dim>::take(const ChangeSet<dim> &change, const Vector *u)
   {
     try
       {
-        apply_change(change, loaded);
+        double before = u ? this->energy(*u) : 0.;
+        if (join_zone(change) && u)
+          {
+            const double joined = this->energy(*u);
+            this->released_by_joining += before - joined;
+            before = joined;
+          }
+        apply_change(change, u == nullptr);
+        this->released_by_growth += u ? before - this->energy(*u) : 0.;
       }
     catch (const UserError &fault)
       {
@@ -171,15 +179,7 @@ namespace PeriDeal
     const auto change = history.change(cracks_of, t);
     if (!change || change->to < cracks_of) // what has been cut stays cut
       return false;
-    double before = this->energy(u);
-    if (join_zone(*change))
-      {
-        const double joined = this->energy(u);
-        this->released_by_joining += before - joined;
-        before = joined;
-      }
-    take(*change, false);
-    this->released_by_growth += before - this->energy(u);
+    take(*change, &u);
     return true;
   }
 

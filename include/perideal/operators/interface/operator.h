@@ -158,7 +158,11 @@ namespace PeriDeal
     /** Diagonal of K, one on unknowns that are not free. Not collective. */
     virtual const Vector &diagonal() const = 0;
 
-    /** That of K when surrogate() was what it last was. Not collective. */
+    /**
+     * The diagonal of K to be used beside surrogate(): of K as it is; where an operator has been
+     * loaded, until surrogate() is asked a second time, of the K for which it was made last in the
+     * run before. Not collective.
+     */
     virtual const Vector &surrogate_diagonal() const
     {
       return diagonal();

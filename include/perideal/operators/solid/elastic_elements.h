@@ -130,6 +130,12 @@ namespace PeriDeal
       return cut_by_cracks.flags();
     }
 
+    /** Nodes join that will do so on the whole way of the cracks; K stays as it is. Collective. */
+    void join_whole_way()
+    {
+      zone_bonds->join(body.cracks.end_time);
+    }
+
     /**
      * K of the body without its cracks and conditions, with the bonds of the zone or without any.
      * Collective.
@@ -181,13 +187,14 @@ namespace PeriDeal
                    const std::vector<unsigned int> &of_nodes,
                    const double                     multiple);
     /**
-     * Make a change of what comes within a distance of boxes, of cells, or a family's reach, of
-     * bonds, and take anew what these add to K. Collective.
+     * Take anew what is added to K by cells within a distance of boxes and by bonds within the
+     * reach of a family. Collective.
      *
-     * @param change gets the cells, or null where all are taken anew
+     * @param make_change between the old and the new ones; gets the cells, or null where all of the
+     *                    body is taken anew
      */
-    template <typename Change>
-    void mend(const Boxes &boxes, const double of_cells, const Change &change);
+    template <typename MakeChange>
+    void mend(const Boxes &boxes, const double of_cells, const MakeChange &make_change);
     void throw_if_isolated() const;
     template <typename Visit>
     void for_each_own_cell(const Visit &visit) const;

@@ -117,8 +117,8 @@ namespace PeriDeal
     void set_layout(const Layout &of_nodes);
 
     /**
-     * Let the nodes join the zone that do so with a change, and cut nothing yet. Returns whether K
-     * has changed. Collective. Throws UserError.
+     * Let the nodes join the zone that do so with a change, and cut nothing yet; the diagonal is
+     * left for apply_change(). Returns whether K has changed. Collective. Throws UserError.
      */
     virtual bool join_zone(const ChangeSet<dim> & /*change*/)
     {
@@ -126,7 +126,7 @@ namespace PeriDeal
     }
 
     /**
-     * Mend what a change names, nodes that join included. Collective. Throws UserError.
+     * Mend what a change names, after join_zone(). Collective. Throws UserError.
      * @param loaded bonds have been marked already, by what was loaded
      */
     virtual void apply_change(const ChangeSet<dim> &change, const bool loaded) = 0;
@@ -146,8 +146,8 @@ namespace PeriDeal
     /**
      * Exchange the state of the bonds. Collective.
      *
-     * @param at_surrogate to be called once when a body is loaded that has changed since
-     *                     surrogate_made(), when it has only changed as far as then
+     * @param at_surrogate to be called once when a body is loaded whose bonds have changed since
+     *                     surrogate_made(), when they have only changed as far as then
      */
     virtual void exchange_bonds(Archive & /*archive*/,
                                 const NodeKeys & /*keys*/,
@@ -202,7 +202,8 @@ namespace PeriDeal
       Vector                                                  diagonal;
     };
 
-    void              take(const ChangeSet<dim> &change, const bool loaded);
+    /** @param u at which energy is released; null: by a body that is loaded, which has told it. */
+    void              take(const ChangeSet<dim> &change, const Vector *u);
     void              take_loaded(const double time);
     Vector            constant_loads;
     mutable Surrogate latest;
