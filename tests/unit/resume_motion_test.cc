@@ -4,6 +4,7 @@
 // Bodies in motion and under slow loading, saved on the way and taken up again by new objects.
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <perideal/mesh/node_keys.h>
 #include <perideal/solvers/motion_stepper.h>
@@ -249,5 +250,58 @@ namespace PeriDeal
               EXPECT_EQ(resumed->n_steps(), loading->n_steps());
             }
         }
+  }
+
+
+  /** A preconditioner is made for the body as it was when it was made in the run before. */
+  TEST(Resume, the_surrogate_is_the_one_of_then)
+  {
+    const Settings zone{{"Coupling/Zone", "cracks: 1"}, {"Time/End time", "2"}};
+    const Settings grows = growing + Settings{{"Time/End time", "2"}};
+    for (const auto &[more, model] : {std::make_pair(brittle, ModelKind::peridynamics),
+                                      std::make_pair(brittle + centers, ModelKind::peridynamics),
+                                      std::make_pair(brittle + grows, ModelKind::peridynamics),
+                                      std::make_pair(grows, ModelKind::finite_elements),
+                                      std::make_pair(grows + zone, ModelKind::coupled)})
+      {
+        SCOPED_TRACE(to_string(model));
+        const Body<2>    body(plate + slow + more, model), other(plate + slow + more, model);
+        ElasticOperator &op   = body.op();
+        const NodeKeys   keys = node_keys(body.handler);
+        Vector           u;
+        op.initialize_vector(u);
+        const auto change = [&](const double t) {
+          u = body.values([&](const dealii::Point<2> &p) { return 0.1 * t * bumpy_vector(p); });
+          const bool grown = op.grow_cracks(u, t);
+          return grown || op.break_bonds(u, t, 0.9) > 0;
+        };
+        EXPECT_TRUE(change(0.5));
+        dealii::TrilinosWrappers::SparseMatrix then, now, resumed;
+        op.surrogate(then);
+        const Vector diagonal = op.surrogate_diagonal();
+        EXPECT_TRUE(change(1.1));
+        MemoryArchive saved(MPI_COMM_WORLD);
+        op.exchange(saved, keys);
+        MemoryArchive archive(saved, MPI_COMM_WORLD);
+        other.op().exchange(archive, keys);
+        // K as it is now, but the first preconditioner as it was.
+        EXPECT_LE(largest_difference(other.op().diagonal(), op.diagonal()),
+                  1e-13 * op.diagonal().linfty_norm());
+        other.op().surrogate(resumed);
+        EXPECT_LE(largest_difference(other.op().surrogate_diagonal(), diagonal),
+                  1e-13 * diagonal.linfty_norm());
+        op.surrogate(now);
+        const double size = then.frobenius_norm();
+        now.add(-1., then);
+        EXPECT_GT(now.frobenius_norm(), 1e-4 * size);
+        resumed.add(-1., then);
+        EXPECT_LE(resumed.frobenius_norm(), 1e-13 * size);
+        op.surrogate(now);
+        other.op().surrogate(resumed);
+        resumed.add(-1., now);
+        EXPECT_LE(resumed.frobenius_norm(), 1e-13 * size);
+        EXPECT_LE(largest_difference(other.op().surrogate_diagonal(), op.surrogate_diagonal()),
+                  1e-13 * diagonal.linfty_norm());
+      }
   }
 } // namespace PeriDeal
