@@ -131,7 +131,7 @@ namespace PeriDeal
       if (!latest.is_made)
         return;
       take_loaded(latest.cracks_of);
-      latest.matrix = std::make_unique<TrilinosWrappers::SparseMatrix>();
+      latest.matrix = std::make_shared<TrilinosWrappers::SparseMatrix>();
       assemble_surrogate(*latest.matrix);
       latest.diagonal = stiffness_diagonal;
     };

@@ -198,7 +198,7 @@ namespace PeriDeal
     {
       bool                                                    is_made   = false;
       double                                                  cracks_of = 0.;
-      std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> matrix; // of a loaded body
+      std::shared_ptr<dealii::TrilinosWrappers::SparseMatrix> matrix; // of a loaded body
       Vector                                                  diagonal;
     };
 
