@@ -13,7 +13,7 @@ import sys
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 # From the bottom up. A room may include itself and the rooms of lower storeys; rooms of one storey
-# do not know each other. A floor is a folder that lies in rooms itself, and others may include all of these.
+# do not know each other. A floor is a folder that holds rooms in place of files.
 STOREYS = [["base"], ["scene"], ["mesh", "laws"], ["bonds"],
            ["operators/interface"], ["operators/bounds"], ["operators/parts"], ["operators/lattice"], ["operators/coupling"],
            ["operators/diffusion", "operators/solid"],

@@ -342,7 +342,8 @@ def energy_caption(run):
     stored = "the strain energy" + ("" if slow else " and the kinetic energy")
     text = f"The work of loads and supports is {stored}"
     if not broken:
-        return text + "."
+        # Cracks that grow release energy, too.
+        return text + (" and the energy dissipated, which the growing cracks have released." if DISSIPATED in run.totals else ".")
     return text + (" and the energy dissipated: what broken bonds had stored, and what a real body "
                    "turns into motion before it is at rest again." if slow else
                    " and the energy dissipated, which is what broken bonds had stored.")

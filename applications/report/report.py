@@ -227,7 +227,7 @@ class Report:
         text = [f"{name(m)} and finite elements agree to round-off." for m, size in found if size.zero]
         listed = " and ".join(f"{field.amount(size.value)} {size.place()} ({m})" for m, size in found if not size.zero)
         if listed:
-            circle = "" if self.run.dimension != 2 else ", marked by a circle" + ("s" if listed.count(" and ") else "")
+            circle = "" if self.run.dimension != 2 else ", marked by circles" if listed.count(" and ") else ", marked by a circle"
             text.append(f"Largest difference from finite elements: {listed}{circle}.")
         return " ".join(text)
 

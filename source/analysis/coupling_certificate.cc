@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/analysis/coupling_certificate.h>
+#include <perideal/base/user_error.h>
 #include <perideal/operators/bounds/spectrum.h>
 
 #include <algorithm>
@@ -133,6 +134,15 @@ namespace PeriDeal
         unbalanced.value_or(0.),
         " of the sum of their sizes");
     return text.str();
+  }
+
+
+  void CouplingCertificate::require_sound() const
+  {
+    const std::string found = fault();
+    AssertThrow(found.empty(),
+                UserError("The coupling of section 'Coupling' is not sound: " + found +
+                          ". Choose another 'Zone', or a mesh with less distorted cells."));
   }
 
 

@@ -53,7 +53,6 @@ namespace PeriDeal
       std::vector<typename CellSearch<dim>::Cell> near;
       const std::vector<BoundingBox<dim>>         box{{{point, point}}};
       search.find(box, slack * search.largest_diameter(), near);
-      std::sort(near.begin(), near.end());
       for (const auto &cell : near)
         if (cell->is_locally_owned())
           try

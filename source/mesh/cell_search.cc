@@ -53,6 +53,8 @@ namespace PeriDeal
              ++found)
           cells.push_back(found->second);
       }
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   }
 
 

@@ -22,9 +22,9 @@ namespace
   const Settings cracked{{"Cracks/Segments", "0,0.53 ; 0.62,0.46"}};
 
 
-  /** All bonds that the cracks of a problem cut, as if they had broken. */
-  template <int dim>
-  ChangeSet<dim> as_damage(const Families<dim> &families)
+  /** Some bonds of owned nodes, chosen(node, bond), as if they had broken. */
+  template <int dim, typename Chosen>
+  ChangeSet<dim> damage_of(const Families<dim> &families, const Chosen &chosen)
   {
     ChangeSet<dim>                              damage;
     std::vector<typename Families<dim>::Member> members;
@@ -35,15 +35,13 @@ namespace
       {
         families.members_of(i, members);
         for (const auto &bond : members)
-          {
-            const auto a = nodes.partitioner()->local_to_global(i),
-                       b = nodes.partitioner()->local_to_global(bond.neighbor);
-            if (bond.cut && a < b)
-              {
-                own.push_back({a, b});
-                places.push_back(nodes.position(i));
-              }
-          }
+          if (chosen(i, bond))
+            {
+              const auto a = nodes.partitioner()->local_to_global(i),
+                         b = nodes.partitioner()->local_to_global(bond.neighbor);
+              own.push_back({std::min(a, b), std::max(a, b)});
+              places.push_back(nodes.position(i));
+            }
       }
     for (const auto &list : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, own))
       damage.broken.insert(damage.broken.end(), list.begin(), list.end());
@@ -53,6 +51,17 @@ namespace
     std::sort(damage.broken.begin(), damage.broken.end());
     damage.damage = true;
     return damage;
+  }
+
+
+  /** All bonds that the cracks of a problem cut, each told by one of its ends. */
+  template <int dim>
+  ChangeSet<dim> as_damage(const Families<dim> &families)
+  {
+    const auto &layout = *families.nodes().partitioner();
+    return damage_of(families, [&](const unsigned int i, const auto &bond) {
+      return bond.cut && layout.local_to_global(i) < layout.local_to_global(bond.neighbor);
+    });
   }
 
 
@@ -210,31 +219,12 @@ namespace
   }
 
 
-  /** All bonds of the node nearest to a point. */
+  /** All bonds of the node at a point. */
   ChangeSet<2> freeing(const Families<2> &families, const dealii::Point<2> &p)
   {
-    ChangeSet<2>                              damage;
-    std::vector<typename Families<2>::Member> members;
-    std::vector<NodePair>                     own;
-    const Nodes<2>                           &nodes = families.nodes();
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      if (nodes.position(i).distance(p) < 0.01)
-        {
-          families.members_of(i, members);
-          for (const auto &bond : members)
-            {
-              const auto a = nodes.partitioner()->local_to_global(i),
-                         b = nodes.partitioner()->local_to_global(bond.neighbor);
-              own.push_back({std::min(a, b), std::max(a, b)});
-            }
-        }
-    for (const auto &list : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, own))
-      damage.broken.insert(damage.broken.end(), list.begin(), list.end());
-    std::sort(damage.broken.begin(), damage.broken.end());
-    damage.cuts.push_back(dealii::BoundingBox<2>({p, p}));
-    damage.cuts.back().extend(1e-3);
-    damage.damage = true;
-    return damage;
+    return damage_of(families, [&](const unsigned int i, const auto &) {
+      return families.nodes().position(i).distance(p) < 0.01;
+    });
   }
 
 

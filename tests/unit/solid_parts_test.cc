@@ -220,10 +220,17 @@ TEST(SolidParts, loads_and_what_is_near_to_them)
   const std::vector<unsigned int> nearby   = loads.sides_nearby(families);
   ASSERT_EQ(nearby.size(), body.nodes->n_local());
   for (unsigned int i = 0; i < body.nodes->n_owned(); ++i)
-    if (const double distance = 1. - body.position(i)[0]; distance < 0.9 * body.scene.horizon())
-      EXPECT_EQ(nearby[i], 0u);
-    else if (distance > 1.5 * body.scene.horizon())
-      EXPECT_EQ(nearby[i], dealii::numbers::invalid_unsigned_int);
+    {
+      const double distance = 1. - body.position(i)[0];
+      if (distance < 0.9 * body.scene.horizon())
+        {
+          EXPECT_EQ(nearby[i], 0u);
+        }
+      else if (distance > 1.5 * body.scene.horizon())
+        {
+          EXPECT_EQ(nearby[i], dealii::numbers::invalid_unsigned_int);
+        }
+    }
 }
 
 

@@ -41,6 +41,9 @@ namespace PeriDeal
      * forces that do not balance.
      */
     std::string fault() const;
+
+    /** Throws UserError if there is a fault(): exchange, which has none, must not run with it. */
+    void require_sound() const;
   };
 
 

@@ -25,8 +25,8 @@ namespace PeriDeal
     ~CellSearch();
 
     /**
-     * Append the cells that come within a distance of some box, in the coordinate directions. May
-     * append a cell again.
+     * Add the cells that come within a distance of some box, in the coordinate directions, to a
+     * list, which is ascending then and has each once.
      */
     void find(const std::vector<dealii::BoundingBox<dim>> &boxes,
               const double                                 distance,

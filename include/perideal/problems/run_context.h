@@ -26,6 +26,6 @@ namespace PeriDeal
     std::function<ModelEstimate(const std::string &model, double &memory)> estimate;
 
     /** Asked while a problem advances, whenever its state can be kept; or nothing. Collective. */
-    AfterStep after_step;
+    AfterStep after_step = {};
   };
 } // namespace PeriDeal

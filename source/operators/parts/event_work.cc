@@ -37,8 +37,6 @@ namespace PeriDeal
     std::vector<Cell> near;
     search.find(cuts, of_cuts, near);
     search.find(joins, of_joins, near);
-    std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
     return near;
   }
 

@@ -241,8 +241,6 @@ namespace PeriDeal
       search = std::make_unique<CellSearch<dim>>(dofs);
     std::vector<Cell> cells;
     search->find(boxes, of_cells, cells);
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     const std::vector<unsigned int> near = zone_bonds ? zone_bonds->nodes_near(boxes) :
                                                         std::vector<unsigned int>();
     add_parts(cells, near, -1.);
