@@ -146,9 +146,14 @@ namespace PeriDeal
   }
 
 
-  TEST(CrackRows, cells_touched_at_a_vertex_stay)
+  TEST(CrackRows, of_cells_touched_at_a_vertex_the_right_one_goes)
   {
-    EXPECT_EQ(removed({{Point<2>(0.25, 0.25), Point<2>(0.75, 0.75)}}), (Numbers{5, 10}));
+    // The vertex in the middle would hold both sides together; cells touched by a tip stay.
+    EXPECT_EQ(removed({{Point<2>(0.25, 0.25), Point<2>(0.75, 0.75)}}), (Numbers{5, 6, 10}));
+    EXPECT_EQ(removed({{Point<2>(0.75, 0.75), Point<2>(0.25, 0.25)}}), (Numbers{5, 9, 10}));
+    EXPECT_EQ(removed({{Point<2>(0.25, 0.25), Point<2>(0.5, 0.5)},
+                       {Point<2>(0.5, 0.5), Point<2>(0.75, 0.75)}}),
+              (Numbers{5, 6, 10}));
     // Along faces the cells on the right go.
     EXPECT_EQ(removed({{Point<2>(0.25, 0.5), Point<2>(0.75, 0.5)}}), (Numbers{5, 6}));
   }

@@ -27,11 +27,39 @@ namespace PeriDeal
   }
 
   /**
+   * Whether a crack goes on in all directions from a point on its line or plane, and not only up to
+   * it. @param size of a cell there
+   */
+  template <int dim>
+  bool passes_through(const CrackGeometry<dim> &crack,
+                      const dealii::Point<dim> &p,
+                      const double              size)
+  {
+    constexpr double part = 1e-3;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        dealii::Tensor<1, dim> along;
+        along[d] = 1.;
+        along -= (along * crack.normal()) * crack.normal();
+        if (along.norm() < 1e-6)
+          continue;
+        along *= part * size / along.norm();
+        for (const double sign : {-1., 1.})
+          if (const dealii::Point<dim> q = p + sign * along;
+              !crack.covers(q) && !crack.is_closed_near(q))
+            return false;
+      }
+    return true;
+  }
+
+
+  /**
    * Whether a cell carries nothing when cut cells are removed: a crack holds the middle of what its
    * line or plane cuts out of the cell. So a tip counts from the middle of a cell on, and a tip at
-   * the edge of a cell leaves that cell whole. A cell that a crack only touches at a vertex (3D: or
-   * an edge) stays; of two cells on both sides of a crack along their common face the one on the
-   * right goes. Pieces that meet have no tip there.
+   * the edge of a cell leaves that cell whole. Of two cells on both sides of a crack that passes
+   * through their common face, vertex (3D: or edge) the one on the right goes: a vertex that both
+   * kept would hold the sides of the crack together. A cell that a crack touches with its tip only
+   * stays. Pieces that meet have no tip there.
    *
    * @param cracks from make_open_geometries()
    */
@@ -62,11 +90,17 @@ namespace PeriDeal
                   }))
                 section.push_back(p);
             }
-        if (section.size() < dim)
+        if (section.empty())
           continue;
         dealii::Point<dim> middle;
         for (const dealii::Point<dim> &p : section)
           middle += (p - dealii::Point<dim>()) / static_cast<double>(section.size());
+        if (section.size() < dim)
+          {
+            if (passes_through(crack, middle, cell->diameter()))
+              return true;
+            continue;
+          }
         if (crack.covers(middle) || (crack.is_closed_near(middle) && is_cut<dim>(cell, {crack})))
           return true;
       }
