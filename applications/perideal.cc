@@ -12,6 +12,7 @@
 #include <perideal/scene/lists.h>
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
+#include <perideal/study/model_choice.h>
 #include <perideal/study/study.h>
 #include <perideal/study/work_precision.h>
 
@@ -60,6 +61,9 @@ namespace
   {
     Scene<dim> scene;
     parse_computable(text, scene);
+    if (scene.general.automatic)
+      return action == Action::run ? run_chosen_model(scene, text, communicator, mode, quiet) :
+                                     describe_choice(scene, text, communicator, quiet);
     if (action == Action::estimate || (action == Action::check && is_large(scene, communicator)))
       return print_estimate(scene, communicator, quiet);
     Simulation<dim> simulation(scene, text, communicator, quiet);

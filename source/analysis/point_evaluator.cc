@@ -13,12 +13,15 @@
 #include <perideal/mesh/cell_search.h>
 #include <perideal/scene/crack_geometry.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
 #include <unordered_map>
+
+#include "own_side.h"
 
 namespace PeriDeal
 {
@@ -71,13 +74,50 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /** Whether a crack parts the point from a vertex of its cell. */
+    template <int dim>
+    bool is_beside_crack(const Place<dim>                      &place,
+                         const Point<dim>                      &point,
+                         const std::vector<CrackGeometry<dim>> &cracks)
+    {
+      for (const unsigned int v : place.first->vertex_indices())
+        if (parted(cracks, point, place.first->vertex(v)))
+          return true;
+      return false;
+    }
+
+
+    /** By the shape functions of the cell. */
+    template <int dim>
+    std::vector<Share<dim>> interpolant(const Place<dim> &place)
+    {
+      const FiniteElement<dim>            &fe = place.first->get_fe();
+      std::vector<types::global_dof_index> indices(fe.n_dofs_per_cell());
+      place.first->get_dof_indices(indices);
+      const MappingQ1<dim> mapping;
+      FEValues<dim>        values(mapping,
+                           fe,
+                           Quadrature<dim>(place.second),
+                           update_values | update_gradients);
+      values.reinit(place.first);
+      std::vector<Share<dim>> shares;
+      for (unsigned int v = 0; v < indices.size(); ++v)
+        shares.push_back({indices[v], values.shape_value(v, 0), values.shape_grad(v, 0)});
+      return shares;
+    }
+  } // namespace
+
+
   template <int dim>
   PointEvaluator<dim>::PointEvaluator(const DoFHandler<dim>                  &dofs,
                                       const Nodes<dim>                       *nodes,
                                       const Cracks<dim>                      &cracks,
                                       const std::vector<std::vector<double>> &coordinates,
                                       const std::string                      &entry,
-                                      const Outside                           outside)
+                                      const Outside                           outside,
+                                      const BesideCracks                      beside)
     : communicator(dofs.get_communicator())
     , n_points(static_cast<unsigned int>(coordinates.size()))
     , n_slots(1u << dim)
@@ -102,7 +142,11 @@ namespace PeriDeal
     else if (at_centers && nodes != nullptr)
       locate_nearest(dofs, *nodes, points);
     else
-      locate_in_mesh(dofs, points);
+      locate_in_mesh(dofs,
+                     points,
+                     beside == BesideCracks::own_side && cracks.cut_pairs() ?
+                       geometries :
+                       std::vector<CrackGeometry<dim>>());
     find_gaps(coordinates, entry, outside);
   }
 
@@ -220,8 +264,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  void PointEvaluator<dim>::locate_in_mesh(const DoFHandler<dim>         &dofs,
-                                           const std::vector<Point<dim>> &points)
+  void PointEvaluator<dim>::locate_in_mesh(const DoFHandler<dim>                 &dofs,
+                                           const std::vector<Point<dim>>         &points,
+                                           const std::vector<CrackGeometry<dim>> &cracks)
   {
     const unsigned int        me     = Utilities::MPI::this_mpi_process(communicator);
     const unsigned int        nobody = Utilities::MPI::n_mpi_processes(communicator);
@@ -232,30 +277,26 @@ namespace PeriDeal
       if (find_place(search, points[k], places[k]))
         finder[k] = me;
     Utilities::MPI::min(finder, communicator, first);
-    const FiniteElement<dim> &fe = dofs.get_fe();
-    n_slots                      = fe.n_dofs_per_cell();
-    std::vector<types::global_dof_index> indices(n_slots);
-    const MappingQ1<dim>                 mapping;
-    std::vector<double>                  own; // slot, dof, weight, slope, slot, ...
-    std::vector<Tensor<1, dim>>          moved(points.size());
+    n_slots = std::max(dofs.get_fe().n_dofs_per_cell(), cracks.empty() ? 0 : most_shares<dim>);
+    std::vector<double>         own; // slot, dof, weight, slope, slot, ...
+    std::vector<Tensor<1, dim>> moved(points.size());
     for (unsigned int k = 0; k < points.size(); ++k)
       if (first[k] == me)
         {
-          places[k].first->get_dof_indices(indices);
           moved[k] = 1e-6 * (places[k].first->center() - points[k]);
-          FEValues<dim> values(mapping,
-                               fe,
-                               Quadrature<dim>(places[k].second),
-                               update_values | update_gradients);
-          values.reinit(places[k].first);
-          for (unsigned int v = 0; v < n_slots; ++v)
+          std::vector<Share<dim>> shares;
+          if (is_beside_crack(places[k], points[k], cracks))
+            shares = fit_own_side<dim>(search, places[k].first, points[k], cracks);
+          if (shares.empty())
+            shares = interpolant(places[k]);
+          for (unsigned int v = 0; v < shares.size(); ++v)
             {
               own.insert(own.end(),
                          {static_cast<double>(k * n_slots + v),
-                          static_cast<double>(indices[v]),
-                          values.shape_value(v, 0)});
+                          static_cast<double>(shares[v].dof),
+                          shares[v].weight});
               for (unsigned int d = 0; d < dim; ++d)
-                own.push_back(values.shape_grad(v, 0)[d]);
+                own.push_back(shares[v].slope[d]);
             }
         }
     for (unsigned int k = 0; k < points.size(); ++k)

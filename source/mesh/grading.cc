@@ -57,6 +57,28 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /** The ends of cracks as they are at last, in 3D their edges, and nothing around them. */
+    template <int dim>
+    Zone<dim> zone_of_ends(const CrackHistory<dim> &history, const double end)
+    {
+      std::vector<CrackPiece<dim>> ends;
+      for (const CrackPiece<dim> &piece : history.pieces(end))
+        for (std::size_t k = 0; k < piece.corners.size(); ++k)
+          {
+            CrackPiece<dim> one = piece;
+            one.corners         = {piece.corners[k],
+                                   piece.corners[dim == 3 ? (k + 1) % piece.corners.size() : k]};
+            ends.push_back(one);
+          }
+      Zone<dim> zone(0.);
+      zone.set_cracks(ends);
+      return zone;
+    }
+  } // namespace
+
+
   template <int dim>
   void Grading<dim>::require(const Scene<dim> &scene)
   {
@@ -93,6 +115,8 @@ namespace PeriDeal
       "'Models' has peridynamics, whose bonds need fine cells everywhere. Use 'coupled', or 0 here.");
     refuse(coupled && !coupling.exchanges(),
            "'Scheme' in section 'Coupling' is not 'exchange', the only one for graded meshes.");
+    refuse(scene.domain.coarsening.at_ends && scene.cracks.cracks.empty(),
+           "'Fine where' is 'crack ends', and section 'Cracks' has no crack.");
     refuse(
       !scene.domain.coarsening.by_formula && (adaptive || coupling.is_near_cracks()) &&
         scene.cracks.cracks.empty(),
@@ -104,7 +128,7 @@ namespace PeriDeal
   Grading<dim>::Grading(const Scene<dim> &scene, const Triangulation<dim> &mesh)
     : zone(scene.coupling, scene.horizon())
     , by_zone(true)
-    , by_name(scene.domain.coarsening.by_formula)
+    , by_name(scene.domain.coarsening.by_formula || scene.domain.coarsening.at_ends)
     , history(scene.crack_history())
     , adaptations(adaptation_times(scene, history))
     , finest(
@@ -118,7 +142,8 @@ namespace PeriDeal
     const auto &models = scene.general.models;
     if (by_name)
       {
-        named = Zone<dim>(scene.domain.coarsening.fine);
+        named = scene.domain.coarsening.at_ends ? zone_of_ends(history, end) :
+                                                  Zone<dim>(scene.domain.coarsening.fine);
         named.stay_in({{scene.domain.lower, scene.domain.upper}});
         by_zone = std::find(models.begin(), models.end(), ModelKind::coupled) != models.end();
       }

@@ -67,7 +67,7 @@ namespace PeriDeal
 
       std::string name() const override
       {
-        return to_string(ModelKind::peridynamics);
+        return scene.general.name_of(ModelKind::peridynamics);
       }
 
       const DoFHandler<dim> &dofs() const override

@@ -59,7 +59,7 @@ namespace PeriDeal
 
       std::string name() const override
       {
-        return to_string(model);
+        return scene.general.name_of(model);
       }
 
       const DoFHandler<dim> &dofs() const override

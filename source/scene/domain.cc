@@ -96,7 +96,8 @@ namespace PeriDeal
       "auto",
       "",
       "With `Coarsening`: cells stay fine where this formula of x, y, z is greater than 0, and in the zone of section `Coupling` if "
-      "the model `coupled` runs. `auto`: in that zone, thus around cracks, for all models. Beyond, there are at least two cells of each size.");
+      "the model `coupled` runs. `auto`: in that zone, thus around cracks, for all models. `crack ends`: at the ends of cracks, in three dimensions their "
+      "edges, and in that zone likewise. Beyond, there are at least two cells of each size.");
     declare(
       "Nodes",
       EntryType::choice,
@@ -246,8 +247,9 @@ namespace PeriDeal
   template <int dim>
   void Domain<dim>::parse_fine_part()
   {
-    coarsening.by_formula = text("Fine where") != "auto";
-    if (coarsening.by_formula && coarsening.times == 0)
+    coarsening.at_ends    = trimmed(text("Fine where")) == "crack ends";
+    coarsening.by_formula = text("Fine where") != "auto" && !coarsening.at_ends;
+    if ((coarsening.by_formula || coarsening.at_ends) && coarsening.times == 0)
       error("Fine where", "has no effect: 'Coarsening' is 0, so all cells are fine.");
     if (coarsening.times == 0)
       return;

@@ -41,8 +41,9 @@ namespace PeriDeal
       "finite elements, peridynamics",
       "",
       "The models that are run, on the same mesh, and compared: finite elements and peridynamics, each in the whole body, and "
-      "`coupled`, peridynamics in the zone of section `Coupling` with finite elements elsewhere.",
-      {"finite elements", "peridynamics", "coupled"});
+      "`coupled`, peridynamics in the zone of section `Coupling` with finite elements elsewhere. Or `auto` alone: the cheapest model and mesh that "
+      "section `Accuracy` allows.",
+      {"finite elements", "peridynamics", "coupled", "auto"});
     declare(
       "Output directory",
       EntryType::text,
@@ -65,8 +66,16 @@ namespace PeriDeal
       error("Dimension", "found " + text("Dimension") + ", needs 1, 2 or 3.");
     physics = choice<Physics>("Physics");
     models.clear();
-    for (const unsigned int index : choice_indices("Models"))
-      models.push_back(static_cast<ModelKind>(index));
+    const std::vector<unsigned int> chosen    = choice_indices("Models");
+    constexpr unsigned int          choose_it = 3;
+    automatic = std::find(chosen.begin(), chosen.end(), choose_it) != chosen.end();
+    refuse(
+      automatic && chosen.size() > 1,
+      "Models",
+      "found '" + text("Models") +
+        "'; 'auto' chooses a model by itself and stands alone. Leave the others out, or name those that are to be compared.");
+    for (const unsigned int index : chosen)
+      models.push_back(automatic ? ModelKind::finite_elements : static_cast<ModelKind>(index));
   }
 
 
@@ -177,6 +186,7 @@ namespace PeriDeal
             &solver,
             &output,
             &checkpoint,
+            &accuracy,
             &reference,
             &units};
   }
@@ -220,6 +230,7 @@ namespace PeriDeal
     // a body that deforms and cannot be steady, though it is said to be: its solver says so
     output.parse(time.end_time, this->deforms ? rests : time.steady);
     checkpoint.parse(time.end_time, this->deforms ? rests : time.steady);
+    accuracy.parse();
     const bool layers = domain.has_extra_layers();
     output.make_grid(domain.is_box(),
                      layers ? domain.extra.body_lower : domain.lower,

@@ -110,6 +110,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  Zone<dim>::Zone(const double reach)
+    : kind(ZoneKind::near_cracks)
+    , reach(reach)
+    , directions(some_directions<dim>())
+  {}
+
+
+  template <int dim>
   void Zone<dim>::stay_in(const BoundingBox<dim> &box)
   {
     body = box;

@@ -19,13 +19,14 @@ namespace PeriDeal
 
   /**
    * One for each model, or none without points. @p entry names the points in messages; those of a
-   * `Line` may lie outside the body. Collective.
+   * `Line` may lie outside the body. @param beside as PointEvaluator has it. Collective.
    */
   template <int dim, typename Models>
-  PointReaders<dim> make_point_readers(const Models                           &models,
-                                       const Cracks<dim>                      &cracks,
-                                       const std::vector<std::vector<double>> &points,
-                                       const std::string                      &entry)
+  PointReaders<dim> make_point_readers(const Models                                    &models,
+                                       const Cracks<dim>                               &cracks,
+                                       const std::vector<std::vector<double>>          &points,
+                                       const std::string                               &entry,
+                                       const typename PointEvaluator<dim>::BesideCracks beside)
   {
     using Outside = typename PointEvaluator<dim>::Outside;
     PointReaders<dim> readers;
@@ -37,7 +38,8 @@ namespace PeriDeal
           cracks,
           points,
           entry,
-          entry == "Line" ? Outside::leave_gaps : Outside::refuse));
+          entry == "Line" ? Outside::leave_gaps : Outside::refuse,
+          beside));
     return readers;
   }
 

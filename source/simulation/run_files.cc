@@ -30,7 +30,7 @@ namespace PeriDeal
       add(static_cast<bool>(scene.domain.image), "image_as_read.png");
       for (const ModelKind model : scene.general.models)
         {
-          const std::string series = series_of(to_string(model));
+          const std::string series = series_of(scene.general.name_of(model));
           add(scene.output.vtu, series + ".pvd");
           add(scene.output.hdf5, series + ".xdmf");
           add(scene.output.vtu || scene.output.hdf5, "fields/" + series + "_*");

@@ -43,6 +43,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  void RunOutput<dim>::adopt(std::unique_ptr<RunFiles> files)
+  {
+    run_files = std::move(files);
+  }
+
+
+  template <int dim>
   void RunOutput<dim>::close()
   {
     run_files.reset();
@@ -59,9 +66,12 @@ namespace PeriDeal
   template <int dim>
   void RunOutput<dim>::find_points(const Problems &of_run)
   {
-    problems = of_run;
+    using Beside        = typename PointEvaluator<dim>::BesideCracks;
+    const Beside beside = scene.general.automatic ? Beside::own_side : Beside::interpolate;
+    problems            = of_run;
     for (PointOutput &output : outputs)
-      output.readers = make_point_readers<dim>(problems, scene.cracks, output.points, output.entry);
+      output.readers =
+        make_point_readers<dim>(problems, scene.cracks, output.points, output.entry, beside);
   }
 
 

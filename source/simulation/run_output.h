@@ -39,6 +39,9 @@ namespace PeriDeal
     bool is_open() const;
     void close();
 
+    /** In place of open(): the files of a run that has begun. */
+    void adopt(std::unique_ptr<RunFiles> files);
+
     /**
      * Find where the points of the output lie in the meshes of the problems, which are those of all
      * later calls. Throws UserError where a point lies outside of the body.

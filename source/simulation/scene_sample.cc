@@ -11,6 +11,7 @@
 #include <perideal/problems/problem_factory.h>
 #include <perideal/problems/run_context.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/scene_variant.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,12 +56,6 @@ namespace PeriDeal
   std::shared_ptr<Scene<dim>> coarse_scene(const Scene<dim>                    &scene,
                                            const std::array<unsigned int, dim> &cells)
   {
-    const auto                        coarse = std::make_shared<Scene<dim>>();
-    const std::vector<SceneSection *> to     = coarse->sections(),
-                                      from   = const_cast<Scene<dim> &>(scene).sections();
-    for (unsigned int k = 0; k < from.size(); ++k)
-      for (const Entry &entry : from[k]->entries())
-        to[k]->set(entry.name, entry.text);
     std::string text;
     double      smallest = 0.;
     for (unsigned int d = 0; d < dim; ++d)
@@ -69,22 +64,22 @@ namespace PeriDeal
         const double h = (scene.domain.upper[d] - scene.domain.lower[d]) / cells[d];
         smallest       = d == 0 ? h : std::min(smallest, h);
       }
-    coarse->domain.set("Node spacing", "");
-    coarse->domain.set("Cells", text);
-    coarse->cracks.set("Nodes on cracks", "left"); // these very cells
+    std::vector<Setting> settings{{"Domain/Node spacing", ""},
+                                  {"Domain/Cells", text},
+                                  {"Cracks/Nodes on cracks", "left"}, // these very cells
+                                  {"Output/Probes", ""},
+                                  {"Output/Line", ""},
+                                  {"Output/Grid", ""}};
     if (scene.peridynamics.horizon > 0.)
       {
         const Tensor<1, dim> h   = scene.domain.spacing();
         double               own = h[0];
         for (unsigned int d = 1; d < dim; ++d)
           own = std::min(own, h[d]);
-        coarse->peridynamics.set("Horizon", number_text(scene.horizon() / own * smallest));
+        settings.emplace_back("Peridynamics/Horizon",
+                              number_text(scene.horizon() / own * smallest));
       }
-    for (const char *const entry : {"Probes", "Line", "Grid"})
-      coarse->output.set(entry, "");
-    coarse->domain.files.folder       = scene.domain.files.folder;
-    coarse->domain.files.communicator = scene.domain.files.communicator;
-    coarse->parse_and_validate();
+    const std::shared_ptr<Scene<dim>> coarse = scene_variant(scene, settings);
     problem_factory(*coarse).require_computable(*coarse);
     return coarse;
   }

@@ -176,6 +176,13 @@ namespace PeriDeal
       }
     pass_output_times();
     progress.end();
+    return finish(nlohmann::ordered_json::object());
+  }
+
+
+  template <int dim>
+  nlohmann::ordered_json Simulation<dim>::finish(const nlohmann::ordered_json &more)
+  {
     if (const unsigned int n = adaptation.history.n_adaptations(); n > 0)
       record->notes.push_back("the mesh was adapted " + std::to_string(n) +
                               (n == 1 ? " time" : " times") + "; it has " +
@@ -185,7 +192,8 @@ namespace PeriDeal
       problem->note_end(context());
     for (const std::string &note : record->notes)
       progress.note(note);
-    const nlohmann::ordered_json summary = summary_now(true);
+    nlohmann::ordered_json summary = summary_now(true);
+    summary.update(more);
     output->complete(summary);
     return summary;
   }

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// What changes in a run besides its solutions: the mesh, how far it is; and keeping all of it.
+// What changes in a run besides its solutions: the mesh, how far it is; and keeping all of it, or
+// looking at it before it is written.
 
 #include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
+#include <perideal/problems/computable.h>
 #include <perideal/problems/result_record.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/with_formulas.h>
+#include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
 
 #include <algorithm>
 
 #include "checkpoint_clock.h"
+#include "closing.h"
 #include "run_output.h"
 
 namespace PeriDeal
@@ -209,11 +213,60 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                      \
-  template void Simulation<dim>::prepare_adaptation(); \
-  template bool Simulation<dim>::adapt(const double);  \
-  template void Simulation<dim>::resume();             \
-  template void Simulation<dim>::find_steady_state();  \
+  template <int dim>
+  void Simulation<dim>::solve()
+  {
+    require_computable(scene, text);
+    require_memory(scene, communicator);
+    Assert(scene.time.steady, ExcMessage("Only what is steady can be solved at once."));
+    build();
+    begin();
+    find_steady_state();
+  }
+
+
+  template <int dim>
+  const Problem<dim> &Simulation<dim>::problem() const
+  {
+    return *problems[0];
+  }
+
+
+  template <int dim>
+  nlohmann::ordered_json Simulation<dim>::found()
+  {
+    for (const auto &problem : problems)
+      problem->examine(0.);
+    add_totals(0.);
+    record->totals.clear(); // rows are added when they are written
+    return summary_now(true);
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::write(std::unique_ptr<RunFiles> files, const nlohmann::ordered_json &more)
+  {
+    output->adopt(std::move(files));
+    nlohmann::ordered_json summary;
+    with_orderly_end(output->files(), progress, [&] {
+      write_output(0.);
+      summary = finish(more);
+    });
+    output->close();
+    progress.end();
+    say_what_was_found(progress, summary, scene.general.output_directory);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template void                   Simulation<dim>::prepare_adaptation();                           \
+  template bool                   Simulation<dim>::adapt(const double);                            \
+  template void                   Simulation<dim>::resume();                                       \
+  template void                   Simulation<dim>::solve();                                        \
+  template const Problem<dim>    &Simulation<dim>::problem() const;                                \
+  template nlohmann::ordered_json Simulation<dim>::found();                                        \
+  template void Simulation<dim>::write(std::unique_ptr<RunFiles>, const nlohmann::ordered_json &); \
+  template void Simulation<dim>::find_steady_state();                                              \
   template void Simulation<dim>::offer_checkpoint(const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

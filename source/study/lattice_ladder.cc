@@ -22,26 +22,51 @@ namespace PeriDeal
         text += (text.empty() ? "" : separator) + std::to_string(n);
       return text;
     }
-
-
-    /**
-     * Whether the corners of all cracks lie on planes of a lattice of n cells in this direction.
-     */
-    bool on_planes(const CrackedBox &box, const unsigned int direction, const unsigned int n)
-    {
-      constexpr double slack  = 1e-7; // of a cell
-      const double     lower  = box.lower[direction];
-      const double     length = box.upper[direction] - lower;
-      for (const auto &crack : box.cracks)
-        for (const auto &corner : crack)
-          {
-            const double s = std::clamp((corner[direction] - lower) / length, 0., 1.) * n;
-            if (std::abs(s - std::round(s)) > slack)
-              return false;
-          }
-      return true;
-    }
   } // namespace
+
+
+  bool corners_on_planes(const CrackedBox &box, const unsigned int direction, const unsigned int n)
+  {
+    constexpr double slack  = 1e-7; // of a cell
+    const double     lower  = box.lower[direction];
+    const double     length = box.upper[direction] - lower;
+    for (const auto &crack : box.cracks)
+      for (const auto &corner : crack)
+        {
+          const double s = std::clamp((corner[direction] - lower) / length, 0., 1.) * n;
+          if (std::abs(s - std::round(s)) > slack)
+            return false;
+        }
+    return true;
+  }
+
+
+  template <int dim>
+  CrackedBox cracked_box(const Scene<dim> &scene)
+  {
+    CrackedBox box;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        box.lower.push_back(scene.domain.lower[d]);
+        box.upper.push_back(scene.domain.upper[d]);
+        box.cells.push_back(scene.domain.cells[d]);
+      }
+    for (const auto &crack : scene.cracks.cracks)
+      {
+        box.cracks.emplace_back();
+        for (const dealii::Point<dim> &corner : crack)
+          {
+            box.cracks.back().emplace_back();
+            for (unsigned int d = 0; d < dim; ++d)
+              box.cracks.back().back().push_back(corner[d]);
+          }
+      }
+    return box;
+  }
+
+  template CrackedBox cracked_box(const Scene<1> &);
+  template CrackedBox cracked_box(const Scene<2> &);
+  template CrackedBox cracked_box(const Scene<3> &);
 
 
   std::string to_text(const CellCounts &cells)
@@ -154,7 +179,7 @@ namespace PeriDeal
         const unsigned int n = cells[d], farthest = std::max({2u, n / 5, multiple});
         const auto         fits = [&](const unsigned int count) {
           return count > 0 && count % multiple == 0 &&
-                 (!on_faces || on_planes(box, d, count / multiple));
+                 (!on_faces || corners_on_planes(box, d, count / multiple));
         };
         unsigned int found = 0;
         for (unsigned int k = 0; k <= farthest && found == 0; ++k)

@@ -61,22 +61,7 @@ namespace PeriDeal
       facts.deforms       = problem_factory(scene).n_components() > 1;
       facts.exact         = !scene.reference.solution.empty();
       facts.moving_cracks = scene.cracks.change();
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          facts.box.lower.push_back(scene.domain.lower[d]);
-          facts.box.upper.push_back(scene.domain.upper[d]);
-          facts.box.cells.push_back(scene.domain.cells[d]);
-        }
-      for (const auto &crack : scene.cracks.cracks)
-        {
-          facts.box.cracks.emplace_back();
-          for (const dealii::Point<dim> &corner : crack)
-            {
-              facts.box.cracks.back().emplace_back();
-              for (unsigned int d = 0; d < dim; ++d)
-                facts.box.cracks.back().back().push_back(corner[d]);
-            }
-        }
+      facts.box           = cracked_box(scene);
       return facts;
     }
 

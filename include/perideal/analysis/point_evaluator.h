@@ -7,6 +7,7 @@
 
 #include <perideal/base/types.h>
 #include <perideal/mesh/nodes.h>
+#include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/cracks.h>
 
 #include <vector>
@@ -29,6 +30,14 @@ namespace PeriDeal
       leave_gaps // their values are NaN; one point at least has to be in the body
     };
 
+    /** What is read in cells that a crack cuts. */
+    enum class BesideCracks
+    {
+      interpolate, // across the crack
+      // The linear function that fits the nodes around the point which no crack parts from it best.
+      own_side
+    };
+
     /**
      * @param nodes the lattice the dofs lie on, or nullptr to look points up in the mesh (finite
      *              elements, mesh files).
@@ -40,7 +49,8 @@ namespace PeriDeal
                    const Cracks<dim>                      &cracks,
                    const std::vector<std::vector<double>> &points,
                    const std::string                      &entry,
-                   const Outside                           outside = Outside::refuse);
+                   const Outside                           outside = Outside::refuse,
+                   const BesideCracks                      beside  = BesideCracks::interpolate);
 
     /**
      * One value per point, on all processes, of a component of a vector with several at each node,
@@ -94,7 +104,8 @@ namespace PeriDeal
 
     void locate_on_lattice(const Nodes<dim> &nodes, const std::vector<dealii::Point<dim>> &points);
     void locate_in_mesh(const dealii::DoFHandler<dim>         &dofs,
-                        const std::vector<dealii::Point<dim>> &points);
+                        const std::vector<dealii::Point<dim>> &points,
+                        const std::vector<CrackGeometry<dim>> &cracks);
     void locate_nearest(const dealii::DoFHandler<dim>         &dofs,
                         const Nodes<dim>                      &nodes,
                         const std::vector<dealii::Point<dim>> &points);

@@ -19,6 +19,7 @@ namespace PeriDeal
   void parse_computable(const SceneText &text, Scene<dim> &scene)
   {
     parse_scene(text, scene);
-    require_computable(scene, text);
+    if (!scene.general.automatic) // each model that is chosen says what it cannot compute
+      require_computable(scene, text);
   }
 } // namespace PeriDeal

@@ -78,7 +78,8 @@ namespace PeriDeal
     {
       unsigned int times = 0;
       Expression   fine;               // they stay fine where it is greater than 0
-      bool         by_formula = false; // else in the zone of section `Coupling`
+      bool         by_formula = false; // else, unless at the ends, in the zone of `Coupling`
+      bool         at_ends    = false; // at the ends of cracks, in 3D their edges
     };
     Coarsening coarsening;
 

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/scene/accuracy.h>
 #include <perideal/scene/body_parameters.h>
 #include <perideal/scene/checkpoint_control.h>
 #include <perideal/scene/control.h>
@@ -38,13 +39,20 @@ namespace PeriDeal
     std::string            title, output_directory;
     Physics                physics   = Physics::heat;
     unsigned int           dimension = 2;
-    std::vector<ModelKind> models; // in the order the user named them
+    std::vector<ModelKind> models;            // in the order the user named them
+    bool                   automatic = false; // `Models = auto`; models are finite elements then
 
     /**
      * Throws UserError: unknown physics or models, none or one twice, a dimension other than 1,
      * 2, 3.
      */
     void parse();
+
+    /** Of a model in output files and messages: its own name, or `auto` where that was asked for. */
+    std::string name_of(const ModelKind model) const
+    {
+      return automatic ? "auto" : to_string(model);
+    }
   };
 
 
@@ -75,6 +83,7 @@ namespace PeriDeal
     SolverControlParameters solver;
     OutputControl<dim>      output;
     CheckpointControl       checkpoint;
+    AccuracyControl         accuracy;
     Reference               reference;
     Units                   units;
 

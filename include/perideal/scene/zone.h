@@ -33,6 +33,9 @@ namespace PeriDeal
     /** Where a formula is greater than 0. */
     explicit Zone(const Expression &formula);
 
+    /** What lies no farther from pieces of cracks, which are still to be set. */
+    explicit Zone(const double reach);
+
     /**
      * Formulas need no values outside of this box, the body's: no part of the zone is looked for
      * there.

@@ -22,6 +22,7 @@
 namespace PeriDeal
 {
   class CheckpointClock;
+  class RunFiles;
   struct ResultRecord;
   template <int dim>
   class RunOutput;
@@ -53,6 +54,25 @@ namespace PeriDeal
 
     /** Build everything, say what a run would need, compute and write nothing. */
     void dry_run();
+
+    /**
+     * Find the solution of a steady scene and write nothing, for programs that look at it first:
+     * problem(), found(), then write() or nothing.
+     */
+    void solve();
+
+    /** That of the first model. After solve(). Not collective. */
+    const Problem<dim> &problem() const;
+
+    /** What summary.json would have, after solve(). */
+    nlohmann::ordered_json found();
+
+    /**
+     * After solve(): write all files, summary.json last.
+     * @param files of this run, of which nothing has been written but what is known at the start
+     * @param more  what the summary has besides
+     */
+    void write(std::unique_ptr<RunFiles> files, const nlohmann::ordered_json &more);
 
   private:
     using List = std::vector<Problem<dim> *>;
@@ -88,6 +108,7 @@ namespace PeriDeal
     void prepare_adaptation();
 
     nlohmann::ordered_json compute(); // the summary at the end
+    nlohmann::ordered_json finish(const nlohmann::ordered_json &more);
     void                   begin();
     void                   start();
     void                   pass_output_times();

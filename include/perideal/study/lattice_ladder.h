@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <perideal/scene/scene.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +33,10 @@ namespace PeriDeal
     }
   };
 
+  /** The box of a scene, its lattice and its cracks as they are before they grow. */
+  template <int dim>
+  CrackedBox cracked_box(const Scene<dim> &scene);
+
   /**
    * "21, 21 | 41, 41" taken apart. Throws UserError naming @p option: another form, a count of
    * zero, lattices that do not become finer in every direction, fewer than @p at_least of them.
@@ -52,6 +58,9 @@ namespace PeriDeal
    * it is normal to one.
    */
   bool along_axes(const CrackedBox &box);
+
+  /** Whether the corners of all cracks lie on planes of a lattice of n cells in this direction. */
+  bool corners_on_planes(const CrackedBox &box, const unsigned int direction, const unsigned int n);
 
   /**
    * The counts nearest to @p cells, the smaller of two, that are divisible by @p multiple and, with

@@ -3,15 +3,14 @@
 
 #pragma once
 
+#include <perideal/scene/scene_variant.h>
+
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace PeriDeal
 {
-  /** An entry as overrides name it, "Section/Entry" or "Entry", and its text. */
-  using Setting = std::pair<std::string, std::string>;
-
   /** An entry and the texts it takes one after the other. */
   using Variation = std::pair<std::string, std::vector<std::string>>;
 

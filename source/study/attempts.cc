@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "attempts.h"
+
+#include <perideal/base/user_error.h>
+#include <perideal/problems/problem_factory.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "formula_scan.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** What is not yet chosen for, in words, or nothing. */
+    template <int dim>
+    std::string obstacle(const Scene<dim> &scene)
+    {
+      if (scene.domain.shape != Shape::box)
+        return "bodies other than a box ('Shape' in section 'Domain')";
+      if (!scene.time.steady)
+        return problem_factory(scene).n_components() > 1 ?
+                 "motion and loads that change with time" :
+                 "what changes with time: set 'Steady = true' in section 'Time' for the steady state";
+      if (scene.cracks.change())
+        return "cracks that grow or change ('Growth', 'Transmission' in section 'Cracks')";
+      if (scene.peridynamics.horizon > 0.)
+        return "a horizon that is a length ('Horizon' in section 'Peridynamics'), thus nonlocal solutions";
+      if (scene.elasticity.computes_temperature)
+        return "a computed temperature ('Temperature change' in section 'Elasticity')";
+      if (scene.material.fracture_energy || scene.material.critical_stretch)
+        return "bonds that break ('Fracture energy', 'Critical stretch' in section 'Material')";
+      if (scene.cracks.conduct() && scene.cracks.contact_conductance < 0.)
+        return "'Transmission' of cracks, a share of bonds of one horizon, another crack on each lattice: give 'Contact conductance'";
+      return "";
+    }
+  } // namespace
+
+
+  template <int dim>
+  Attempts<dim>::Attempts(const Scene<dim> &scene)
+    : scene(scene)
+    , box(cracked_box(scene))
+  {
+    const std::string what = obstacle(scene);
+    AssertThrow(what.empty(),
+                UserError("Entry 'Models': 'auto' does not choose for " + what +
+                          ". Name models instead: finite elements, peridynamics, coupled."));
+    for (unsigned int d = 0; d < dim; ++d)
+      longest = std::max(longest, box.upper[d] - box.lower[d]);
+    if (scene.cracks.cracks.empty() || dim == 1)
+      return;
+    const bool deforms = problem_factory(scene).n_components() > 1;
+    family             = on_faces(1., 0) && !scene.cracks.conduct() ? Family::faces :
+                         deforms                                    ? Family::zone :
+                                                                      Family::pairs;
+  }
+
+
+  template <int dim>
+  CellCounts Attempts<dim>::counts(const double fineness) const
+  {
+    CellCounts cells;
+    for (unsigned int d = 0; d < dim; ++d)
+      cells.push_back(
+        std::max<unsigned int>(2, std::lround(fineness * (box.upper[d] - box.lower[d]) / longest)));
+    return cells;
+  }
+
+
+  namespace
+  {
+    /** More cells than wanted, along an edge, are not taken to have cracks on their faces. */
+    template <int dim>
+    constexpr unsigned int most_to_fit = dim == 3 ? 12 : 48;
+  } // namespace
+
+
+  template <int dim>
+  std::optional<CellCounts> Attempts<dim>::on_faces(const double       fineness,
+                                                    const unsigned int levels) const
+  {
+    if (!along_axes(box))
+      return {};
+    const CellCounts wanted = counts(fineness);
+    CellCounts       cells;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        unsigned int found = 0;
+        for (unsigned int k = 0; k <= wanted[d] + most_to_fit<dim> && found == 0; ++k)
+          for (const int n : {static_cast<int>(wanted[d] - k), static_cast<int>(wanted[d] + k)})
+            if (found == 0 && n > 1 && corners_on_planes(box, d, n))
+              found = n;
+        if (found == 0)
+          return {};
+        cells.push_back(found << levels);
+      }
+    return cells;
+  }
+
+
+  template <int dim>
+  double Attempts<dim>::fineness_of(const CellCounts &cells) const
+  {
+    double product = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      product *= cells[d] / (box.upper[d] - box.lower[d]) * longest;
+    return std::pow(product, 1. / dim);
+  }
+
+
+  namespace
+  {
+    /** At most so many halvings that the nodes of the finest lattice can still be numbered. */
+    unsigned int possible_halvings(const CellCounts &cells, unsigned int levels)
+    {
+      const auto nodes = [&] {
+        double product = 1.;
+        for (const unsigned int n : cells)
+          product *= n * std::exp2(levels) + 1.;
+        return product;
+      };
+      while (levels > 0 && nodes() > 0.9 * std::numeric_limits<types::global_dof_index>::max())
+        --levels;
+      return levels;
+    }
+
+
+    /**
+     * Halvings from cells of a size to those of its power, both in terms of twice the largest.
+     */
+    unsigned int halvings(const double refinement, const double power)
+    {
+      return static_cast<unsigned int>(
+        std::clamp<long>(std::lround((power - 1.) * std::log2(2. * refinement)), 1, 12));
+    }
+  } // namespace
+
+
+  template <int dim>
+  Attempt Attempts<dim>::at(const double fineness) const
+  {
+    Attempt attempt;
+    attempt.settings = {{"Domain/Node spacing", ""}, {"Cracks/Nodes on cracks", "left"}};
+    const auto set   = [&](const std::string &entry, const std::string &text) {
+      attempt.settings.emplace_back(entry, text);
+    };
+    const auto shift = [](CellCounts cells, const unsigned int levels) {
+      for (unsigned int &n : cells)
+        n <<= levels;
+      return cells;
+    };
+    const bool   on_cells = family == Family::whole || family == Family::faces;
+    unsigned int levels   = 0;
+    CellCounts   coarse   = counts(fineness);
+    if (family == Family::faces)
+      {
+        coarse = *on_faces(fineness, 0);
+        levels = halvings(fineness_of(coarse) / fineness_of(*on_faces(1., 0)), dim == 3 ? 2. : 3.);
+        set("Domain/Fine where", "crack ends");
+      }
+    else if (!on_cells)
+      {
+        levels = halvings(fineness / 4., 2.);
+        set("Domain/Fine where", "auto");
+      }
+    levels = possible_halvings(coarse, levels);
+    set("Domain/Cells", to_text(shift(coarse, levels)));
+    set("Domain/Coarsening", std::to_string(levels));
+    set("Finite elements/Degree", on_cells ? "2" : "1");
+    if (!scene.cracks.cracks.empty())
+      set("Cracks/Mesh", family == Family::faces ? "faces" : "auto");
+    if (family == Family::zone)
+      attempt.model = ModelKind::coupled;
+    set("Coupling/Zone", "cracks: 1");
+    set("Coupling/Scheme", "exchange");
+    set("Coupling/Overlap", "0");
+    set("Coupling/Certificate", "false");
+    set("Peridynamics/Horizon ratio", "3");
+    set("Peridynamics/Surface correction", on_cells ? "auto" : "crack scaling");
+    set("Models", to_string(attempt.model));
+    attempt.fineness = fineness_of(coarse);
+    return attempt;
+  }
+
+
+  template <int dim>
+  double Attempts<dim>::best_order() const
+  {
+    return family == Family::whole ? 3. : family == Family::faces ? (dim == 3 ? 2. : 3.) : 2.;
+  }
+
+
+  template <int dim>
+  double Attempts<dim>::growth_of_cost() const
+  {
+    return family == Family::pairs || family == Family::zone ? 2. * (dim - 1) : dim;
+  }
+
+
+  template <int dim>
+  std::string Attempts<dim>::reason() const
+  {
+    switch (family)
+      {
+        case Family::whole:
+          return "No crack and no horizon of its own: quadratic finite elements.";
+        case Family::faces:
+          return "The cracks run along the axes: quadratic finite elements with the cracks on faces "
+                 "of cells, fine at their ends.";
+        case Family::pairs:
+          return "The cracks lie across cells: finite elements, fine along the cracks, with the pairs "
+                 "of nodes that they do not part in the cells that they cut.";
+        default:
+          return "The cracks lie across cells of a body that deforms: bonds around them, finite "
+                 "elements elsewhere.";
+      }
+  }
+
+
+  template <int dim>
+  double Attempts<dim>::coarsest() const
+  {
+    const double fewest = dim == 1 ? 4. : dim == 2 ? 3. : 2.;
+    return std::max(fewest, 0.25 * fineness_of_formulas(scene));
+  }
+
+
+  template class Attempts<1>;
+  template class Attempts<2>;
+  template class Attempts<3>;
+} // namespace PeriDeal

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/scene_variant.h>
+#include <perideal/study/lattice_ladder.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** A model on a mesh, as entries of a scene. */
+  struct Attempt
+  {
+    ModelKind            model    = ModelKind::finite_elements;
+    double               fineness = 0.; // in proportion to 1/h; of a graded mesh where it is coarse
+    std::vector<Setting> settings;
+  };
+
+
+  /**
+   * The models and meshes that are worth trying for a scene, one family from coarse to fine:
+   *
+   * - without cracks quadratic elements on a lattice;
+   * - with cracks along faces of a lattice the same with the crack on faces, graded to its ends, so
+   *   that the cells there are the cube of those far away;
+   * - with others, what diffuses: linear elements, pairs of nodes in cut cells, scaled, fine along
+   *   the cracks, so that the cells there are the square of those far away; bodies that deform:
+   *   bonds around the cracks on such a mesh.
+   */
+  template <int dim>
+  class Attempts
+  {
+  public:
+    /** Throws UserError for scenes that have none. Not collective. */
+    explicit Attempts(const Scene<dim> &scene);
+
+    /** The coarsest that is worth a try: formulas of the scene are seen by it. Not collective. */
+    double coarsest() const;
+
+    /** The one with about this fineness, as close as lattices allow. Not collective. */
+    Attempt at(const double fineness) const;
+
+    /** How the error goes with 1/fineness where nothing disturbs it. Not collective. */
+    double best_order() const;
+
+    /** How the number of unknowns does. Not collective. */
+    double growth_of_cost() const;
+
+    /** In a sentence, why this family. Not collective. */
+    std::string reason() const;
+
+  private:
+    enum class Family
+    {
+      whole,
+      faces,
+      pairs,
+      zone
+    };
+
+    CellCounts                counts(const double fineness) const;
+    std::optional<CellCounts> on_faces(const double fineness, const unsigned int levels) const;
+    double                    fineness_of(const CellCounts &cells) const;
+
+    const Scene<dim> &scene;
+    CrackedBox        box;
+    double            longest = 0.;
+    Family            family  = Family::whole;
+  };
+} // namespace PeriDeal

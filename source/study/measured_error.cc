@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "measured_error.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/analysis/point_evaluator.h>
+#include <perideal/base/user_error.h>
+#include <perideal/problems/problem_factory.h>
+#include <perideal/scene/lists.h>
+#include <perideal/study/naming.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    using Json = nlohmann::ordered_json;
+
+    /** Points of a body and the part of it that each stands for. */
+    struct Sample
+    {
+      std::vector<std::vector<double>> points;
+      std::vector<double>              weights;
+    };
+
+
+    /**
+     * One point somewhere in each cell of a mesh, or in one of so many cells that about n are left:
+     * adapted meshes have their cells where errors would be. Chance follows from the places of
+     * cells, so that it does not matter how a mesh is dealt out. Collective.
+     */
+    template <int dim>
+    Sample sample_of(const Triangulation<dim> &mesh, const double n)
+    {
+      struct Chance
+      {
+        explicit Chance(const std::string &text)
+          : state(std::strtoull(text_hash(text).c_str(), nullptr, 16))
+        {}
+
+        double next()
+        {
+          state = state * 6364136223846793005ull + 1442695040888963407ull;
+          return static_cast<double>(state >> 11) / 9007199254740992.;
+        }
+
+        unsigned long long state;
+      };
+      const double        share = std::min(1., n / mesh.n_global_active_cells());
+      std::vector<double> own;
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            Chance chance(cell->id().to_string());
+            chance.next();
+            if (chance.next() > share)
+              continue;
+            Point<dim> place; // in coordinates of the cell
+            for (unsigned int d = 0; d < dim; ++d)
+              place[d] = chance.next();
+            Point<dim> p;
+            for (const unsigned int v : cell->vertex_indices())
+              p += GeometryInfo<dim>::d_linear_shape_function(place, v) * cell->vertex(v);
+            own.push_back(cell->measure() / share);
+            for (unsigned int d = 0; d < dim; ++d)
+              own.push_back(p[d]);
+          }
+      Sample                           sample;
+      std::vector<std::vector<double>> all;
+      for (const std::vector<double> &list :
+           Utilities::MPI::all_gather(mesh.get_communicator(), own))
+        for (std::size_t k = 0; k < list.size(); k += dim + 1)
+          all.emplace_back(list.begin() + k, list.begin() + k + dim + 1);
+      std::sort(all.begin(), all.end());
+      for (const std::vector<double> &one : all)
+        {
+          sample.weights.push_back(one[0]);
+          sample.points.emplace_back(one.begin() + 1, one.end());
+        }
+      return sample;
+    }
+
+
+    /** Largest minus smallest value of a component at the nodes. Collective. */
+    template <int dim>
+    double range_of(const Problem<dim> &problem, const unsigned int component)
+    {
+      const Vector &u    = problem.state();
+      double        high = -std::numeric_limits<double>::max(), low = -high;
+      for (unsigned int i = component; i < u.locally_owned_size(); i += problem.n_components())
+        {
+          high = std::max(high, u.local_element(i));
+          low  = std::min(low, u.local_element(i));
+        }
+      const MPI_Comm communicator = problem.dofs().get_communicator();
+      return Utilities::MPI::max(high, communicator) - Utilities::MPI::min(low, communicator);
+    }
+
+
+    template <int dim>
+    PointEvaluator<dim> reader_of(const Problem<dim>                     &problem,
+                                  const Cracks<dim>                      &cracks,
+                                  const std::vector<std::vector<double>> &points)
+    {
+      using Reader = PointEvaluator<dim>;
+      return Reader(problem.dofs(),
+                    problem.nodes(),
+                    cracks,
+                    points,
+                    "Probes",
+                    Reader::Outside::leave_gaps,
+                    Reader::BesideCracks::own_side);
+    }
+  } // namespace
+
+
+  template <int dim>
+  MeasuredError<dim>::MeasuredError(const Scene<dim> &scene)
+    : scene(scene)
+  {
+    const AccuracyControl &accuracy = scene.accuracy;
+    const bool             deforms  = problem_factory(scene).n_components() > 1;
+    accuracy.refuse(accuracy.measure == AccuracyMeasure::probes && scene.output.probes.empty(),
+                    "Measure",
+                    "is 'probes', but 'Probes' in section 'Output' has no point.");
+    accuracy.refuse(accuracy.measure == AccuracyMeasure::flow && deforms,
+                    "Measure",
+                    "is 'flow', but nothing flows in a body that deforms; 'field', 'probes' and "
+                    "'stress intensity' are for it.");
+    accuracy.refuse(accuracy.measure == AccuracyMeasure::stress_intensity &&
+                      (!deforms || dim != 2 || scene.cracks.cracks.empty()),
+                    "Measure",
+                    std::string("is 'stress intensity', but ") +
+                      (!deforms                    ? "'Physics' is not elasticity." :
+                       scene.cracks.cracks.empty() ? "section 'Cracks' has no crack." :
+                                                     "only two dimensions have it."));
+  }
+
+
+  template <int dim>
+  double MeasuredError<dim>::of_values(const Problem<dim>                     &fine,
+                                       const Problem<dim>                     &coarse,
+                                       const std::vector<std::vector<double>> &points,
+                                       const std::vector<double>              &weights) const
+  {
+    const PointEvaluator<dim> of_fine   = reader_of(fine, scene.cracks, points),
+                              of_coarse = reader_of(coarse, scene.cracks, points);
+    double worst = 0., range = 0.;
+    for (unsigned int c = 0; c < fine.n_components(); ++c)
+      {
+        const std::vector<double> u = of_fine.evaluate(fine.state(), fine.n_components(), c),
+                                  v = of_coarse.evaluate(coarse.state(), fine.n_components(), c);
+        double sum = 0., volume = 0., largest = 0.;
+        for (std::size_t k = 0; k < u.size(); ++k)
+          if (!of_fine.is_gap(k) && !of_coarse.is_gap(k))
+            {
+              largest = std::max(largest, std::abs(u[k] - v[k]));
+              if (!weights.empty())
+                {
+                  sum += weights[k] * (u[k] - v[k]) * (u[k] - v[k]);
+                  volume += weights[k];
+                }
+            }
+        worst = std::max(worst, weights.empty() ? largest : std::sqrt(sum / volume));
+        range = std::max(range, range_of(fine, c));
+      }
+    return range > 0. ? worst / range : 0.;
+  }
+
+
+  template <int dim>
+  std::optional<double> MeasuredError<dim>::of_numbers(Simulation<dim> &fine,
+                                                       Simulation<dim> &coarse) const
+  {
+    const auto entry = [](Simulation<dim> &one) { return one.found()["models"]["auto"]; };
+    const Json a = entry(fine), b = entry(coarse);
+    const auto relative = [](const double x, const double y) {
+      return x == y ? 0. : std::abs(x - y) / std::abs(x);
+    };
+    if (scene.accuracy.measure == AccuracyMeasure::flow)
+      {
+        const std::string       &side  = scene.accuracy.side;
+        const Json               none  = Json::object();
+        const Json              &flows = a.contains("boundary flux") ? a["boundary flux"] : none;
+        std::vector<std::string> names;
+        for (const auto &[name, flow] : flows.items())
+          names.push_back(name);
+        scene.accuracy.refuse(!flows.contains(side),
+                              "Measure",
+                              "found 'flow: " + side + "', needs a side with a condition: " +
+                                join_names(names) + "." + did_you_mean(side, names));
+        return relative(flows[side].template get<double>(),
+                        b["boundary flux"][side].template get<double>());
+      }
+    const auto ends = [](const Json &all) {
+      return all.contains("stress intensity") ? all["stress intensity"].size() : 0;
+    };
+    if (ends(a) == 0 || ends(a) != ends(b)) // no room around the ends on the mesh
+      return {};
+    double worst = 0.;
+    for (const auto &item : a["stress intensity"].items())
+      {
+        const auto size = [&](const Json &all) {
+          const Json &k = all["stress intensity"][item.key()];
+          return std::hypot(k["I"].template get<double>(), k["II"].template get<double>());
+        };
+        worst = std::max(worst, relative(size(a), size(b)));
+      }
+    return worst;
+  }
+
+
+  template <int dim>
+  std::optional<double> MeasuredError<dim>::difference(Simulation<dim> &fine,
+                                                       Simulation<dim> &coarse) const
+  {
+    const double points_of_field = dim == 1 ? 1000. : dim == 2 ? 2500. : 4000.;
+    switch (scene.accuracy.measure)
+      {
+        case AccuracyMeasure::field:
+          {
+            const Sample sample =
+              sample_of(fine.problem().dofs().get_triangulation(), points_of_field);
+            return of_values(fine.problem(), coarse.problem(), sample.points, sample.weights);
+          }
+        case AccuracyMeasure::probes:
+          return of_values(fine.problem(), coarse.problem(), scene.output.probes, {});
+        default:
+          return of_numbers(fine, coarse);
+      }
+  }
+
+
+  template class MeasuredError<1>;
+  template class MeasuredError<2>;
+  template class MeasuredError<3>;
+} // namespace PeriDeal

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/study/observed_error.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    constexpr double lowest_order = 1.; // at ends of cracks, in the values
+    constexpr double usual_order  = 2.; // where none has been seen
+
+    /** f0^-p - f1^-p over f1^-p - f2^-p, which grows with p. */
+    double ratio(const double f0, const double f1, const double f2, const double p)
+    {
+      return (std::pow(f0, -p) - std::pow(f1, -p)) / (std::pow(f1, -p) - std::pow(f2, -p));
+    }
+
+
+    double order_of(const Step &first, const Step &second, const Step &third, const double best)
+    {
+      if (!(third.difference > 0.) || !(second.difference > 0.))
+        return best;
+      const double seen = second.difference / third.difference;
+      double       low = lowest_order, high = best;
+      for (unsigned int k = 0; k < 40; ++k)
+        {
+          const double middle = 0.5 * (low + high);
+          (ratio(first.fineness, second.fineness, third.fineness, middle) < seen ? low : high) =
+            middle;
+        }
+      return 0.5 * (low + high);
+    }
+
+
+    double error_of(const Step &before, const Step &step, const double order)
+    {
+      return step.difference / (std::pow(step.fineness / before.fineness, order) - 1.);
+    }
+  } // namespace
+
+
+  ObservedError observed_error(const std::vector<Step> &steps, const double best)
+  {
+    ObservedError     now{-1., best};
+    const std::size_t n = steps.size();
+    if (n < 2)
+      return now;
+    now.order = std::min(best, usual_order);
+    if (n > 2)
+      now.order = order_of(steps[n - 3], steps[n - 2], steps[n - 1], best);
+    now.error = error_of(steps[n - 2], steps[n - 1], now.order);
+    if (n > 2)
+      {
+        const double before = error_of(steps[n - 3], steps[n - 2], now.order);
+        now.error           = std::max(now.error,
+                             0.5 * before *
+                               std::pow(steps[n - 2].fineness / steps[n - 1].fineness, now.order));
+      }
+    return now;
+  }
+
+
+  double fineness_for(const ObservedError &now,
+                      const double         fineness,
+                      const double         wanted,
+                      const double         farthest)
+  {
+    const double factor = std::pow(now.error / wanted, 1. / now.order);
+    return fineness * std::clamp(factor, 1.2, farthest);
+  }
+} // namespace PeriDeal

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""`Models = auto`: results within the tolerance, estimates near the true errors, the same on any number of processes.
+
+    accuracy.py fields solids others
+"""
+
+import math
+import sys
+
+import numpy as np
+
+from accuracy_cases import crack_cases, smooth_cases
+from scene_test import check, check_close, check_less, check_message, finish, print_table, run_scene
+
+N_POINTS = 1000
+
+
+def with_probes(text, points):
+    probes = " ; ".join(",".join(f"{x:.15g}" for x in p) for p in points)
+    return f"{text}subsection Output\n  set Fields = none\n  set Probes = {probes}\nend\n"
+
+
+def check_cases(cases, tolerances, title):
+    """The error at points spread by chance: root mean square over the range of the solution, as section `Accuracy` has it."""
+    random, rows, near = np.random.default_rng(1), [], []
+    for case in cases:
+        lower, upper = case.box()
+        points = lower + (upper - lower) * random.random((N_POINTS, case.dimension))
+        everywhere = case.exact(lower + (upper - lower) * random.random((20000, case.dimension)))
+        for tolerance in tolerances:
+            run = run_scene(with_probes(case.text(), points), {"Accuracy/Tolerance": str(tolerance)})
+            values = np.array([row["value"] for row in run.rows("auto")])
+            error = math.sqrt(np.mean((values - case.exact(points)) ** 2)) / (everywhere.max() - everywhere.min())
+            found = run.summary["accuracy"]
+            check(found["met"] and found["estimate"] <= tolerance, f"{case.name}: {found['estimate']} is not within {tolerance}")
+            check_less(error, tolerance, f"{case.name}: error")
+            if case.kind == "smooth":
+                check(found["model"] == "finite elements", f"{case.name}: {found['model']}")
+            near.append(0.3 <= found["estimate"] / error <= 3)
+            rows.append([case.name, f"{tolerance:g}", f"{error:.1e}", f"{found['estimate']:.1e}", f"{found['estimate'] / error:.2f}", len(found["steps"])])
+    print_table(title, ["scene", "tolerance", "error", "estimate", "effectivity", "tries"], rows)
+    check(np.mean(near) >= 0.9, f"{title}: {np.mean(near):.0%} of the estimates are within a factor of 3")
+
+
+def fields():
+    check_cases(smooth_cases() + crack_cases(), (1e-2, 1e-3), "Fields with and without insulated cracks")
+
+
+def solid(cracks, boundary):
+    return ("set Title = plate\nset Dimension = 2\nset Physics = elasticity\nset Models = auto\n"
+            "subsection Domain\n  set Lower corner = -1, -1\n  set Upper corner = 1, 1\nend\n"
+            "subsection Material\n  set Young modulus = 1\n  set Poisson ratio = 0.3\nend\n"
+            f"subsection Boundary conditions\n{boundary}\nend\nsubsection Cracks\n  set Segments = {cracks}\nend\n")
+
+
+def solids():
+    """Westergaard's plate, and a crack through vertices of lattices again and again, from 1536 x 1536 cells."""
+    text = open("prm/elasticity/coupled_crack.prm").read().replace("set Models           = finite elements, coupled", "set Models = auto")
+    exact = math.sqrt(math.pi * 0.5)
+    for tolerance in (1e-2, 3e-3):
+        run = run_scene(text, {"Accuracy/Measure": "stress intensity", "Accuracy/Tolerance": str(tolerance), "Output/Fields": "none"})
+        for end in run.model("auto")["stress intensity"].values():
+            check_close(end["I"], exact, relative=tolerance, what="K_I of Westergaard's plate")
+    through_vertices = solid("-0.3,-0.2 ; 0.35,0.15", "  set Displacement = bottom: 0, 0\n  set Traction = top: 0, 0.01")
+    run = run_scene(through_vertices, {"Accuracy/Measure": "stress intensity", "Accuracy/Tolerance": "2e-2", "Output/Fields": "none"})
+    check(run.summary["accuracy"]["model"] == "coupled", "a crack across cells of a solid")
+    for (name, end), expected in zip(run.model("auto")["stress intensity"].items(), (0.00943, 0.00984)):
+        check_close(end["I"], expected, relative=2e-2, what=f"K_I at {name}")
+    for model, cells in (("finite elements", "96, 96"), ("coupled", "48, 48")):
+        run = run_scene(through_vertices, {"Models": model, "Domain/Cells": cells, "Output/Fields": "none"})
+        for (name, end), expected in zip(run.model(model)["stress intensity"].items(), (0.00943, 0.00984)):
+            check_close(end["I"], expected, relative=4e-2, what=f"{model}: K_I at {name}")
+
+
+def others():
+    crack = crack_cases()[3]
+    points = [(0.31, 0.12), (-0.2, 0.4), (0.1, 0.062)]
+    text = with_probes(crack.text(), points)
+    alone = run_scene(text, {"Accuracy/Measure": "probes"})
+    for row, exact in zip(alone.rows("auto"), crack.exact(np.array(points))):
+        check_close(row["value"], exact, absolute=0.01 * 2.2, what="a probe")
+    for ranks in (2, 4):
+        shared = run_scene(text, {"Accuracy/Measure": "probes"}, ranks=ranks)
+        for mine, theirs in zip(shared.rows("auto"), alone.rows("auto")):
+            check_close(mine["value"], theirs["value"], absolute=1e-8, what=f"a probe on {ranks} processes")
+        check_close(shared.summary["accuracy"]["estimate"], alone.summary["accuracy"]["estimate"], relative=1e-6, what=f"the estimate on {ranks} processes")
+    flow = run_scene("set Dimension = 2\nset Models = auto\nsubsection Material\n  set Conductivity = 1 + y\nend\nsubsection Boundary conditions\n"
+                     "  set Dirichlet = left: 0; right: 1\nend\nsubsection Time\n  set Steady = true\nend\n", {"Accuracy/Measure": "flow: right", "Accuracy/Tolerance": "1e-4"})
+    check_close(flow.model("auto")["boundary flux"]["right"], 1.5, relative=1e-4, what="what enters on the right")
+    # The entries that were chosen give the same result without `auto`.
+    again = run_scene(text, {**alone.summary["accuracy"]["settings"]})
+    model = alone.summary["accuracy"]["model"]
+    check_close(again.probe(model, points[0]), alone.probe("auto", points[0]), absolute=1e-9, what="the settings, without auto")
+    spent = run_scene(text, {"Accuracy/Tolerance": "1e-7", "Accuracy/Budget": "1"})
+    check(not spent.summary["accuracy"]["met"] and spent.summary["accuracy"]["budget exhausted"], "a budget of a second")
+
+    def refused(overrides, *words):
+        check_message(run_scene(crack.text(), overrides, expect_error=True), *words)
+
+    refused({"Models": "auto, coupled"}, "'Models'", "stands alone")
+    refused({"Accuracy/Tolerance": "1e-9"}, "'Tolerance' in section 'Accuracy'")
+    refused({"Accuracy/Measure": "probe"}, "'Measure' in section 'Accuracy'", "Did you mean 'probes'?")
+    refused({"Accuracy/Measure": "probes"}, "'Measure'", "'Probes' in section 'Output' has no point")
+    refused({"Accuracy/Measure": "stress intensity"}, "'Measure'", "not elasticity")
+    refused({"Accuracy/Measure": "flow: tpo"}, "'Measure'", "Did you mean 'top'?")
+    refused({"Accuracy/Memory": "4"}, "'Memory' in section 'Accuracy'", "'4 GB'")
+    refused({"Accuracy/Budget": "-1"}, "'Budget' in section 'Accuracy'")
+    refused({"Time/Steady": "false"}, "'auto' does not choose for", "Steady")
+    refused({"Peridynamics/Horizon": "0.1"}, "'auto' does not choose for", "Horizon")
+
+
+for part in sys.argv[1:] or ("fields", "solids", "others"):
+    {"fields": fields, "solids": solids, "others": others}[part]()
+finish()

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Scenes for `Models = auto` with exact solutions: a text, and a function of points (n x dim) and a formula that say the same.
+
+The formulas of cracks are those of an insulated crack, or one without traction, in an infinite plate, prescribed on all sides of the box.
+"""
+
+import math
+
+import numpy as np
+
+
+class Case:
+    """A scene and its exact solution. `exact` gives n values of a point's columns, or n x dim of a displacement."""
+
+    def __init__(self, name, kind, exact, dimension=2, **sections):
+        self.name, self.kind, self.exact, self.dimension = name, kind, exact, dimension
+        self.sections = sections
+
+    def text(self):
+        """Without `Accuracy` and `Output`, which overrides give."""
+        lines = [f"set Title = {self.name}", f"set Dimension = {self.dimension}", "set Models = auto"]
+        if self.kind == "elastic":
+            lines.append("set Physics = elasticity")
+        names = {"domain": "Domain", "material": "Material", "source": "Initial and source", "boundary": "Boundary conditions", "cracks": "Cracks",
+                 "elasticity": "Elasticity", "peridynamics": "Peridynamics"}
+        for key, entries in self.sections.items():
+            lines.append(f"subsection {names[key]}")
+            lines += [f"  set {entry} = {value}" for entry, value in entries.items()]
+            lines.append("end")
+        if self.kind != "elastic":
+            lines += ["subsection Time", "  set Steady = true", "end"]
+        return "\n".join(lines) + "\n"
+
+    def box(self):
+        domain = self.sections.get("domain", {})
+        corner = lambda entry, default: np.array([float(x) for x in domain.get(entry, ", ".join([default] * self.dimension)).split(",")])
+        return corner("Lower corner", "0"), corner("Upper corner", "1")
+
+
+def all_sides(formula, dimension):
+    return "; ".join(f"{side}: {formula}" for side in ("left", "right", "bottom", "top", "back", "front")[:2 * dimension])
+
+
+SQUARE = {"Lower corner": "-1, -1", "Upper corner": "1, 1"}
+
+
+def on_box(name, formula, exact, source="0", dimension=2, **more):
+    return Case(name, "smooth", exact, dimension, source={"Source": source}, boundary={"Dirichlet": all_sides(formula, dimension)}, **more)
+
+
+def insulated_crack(name, angle, half_length=0.5, centre=(0., 0.)):
+    """Im sqrt(z^2 - a^2), z along and across the crack: the gradient 1 across it far away."""
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    c, s = (0. if abs(v) < 1e-15 else v for v in (c, s))
+    xi, eta = (f"({a:.17g}*(x-({centre[0]}))+({b:.17g})*(y-({centre[1]})))" for a, b in ((c, s), (-s, c)))
+    real, imaginary = f"({xi}^2-{eta}^2-{half_length ** 2:.17g})", f"(2*{xi}*{eta})"
+    formula = f"({eta} > -1e-9 ? 1 : -1)*sqrt(max(0,(sqrt({real}^2+{imaginary}^2)-{real})/2))"
+
+    def exact(p):
+        z = ((p[:, 0] - centre[0]) + 1j * (p[:, 1] - centre[1])) * (c - 1j * s)
+        w = np.sqrt(z * z - half_length ** 2 + 0j)
+        return np.where(z.imag >= 0, 1, -1) * np.abs(w.imag)
+
+    ends = [(centre[0] + k * half_length * c, centre[1] + k * half_length * s) for k in (-1, 1)]
+    return Case(name, "crack", exact, domain=SQUARE, boundary={"Dirichlet": all_sides(formula, 2)},
+                cracks={"Segments": " ; ".join(f"{x:.17g},{y:.17g}" for x, y in ends)})
+
+
+def crack_from_side(name, angle, tip=(0.1, 0.05)):
+    """sqrt(r) sin(phi/2) about the tip, the crack leaving the box to the left at an angle."""
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    xi, eta = (f"({a:.17g}*(x-({tip[0]}))+({b:.17g})*(y-({tip[1]})))" for a, b in ((c, s), (-s, c)))
+    formula = f"({eta} > -1e-9 ? 1 : -1)*sqrt(max(0,(sqrt({xi}^2+{eta}^2)-{xi})/2))"
+
+    def exact(p):
+        z = ((p[:, 0] - tip[0]) + 1j * (p[:, 1] - tip[1])) * (c - 1j * s)
+        return np.where(z.imag >= 0, 1, -1) * np.sqrt(np.maximum(0, (np.abs(z) - z.real) / 2))
+
+    length = (1 + tip[0]) / c
+    return Case(name, "crack", exact, domain=SQUARE, boundary={"Dirichlet": all_sides(formula, 2)},
+                cracks={"Segments": f"-1,{tip[1] - length * s:.17g} ; {tip[0]:.17g},{tip[1]:.17g}"})
+
+
+def smooth_cases():
+    pi, sin, cos, exp, tanh = np.pi, np.sin, np.cos, np.exp, np.tanh
+    layer = lambda p: tanh((p[:, 0] + p[:, 1] - 1) / 0.03)
+    # a narrow hill
+    w = 0.02
+    hill = lambda p: exp(-((p[:, 0] - 0.3137) ** 2 + (p[:, 1] - 0.6271) ** 2) / (2 * w * w))
+    r2 = "((x-0.3137)^2+(y-0.6271)^2)"
+    return [
+        on_box("sine", "0", lambda p: sin(pi * p[:, 0]) * sin(pi * p[:, 1]), "2*pi^2*sin(pi*x)*sin(pi*y)"),
+        on_box("harmonic", "exp(2*x)*sin(2*y)", lambda p: exp(2 * p[:, 0]) * sin(2 * p[:, 1])),
+        on_box("layer", "tanh((x+y-1)/0.03)", layer, "4*tanh((x+y-1)/0.03)*(1-tanh((x+y-1)/0.03)^2)/0.03^2"),
+        on_box("hill", "0", hill, f"(2/{w}^2-{r2}/{w}^4)*exp(-{r2}/(2*{w}^2))"),
+        on_box("graded material", "log(1+x+2*y)", lambda p: np.log(1 + p[:, 0] + 2 * p[:, 1]), material={"Conductivity": "1+x+2*y"}),
+        on_box("boundary layer 1D", "exp(-x/0.01)", lambda p: exp(-p[:, 0] / 0.01), "-exp(-x/0.01)/0.01^2", 1),
+        on_box("cube", "0", lambda p: sin(pi * p[:, 0]) * sin(pi * p[:, 1]) * sin(2 * pi * p[:, 2]), "6*pi^2*sin(pi*x)*sin(pi*y)*sin(2*pi*z)", 3),
+        Case("mixed", "smooth", lambda p: p[:, 0] ** 3 - 3 * p[:, 0] * p[:, 1] ** 2 + p[:, 1],
+             domain={"Lower corner": "0, 0", "Upper corner": "2, 0.5"},
+             boundary={"Dirichlet": "left: y ; top: x^3-0.75*x+0.5", "Flux": "right: 3*(4-y^2) ; bottom: -1"}),
+    ]
+
+
+def crack_cases():
+    return [
+        insulated_crack("crack along a row", 0),
+        insulated_crack("crack upright, off the middle", 90, 0.31, (0.137, 0.05)),
+        insulated_crack("crack at 15 degrees", 15),
+        insulated_crack("crack at 30 degrees", 30),
+        insulated_crack("crack at 45 degrees", 45),
+        insulated_crack("crack at 63 degrees", 63, 0.4, (0.2, -0.1)),
+        insulated_crack("short crack", 20, 0.1),
+        insulated_crack("long crack", 33, 0.85),
+        crack_from_side("crack from a side", 0),
+        crack_from_side("oblique crack from a side", 12),
+    ]
+
+
+def cases():
+    return smooth_cases() + crack_cases()
