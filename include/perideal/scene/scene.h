@@ -48,7 +48,7 @@ namespace PeriDeal
      */
     void parse();
 
-    /** Of a model in output files and messages: its own name, or `auto` where that was asked for. */
+    /** Of a model in output files and messages: its own name, or `auto` if that was asked for. */
     std::string name_of(const ModelKind model) const
     {
       return automatic ? "auto" : to_string(model);
