@@ -6,12 +6,13 @@
 """
 
 import math
+import os
 import sys
 
 import numpy as np
 
 from accuracy_cases import crack_cases, smooth_cases
-from scene_test import check, check_close, check_less, check_message, finish, print_table, run_scene
+from scene_test import SOURCE_DIR, check, check_close, check_less, check_message, finish, print_table, run_scene
 
 N_POINTS = 1000
 
@@ -56,7 +57,7 @@ def solid(cracks, boundary):
 
 def solids():
     """Westergaard's plate, and a crack through vertices of lattices again and again, from 1536 x 1536 cells."""
-    text = open("prm/elasticity/coupled_crack.prm").read().replace("set Models           = finite elements, coupled", "set Models = auto")
+    text = open(os.path.join(SOURCE_DIR, "prm/elasticity/coupled_crack.prm")).read().replace("set Models           = finite elements, coupled", "set Models = auto")
     exact = math.sqrt(math.pi * 0.5)
     for tolerance in (1e-2, 3e-3):
         run = run_scene(text, {"Accuracy/Measure": "stress intensity", "Accuracy/Tolerance": str(tolerance), "Output/Fields": "none"})
