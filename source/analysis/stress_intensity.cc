@@ -131,6 +131,13 @@ namespace PeriDeal
   }
 
 
+  double CrackEndIntegral::weight_at(const double r) const
+  {
+    const double s = std::clamp((r - inner) / (outer - inner), 0., 1.);
+    return 1. - s * s * s * (10. - 15. * s + 6. * s * s);
+  }
+
+
   void CrackEndIntegral::add(const Point<2>              &p,
                              const double                 weight,
                              const Tensor<2, 2>          &gradient,
@@ -145,7 +152,7 @@ namespace PeriDeal
     if (force.norm_square() > 0.)
       {
         // A body force does work on the fields that move with the end, wherever q is not 0.
-        const double       q = std::min(1., (outer - r) / (outer - inner));
+        const double       q = weight_at(r);
         const Tensor<1, 2> b = frame * force;
         const Tensor<2, 2> u = frame * gradient * transpose(frame);
         sums[0] -= weight * q * (b * Tensor<1, 2>({u[0][0], u[1][0]}));
@@ -154,7 +161,8 @@ namespace PeriDeal
       }
     if (r <= inner)
       return;
-    const Tensor<1, 2> slope = (-1. / ((outer - inner) * r)) * x; // of q
+    const double       s     = (r - inner) / (outer - inner);
+    const Tensor<1, 2> slope = (-30. * s * s * (1. - s) * (1. - s) / ((outer - inner) * r)) * x;
     const Tensor<2, 2> u     = frame * gradient * transpose(frame);
     const Tensor<2, 2> sigma = frame * static_cast<Tensor<2, 2>>(stress) * transpose(frame);
     const auto   ahead  = [](const Tensor<2, 2> &t) { return Tensor<1, 2>({t[0][0], t[1][0]}); };

@@ -35,7 +35,8 @@ namespace PeriDeal
    * (J: Rice 1968, domain form of Li, Shih and Needleman 1985; K_m: interaction integral, Yau, Wang
    * and Corten 1980)
    * with the near-tip fields u^m of unit intensity in mode m, E' = E in plane stress, E/(1 - nu^2)
-   * in plane strain, and q falling from 1 at the inner radius to 0 at the outer one. They hold for
+   * in plane strain, and q falling from 1 at the inner radius to 0 at the outer one, with two
+   * derivatives that do not jump: cells there may be coarse. They hold for
    * one elastic material in the ring, without thermal strain and forces on the lips; W = sigma :
    * grad u/2.
    *
@@ -71,6 +72,9 @@ namespace PeriDeal
     dealii::Tensor<1, 2> near_slope(const unsigned int mode,
                                     const double       r,
                                     const double       angle) const;
+
+    /** q. */
+    double weight_at(const double r) const;
 
     std::string          name;
     dealii::Point<2>     end;
