@@ -61,16 +61,13 @@ namespace
   {
     Scene<dim> scene;
     parse_computable(text, scene);
+    if (action == Action::run)
+      return run_scene(scene, text, communicator, mode, quiet);
     if (scene.general.automatic)
-      return action == Action::run ? run_chosen_model(scene, text, communicator, mode, quiet) :
-                                     describe_choice(scene, text, communicator, quiet);
-    if (action == Action::estimate || (action == Action::check && is_large(scene, communicator)))
+      return describe_choice(scene, text, communicator, quiet);
+    if (action == Action::estimate || is_large(scene, communicator))
       return print_estimate(scene, communicator, quiet);
-    Simulation<dim> simulation(scene, text, communicator, quiet);
-    if (action == Action::check)
-      simulation.dry_run();
-    else
-      simulation.run(mode);
+    Simulation<dim>(scene, text, communicator, quiet).dry_run();
   }
 
 

@@ -72,7 +72,7 @@ namespace PeriDeal
                                    piece.corners[dim == 3 ? (k + 1) % piece.corners.size() : k]};
             ends.push_back(one);
           }
-      Zone<dim> zone(0.);
+      Zone<dim> zone = Zone<dim>::near_cracks(0.);
       zone.set_cracks(ends);
       return zone;
     }

@@ -4,9 +4,6 @@
 #include <perideal/scene/accuracy.h>
 #include <perideal/scene/lists.h>
 
-#include <cmath>
-#include <cstdlib>
-
 namespace PeriDeal
 {
   namespace
@@ -17,18 +14,9 @@ namespace PeriDeal
 
   double bytes_of(const std::string &text)
   {
-    const std::string plain  = trimmed(text);
-    char             *end    = nullptr;
-    const double      number = std::strtod(plain.c_str(), &end);
-    const std::string unit   = trimmed(end);
-    const double      size   = unit == "kB" ? 1e3 :
-                               unit == "MB" ? 1e6 :
-                               unit == "GB" ? 1e9 :
-                               unit == "TB" ? 1e12 :
-                                              -1.;
-    return end != plain.c_str() && std::isfinite(number) && number > 0. && size > 0. ?
-             number * size :
-             -1.;
+    const double size =
+      number_with_unit(text, {{"kB", 1e3}, {"MB", 1e6}, {"GB", 1e9}, {"TB", 1e12}});
+    return size > 0. ? size : -1.;
   }
 
 

@@ -12,19 +12,8 @@ namespace PeriDeal
 {
   double seconds_of(const std::string &text)
   {
-    const std::string plain  = trimmed(text);
-    char             *end    = nullptr;
-    const double      number = std::strtod(plain.c_str(), &end);
-    const std::string unit   = trimmed(end);
-    const double      size   = unit == "s"                  ? 1. :
-                               unit == "min"                ? 60. :
-                               unit == "h"                  ? 3600. :
-                               unit.empty() && number == 0. ? 1. :
-                                                              -1.;
-    const std::string digits(plain.c_str(), static_cast<const char *>(end));
-    const bool        has_digits = !digits.empty() &&
-                            digits.find_first_not_of("0123456789.eE+-") == std::string::npos;
-    return has_digits && std::isfinite(number) && number >= 0. && size > 0. ? number * size : -1.;
+    const double seconds = number_with_unit(text, {{"s", 1.}, {"min", 60.}, {"h", 3600.}});
+    return number_with_unit(text, {{"", 1.}}) == 0. ? 0. : seconds;
   }
 
 

@@ -98,6 +98,23 @@ namespace PeriDeal
   }
 
 
+  double number_with_unit(const std::string &text, const UnitSizes &units)
+  {
+    const std::string plain  = trimmed(text);
+    char             *end    = nullptr;
+    const double      number = std::strtod(plain.c_str(), &end);
+    const std::string digits(plain.c_str(), static_cast<const char *>(end));
+    if (digits.empty() || digits.find_first_not_of("0123456789.eE+-") != std::string::npos ||
+        !std::isfinite(number) || number < 0.)
+      return -1.;
+    const std::string unit = trimmed(end);
+    for (const auto &[name, size] : units)
+      if (unit == name)
+        return number * size;
+    return -1.;
+  }
+
+
   unsigned int parse_whole_number(const std::string &text,
                                   const std::string &where,
                                   const unsigned int maximum)

@@ -110,11 +110,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  Zone<dim>::Zone(const double reach)
-    : kind(ZoneKind::near_cracks)
-    , reach(reach)
-    , directions(some_directions<dim>())
-  {}
+  Zone<dim> Zone<dim>::near_cracks(const double reach)
+  {
+    Zone zone;
+    zone.kind       = ZoneKind::near_cracks;
+    zone.reach      = reach;
+    zone.directions = some_directions<dim>();
+    return zone;
+  }
 
 
   template <int dim>

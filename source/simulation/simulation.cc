@@ -146,6 +146,7 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::run(const RunMode mode)
   {
+    Assert(!scene.general.automatic, ExcMessage("Models are chosen by run_scene()."));
     require_computable(scene, text);
     require_memory(scene, communicator);
     output->open(text, communicator, mode);
@@ -176,12 +177,13 @@ namespace PeriDeal
       }
     pass_output_times();
     progress.end();
-    return finish(nlohmann::ordered_json::object());
+    return finish(nlohmann::ordered_json::object(), progress);
   }
 
 
   template <int dim>
-  nlohmann::ordered_json Simulation<dim>::finish(const nlohmann::ordered_json &more)
+  nlohmann::ordered_json Simulation<dim>::finish(const nlohmann::ordered_json &more,
+                                                 const Progress               &tell)
   {
     if (const unsigned int n = adaptation.history.n_adaptations(); n > 0)
       record->notes.push_back("the mesh was adapted " + std::to_string(n) +
@@ -191,7 +193,7 @@ namespace PeriDeal
     for (const auto &problem : problems)
       problem->note_end(context());
     for (const std::string &note : record->notes)
-      progress.note(note);
+      tell.note(note);
     nlohmann::ordered_json summary = summary_now(true);
     summary.update(more);
     output->complete(summary);

@@ -244,30 +244,34 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::write(std::unique_ptr<RunFiles> files, const nlohmann::ordered_json &more)
+  void Simulation<dim>::write(std::unique_ptr<RunFiles>     files,
+                              const nlohmann::ordered_json &more,
+                              const Progress               &tell)
   {
     output->adopt(std::move(files));
     nlohmann::ordered_json summary;
     with_orderly_end(output->files(), progress, [&] {
       write_output(0.);
-      summary = finish(more);
+      summary = finish(more, tell);
     });
     output->close();
-    progress.end();
-    say_what_was_found(progress, summary, scene.general.output_directory);
+    tell.end();
+    say_what_was_found(tell, summary, scene.general.output_directory);
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template void                   Simulation<dim>::prepare_adaptation();                           \
-  template bool                   Simulation<dim>::adapt(const double);                            \
-  template void                   Simulation<dim>::resume();                                       \
-  template void                   Simulation<dim>::solve();                                        \
-  template const Problem<dim>    &Simulation<dim>::problem() const;                                \
-  template nlohmann::ordered_json Simulation<dim>::found();                                        \
-  template void Simulation<dim>::write(std::unique_ptr<RunFiles>, const nlohmann::ordered_json &); \
-  template void Simulation<dim>::find_steady_state();                                              \
-  template void Simulation<dim>::offer_checkpoint(const double);
+#define PERIDEAL_INSTANTIATE(dim)                                                        \
+  template void                   Simulation<dim>::prepare_adaptation();                 \
+  template bool                   Simulation<dim>::adapt(const double);                  \
+  template void                   Simulation<dim>::resume();                             \
+  template void                   Simulation<dim>::solve();                              \
+  template const Problem<dim>    &Simulation<dim>::problem() const;                      \
+  template nlohmann::ordered_json Simulation<dim>::found();                              \
+  template void                   Simulation<dim>::write(std::unique_ptr<RunFiles>,      \
+                                       const nlohmann::ordered_json &, \
+                                       const Progress &);              \
+  template void                   Simulation<dim>::find_steady_state();                  \
+  template void                   Simulation<dim>::offer_checkpoint(const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -57,9 +57,9 @@ namespace PeriDeal
     if (scene.cracks.cracks.empty() || dim == 1)
       return;
     const bool deforms = problem_factory(scene).n_components() > 1;
-    family             = on_faces(1., 0) && !scene.cracks.conduct() ? Family::faces :
-                         deforms                                    ? Family::zone :
-                                                                      Family::pairs;
+    family             = on_faces(1.) && !scene.cracks.conduct() ? Family::faces :
+                         deforms                                 ? Family::zone :
+                                                                   Family::pairs;
   }
 
 
@@ -78,28 +78,27 @@ namespace PeriDeal
   {
     /** More cells than wanted, along an edge, are not taken to have cracks on their faces. */
     template <int dim>
-    constexpr unsigned int most_to_fit = dim == 3 ? 12 : 48;
+    constexpr int most_to_fit = dim == 3 ? 12 : 48;
   } // namespace
 
 
   template <int dim>
-  std::optional<CellCounts> Attempts<dim>::on_faces(const double       fineness,
-                                                    const unsigned int levels) const
+  std::optional<CellCounts> Attempts<dim>::on_faces(const double fineness) const
   {
     if (!along_axes(box))
       return {};
-    const CellCounts wanted = counts(fineness);
-    CellCounts       cells;
+    CellCounts cells;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        unsigned int found = 0;
-        for (unsigned int k = 0; k <= wanted[d] + most_to_fit<dim> && found == 0; ++k)
-          for (const int n : {static_cast<int>(wanted[d] - k), static_cast<int>(wanted[d] + k)})
+        const int wanted = counts(fineness)[d];
+        int       found  = 0;
+        for (int k = 0; k <= wanted + most_to_fit<dim> && found == 0; ++k)
+          for (const int n : {wanted - k, wanted + k})
             if (found == 0 && n > 1 && corners_on_planes(box, d, n))
               found = n;
         if (found == 0)
           return {};
-        cells.push_back(found << levels);
+        cells.push_back(found);
       }
     return cells;
   }
@@ -133,7 +132,8 @@ namespace PeriDeal
 
 
     /**
-     * Halvings from cells of a size to those of its power, both in terms of twice the largest.
+     * How often cells of the size h = 1/(2 refinement) are halved to get to those of the size
+     * h^power.
      */
     unsigned int halvings(const double refinement, const double power)
     {
@@ -161,8 +161,8 @@ namespace PeriDeal
     CellCounts   coarse   = counts(fineness);
     if (family == Family::faces)
       {
-        coarse = *on_faces(fineness, 0);
-        levels = halvings(fineness_of(coarse) / fineness_of(*on_faces(1., 0)), dim == 3 ? 2. : 3.);
+        coarse = *on_faces(fineness);
+        levels = halvings(fineness_of(coarse) / fineness_of(*on_faces(1.)), dim == 3 ? 2. : 3.);
         set("Domain/Fine where", "crack ends");
       }
     else if (!on_cells)

@@ -63,7 +63,7 @@ namespace PeriDeal
     };
 
     CellCounts                counts(const double fineness) const;
-    std::optional<CellCounts> on_faces(const double fineness, const unsigned int levels) const;
+    std::optional<CellCounts> on_faces(const double fineness) const;
     double                    fineness_of(const CellCounts &cells) const;
 
     const Scene<dim> &scene;

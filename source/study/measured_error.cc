@@ -178,64 +178,67 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::optional<double> MeasuredError<dim>::of_numbers(Simulation<dim> &fine,
-                                                       Simulation<dim> &coarse) const
+  MeasuredNumbers MeasuredError<dim>::numbers(Simulation<dim> &simulation) const
   {
-    const auto entry = [](Simulation<dim> &one) { return one.found()["models"]["auto"]; };
-    const Json a = entry(fine), b = entry(coarse);
-    const auto relative = [](const double x, const double y) {
-      return x == y ? 0. : std::abs(x - y) / std::abs(x);
-    };
-    if (scene.accuracy.measure == AccuracyMeasure::flow)
+    const AccuracyMeasure measure = scene.accuracy.measure;
+    MeasuredNumbers       numbers;
+    if (measure == AccuracyMeasure::flow)
       {
-        const std::string       &side  = scene.accuracy.side;
-        const Json               none  = Json::object();
-        const Json              &flows = a.contains("boundary flux") ? a["boundary flux"] : none;
+        const std::string &side = scene.accuracy.side;
+        const Json         all  = simulation.found()["models"]["auto"],
+                   flows        = all.value("boundary flux", Json::object());
         std::vector<std::string> names;
-        for (const auto &[name, flow] : flows.items())
-          names.push_back(name);
+        for (const auto &item : flows.items())
+          names.push_back(item.key());
         scene.accuracy.refuse(!flows.contains(side),
                               "Measure",
                               "found 'flow: " + side + "', needs a side with a condition: " +
                                 join_names(names) + "." + did_you_mean(side, names));
-        return relative(flows[side].template get<double>(),
-                        b["boundary flux"][side].template get<double>());
+        numbers[side] = flows[side].template get<double>();
       }
-    const auto ends = [](const Json &all) {
-      return all.contains("stress intensity") ? all["stress intensity"].size() : 0;
-    };
-    if (ends(a) == 0 || ends(a) != ends(b)) // no room around the ends on the mesh
-      return {};
-    double worst = 0.;
-    for (const auto &item : a["stress intensity"].items())
+    else if (measure == AccuracyMeasure::stress_intensity)
       {
-        const auto size = [&](const Json &all) {
-          const Json &k = all["stress intensity"][item.key()];
-          return std::hypot(k["I"].template get<double>(), k["II"].template get<double>());
-        };
-        worst = std::max(worst, relative(size(a), size(b)));
+        const Json all = simulation.found()["models"]["auto"];
+        for (const auto &[end, k] : all.value("stress intensity", Json::object()).items())
+          numbers[end] = std::hypot(k["I"].template get<double>(), k["II"].template get<double>());
       }
-    return worst;
+    return numbers;
   }
 
 
-  template <int dim>
-  std::optional<double> MeasuredError<dim>::difference(Simulation<dim> &fine,
-                                                       Simulation<dim> &coarse) const
+  namespace
   {
-    const double points_of_field = dim == 1 ? 1000. : dim == 2 ? 2500. : 4000.;
+    /** The largest relative difference, or nothing, where there was no room around all ends. */
+    std::optional<double> difference_of(const MeasuredNumbers &fine, const MeasuredNumbers &coarse)
+    {
+      if (fine.empty() || fine.size() != coarse.size())
+        return {};
+      double worst = 0.;
+      for (const auto &[name, value] : fine)
+        if (const double other = coarse.at(name); other != value)
+          worst = std::max(worst, std::abs(value - other) / std::abs(value));
+      return worst;
+    }
+  } // namespace
+
+
+  template <int dim>
+  std::optional<double> MeasuredError<dim>::difference(const MeasuredSolution<dim> &fine,
+                                                       const MeasuredSolution<dim> &coarse) const
+  {
+    const double        points_of_field = dim == 1 ? 1000. : dim == 2 ? 2500. : 4000.;
+    const Problem<dim> &problem = fine.simulation.problem(), &other = coarse.simulation.problem();
     switch (scene.accuracy.measure)
       {
         case AccuracyMeasure::field:
           {
-            const Sample sample =
-              sample_of(fine.problem().dofs().get_triangulation(), points_of_field);
-            return of_values(fine.problem(), coarse.problem(), sample.points, sample.weights);
+            const Sample sample = sample_of(problem.dofs().get_triangulation(), points_of_field);
+            return of_values(problem, other, sample.points, sample.weights);
           }
         case AccuracyMeasure::probes:
-          return of_values(fine.problem(), coarse.problem(), scene.output.probes, {});
+          return of_values(problem, other, scene.output.probes, {});
         default:
-          return of_numbers(fine, coarse);
+          return difference_of(fine.numbers, coarse.numbers);
       }
   }
 

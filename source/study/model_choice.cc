@@ -39,6 +39,7 @@ namespace PeriDeal
       Attempt                          attempt;
       std::shared_ptr<Scene<dim>>      scene;
       std::unique_ptr<Simulation<dim>> simulation;
+      MeasuredNumbers                  numbers;
       double                           wall_time = 0., cells = 0.;
     };
 
@@ -87,35 +88,28 @@ namespace PeriDeal
       {
         progress.line(scene.general.title + "  (" + text.file_name + ")");
         progress.line("Models = auto: " + attempts.reason());
-        for (double fineness = attempts.coarsest();;)
+        compute(attempts.at(attempts.coarsest()));
+        for (;;)
           {
-            Attempt attempt = attempts.at(fineness);
-            for (double more = 1.1;
-                 !tried.empty() && attempt.fineness < 1.1 * last().attempt.fineness;
-                 more *= 1.1)
-              attempt = attempts.at(more * last().attempt.fineness);
-            if (!tried.empty() && !is_affordable(attempt))
-              {
-                exhausted = true;
-                next      = attempt;
-                break;
-              }
-            compute(attempt);
-            fineness = next_fineness();
-            next     = attempts.at(fineness);
+            next = finer(next_fineness());
             if (is_met())
-              break;
+              return;
+            limit = limit_before(next);
+            if (!limit.empty())
+              return require_estimate();
+            compute(next);
           }
       }
 
       void write(std::unique_ptr<RunFiles> files)
       {
-        last().simulation->write(std::move(files), {{"accuracy", describe()}});
         std::ostringstream line;
+        line.precision(3);
         line << "estimated error: " << 100. * now.error << " % (" << scene.accuracy.measure_text()
              << "), asked for " << 100. * scene.accuracy.tolerance << " %"
-             << (is_met() ? "" : ": not reached, the budget is spent");
+             << (is_met() ? "" : ": not reached within " + limit);
         progress.line(line.str());
+        last().simulation->write(std::move(files), {{"accuracy", describe()}}, progress);
       }
 
     private:
@@ -148,6 +142,16 @@ namespace PeriDeal
         return settled && now.error <= scene.accuracy.tolerance;
       }
 
+      /** An attempt with about this fineness, but with more than the last one. */
+      Attempt finer(const double fineness) const
+      {
+        const double least   = 1.1 * last().attempt.fineness;
+        Attempt      attempt = attempts.at(fineness);
+        for (double wanted = least; attempt.fineness < least; wanted *= 1.1)
+          attempt = attempts.at(wanted);
+        return attempt;
+      }
+
       double next_fineness() const
       {
         constexpr double aim      = 0.7; // of the tolerance: an estimate is no bound
@@ -163,25 +167,45 @@ namespace PeriDeal
                std::pow(attempt.fineness / last().attempt.fineness, attempts.growth_of_cost());
       }
 
-      bool is_affordable(const Attempt &attempt) const
+      /** What keeps one more attempt from being made, in words, or nothing. Collective. */
+      std::string limit_before(const Attempt &attempt) const
       {
         constexpr std::size_t most = 14, most_unknown = 5;
-        if (tried.size() >= most)
-          return false;
         scene.accuracy.refuse(
           tried.size() >= most_unknown && steps.size() < 2,
           "Measure",
           "is 'stress intensity', but there is none: it needs a box of one material without heating, and "
           "room around the ends of cracks for some cells.");
+        if (tried.size() >= most)
+          return std::to_string(most) + " tries";
         if (scene.accuracy.budget > 0. &&
             elapsed() + expected_time(attempt) > scene.accuracy.budget)
-          return false;
+          return "'Budget'";
         const double growth =
           std::pow(attempt.fineness / last().attempt.fineness, attempts.growth_of_cost());
-        const double memory    = Utilities::MPI::sum(resident_memory(), communicator);
-        const double available = scene.accuracy.memory > 0. ? scene.accuracy.memory - memory :
-                                                              available_memory(communicator);
-        return last_memory * growth < available;
+        const double taken = Utilities::MPI::sum(resident_memory(), communicator);
+        const bool   given = scene.accuracy.memory > 0.;
+        const double left  = given ? scene.accuracy.memory - taken : available_memory(communicator);
+        return last_memory * growth < left ? "" : given ? "'Memory'" : "the memory of the machine";
+      }
+
+      /** Throws UserError if nothing can be said of an error yet. */
+      void require_estimate() const
+      {
+        if (now.error >= 0.)
+          return;
+        std::ostringstream what;
+        what.precision(2);
+        what << "is too small for an estimate of the error, which needs two solutions at least: ";
+        if (limit == "'Memory'")
+          what << "the next one would take more.";
+        else
+          what << "after " << elapsed() << " s the next one would take some " << expected_time(next)
+               << " s.";
+        scene.accuracy.refuse(limit == "'Budget'", "Budget", what.str());
+        scene.accuracy.refuse(limit == "'Memory'", "Memory", what.str());
+        throw UserError("Entry 'Tolerance' in section 'Accuracy': " + limit +
+                        " did not allow two solutions, which an estimate of the error needs.");
       }
 
       void compute(const Attempt &attempt)
@@ -193,11 +217,13 @@ namespace PeriDeal
         one.scene->general.automatic = true;
         one.simulation = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
         one.simulation->solve();
-        one.cells = one.simulation->problem().dofs().get_triangulation().n_global_active_cells();
+        one.numbers = measure.numbers(*one.simulation);
+        one.cells   = one.simulation->problem().dofs().get_triangulation().n_global_active_cells();
         std::optional<double> difference;
         if (!tried.empty())
           {
-            difference = measure.difference(*one.simulation, *last().simulation);
+            difference = measure.difference({*one.simulation, one.numbers},
+                                            {*last().simulation, last().numbers});
             last().simulation.reset();
           }
         if (!difference) // the first of which anything is known
@@ -233,7 +259,7 @@ namespace PeriDeal
                 {"tolerance", scene.accuracy.tolerance},
                 {"estimate", now.error},
                 {"met", is_met()},
-                {"budget exhausted", exhausted},
+                {"budget exhausted", !limit.empty()},
                 {"model", to_string(last().attempt.model)},
                 {"settings", settings_of(last().attempt)},
                 {"reason", attempts.reason()},
@@ -250,39 +276,57 @@ namespace PeriDeal
                  {{"settings", settings_of(next)}, {"estimated wall time", expected_time(next)}}}};
       }
 
-      const Scene<dim>        &scene;
-      const SceneText         &text;
-      const MPI_Comm           communicator;
-      Progress                 progress;
-      const Attempts<dim>      attempts;
-      const MeasuredError<dim> measure;
-      const Clock::time_point  start;
-      std::vector<Tried<dim>>  tried;
-      std::vector<Step>        steps;
-      Json                     history = Json::array();
-      ObservedError            now;
-      Attempt                  next;
-      double                   last_memory = 0.;
-      bool                     exhausted   = false;
+      const Scene<dim>             &scene;
+      const SceneText              &text;
+      const MPI_Comm                communicator;
+      Progress                      progress;
+      const Attempts<dim>           attempts;
+      const MeasuredError<dim>      measure;
+      const Clock::time_point       start;
+      std::vector<Tried<dim>>       tried;
+      std::vector<ComparedSolution> steps;
+      Json                          history = Json::array();
+      ObservedError                 now;
+      Attempt                       next;
+      double                        last_memory = 0.;
+      std::string                   limit; // that ended the search, in words
     };
   } // namespace
 
 
-  template <int dim>
-  void run_chosen_model(const Scene<dim> &scene,
-                        const SceneText  &text,
-                        const MPI_Comm    communicator,
-                        const RunMode     mode,
-                        const bool        quiet)
+  namespace
   {
-    AssertThrow(mode != RunMode::resume,
-                UserError("--resume: 'Models = auto' keeps no checkpoints; run the scene again."));
-    Choice<dim>                 choice(scene, text, communicator, quiet);
-    auto                        files = std::make_unique<RunFiles>(scene, text, communicator, mode);
-    const Progress              progress(communicator, true);
-    const std::function<void()> search = [&choice] { choice.search(); };
-    with_orderly_end(*files, progress, search);
-    choice.write(std::move(files));
+    template <int dim>
+    void run_chosen_model(const Scene<dim> &scene,
+                          const SceneText  &text,
+                          const MPI_Comm    communicator,
+                          const RunMode     mode,
+                          const bool        quiet)
+    {
+      AssertThrow(
+        mode != RunMode::resume,
+        UserError("--resume: 'Models = auto' keeps no checkpoints; run the scene again."));
+      Choice<dim>    choice(scene, text, communicator, quiet);
+      auto           files = std::make_unique<RunFiles>(scene, text, communicator, mode);
+      const Progress progress(communicator, true);
+      const std::function<void()> search = [&choice] { choice.search(); };
+      with_orderly_end(*files, progress, search);
+      choice.write(std::move(files));
+    }
+  } // namespace
+
+
+  template <int dim>
+  void run_scene(const Scene<dim> &scene,
+                 const SceneText  &text,
+                 const MPI_Comm    communicator,
+                 const RunMode     mode,
+                 const bool        quiet)
+  {
+    if (scene.general.automatic)
+      run_chosen_model(scene, text, communicator, mode, quiet);
+    else
+      Simulation<dim>(scene, text, communicator, quiet).run(mode);
   }
 
 
@@ -313,12 +357,12 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                    \
-  template void run_chosen_model(const Scene<dim> &, \
-                                 const SceneText &,  \
-                                 const MPI_Comm,     \
-                                 const RunMode,      \
-                                 const bool);        \
+#define PERIDEAL_INSTANTIATE(dim)             \
+  template void run_scene(const Scene<dim> &, \
+                          const SceneText &,  \
+                          const MPI_Comm,     \
+                          const RunMode,      \
+                          const bool);        \
   template void describe_choice(const Scene<dim> &, const SceneText &, const MPI_Comm, const bool);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

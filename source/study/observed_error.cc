@@ -20,7 +20,10 @@ namespace PeriDeal
     }
 
 
-    double order_of(const Step &first, const Step &second, const Step &third, const double best)
+    double order_of(const ComparedSolution &first,
+                    const ComparedSolution &second,
+                    const ComparedSolution &third,
+                    const double            best)
     {
       if (!(third.difference > 0.) || !(second.difference > 0.))
         return best;
@@ -36,14 +39,16 @@ namespace PeriDeal
     }
 
 
-    double error_of(const Step &before, const Step &step, const double order)
+    double error_of(const ComparedSolution &before,
+                    const ComparedSolution &step,
+                    const double            order)
     {
       return step.difference / (std::pow(step.fineness / before.fineness, order) - 1.);
     }
   } // namespace
 
 
-  ObservedError observed_error(const std::vector<Step> &steps, const double best)
+  ObservedError observed_error(const std::vector<ComparedSolution> &steps, const double best)
   {
     ObservedError     now{-1., best};
     const std::size_t n = steps.size();

@@ -9,7 +9,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/output/result_folder.h>
 #include <perideal/scene/lists.h>
-#include <perideal/simulation/simulation.h>
+#include <perideal/study/model_choice.h>
 
 #include <malloc.h>
 
@@ -120,13 +120,6 @@ namespace PeriDeal
     }
 
 
-    template <int dim>
-    void run(const Scene<dim> &scene, const SceneText &text, const MPI_Comm communicator)
-    {
-      Simulation<dim>(scene, text, communicator, true).run(RunMode::overwrite);
-    }
-
-
     Json new_record(const CheckedRow  &checked,
                     const unsigned int repeats,
                     const MPI_Comm     communicator)
@@ -153,8 +146,9 @@ namespace PeriDeal
     {
       const double begin = MPI_Wtime();
       with_memory_errors([&] {
-        with_scene(checked.text,
-                   [&](const auto &scene) { run(scene, checked.text, communicator); });
+        with_scene(checked.text, [&](const auto &scene) {
+          run_scene(scene, checked.text, communicator, RunMode::overwrite, true);
+        });
       });
       if (!is_first(communicator))
         return;

@@ -14,7 +14,7 @@
 #include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/field_writer.h>
-#include <perideal/simulation/simulation.h>
+#include <perideal/study/model_choice.h>
 
 #include <fcntl.h>
 #include <malloc.h>
@@ -99,7 +99,7 @@ namespace
   {
     Scene<dim> scene;
     parse_scene(text, scene);
-    Simulation<dim>(scene, text, communicator, false).run();
+    run_scene(scene, text, communicator, RunMode::begin, false);
   }
 
 

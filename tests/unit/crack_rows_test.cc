@@ -154,6 +154,10 @@ namespace PeriDeal
     EXPECT_EQ(removed({{Point<2>(0.25, 0.25), Point<2>(0.5, 0.5)},
                        {Point<2>(0.5, 0.5), Point<2>(0.75, 0.75)}}),
               (Numbers{5, 6, 10}));
+    // A piece that ends in a joint before a vertex on its line leaves the cells beyond it.
+    EXPECT_EQ(removed({{Point<2>(0.1, 0.1), Point<2>(0.45, 0.45)},
+                       {Point<2>(0.45, 0.45), Point<2>(0.45, 0.2)}}),
+              (Numbers{0, 1, 5}));
     // Along faces the cells on the right go.
     EXPECT_EQ(removed({{Point<2>(0.25, 0.5), Point<2>(0.75, 0.5)}}), (Numbers{5, 6}));
   }

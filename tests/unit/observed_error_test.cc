@@ -12,10 +12,10 @@ namespace
   using namespace PeriDeal;
 
   /** Differences of solutions whose errors are one field times 3/fineness^p. */
-  std::vector<Step> steps_of(const std::vector<double> &finenesses, const double p)
+  std::vector<ComparedSolution> steps_of(const std::vector<double> &finenesses, const double p)
   {
-    std::vector<Step> steps;
-    double            before = 0.;
+    std::vector<ComparedSolution> steps;
+    double                        before = 0.;
     for (const double f : finenesses)
       {
         const double error = 3. / std::pow(f, p);

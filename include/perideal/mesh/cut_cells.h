@@ -27,8 +27,8 @@ namespace PeriDeal
   }
 
   /**
-   * Whether a crack goes on in all directions from a point on its line or plane, and not only up to
-   * it. @param size of a cell there
+   * Whether a point on the line or plane of a crack lies on it, and the crack goes on from there in
+   * all directions, so that this is no tip. @param size of a cell there
    */
   template <int dim>
   bool passes_through(const CrackGeometry<dim> &crack,
@@ -36,6 +36,8 @@ namespace PeriDeal
                       const double              size)
   {
     constexpr double part = 1e-3;
+    if (!crack.covers(p))
+      return false;
     for (unsigned int d = 0; d < dim; ++d)
       {
         dealii::Tensor<1, dim> along;

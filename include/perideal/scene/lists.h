@@ -49,6 +49,15 @@ namespace PeriDeal
                                   const std::string &where,
                                   const unsigned int maximum = 4294967294u);
 
+  /** A unit and what it is in that in which a number is kept. */
+  using UnitSizes = std::vector<std::pair<std::string, double>>;
+
+  /**
+   * A decimal number that is not negative and its unit, `1.5 min`, in that in which it is kept;
+   * negative if the text is none, or its unit is not listed.
+   */
+  double number_with_unit(const std::string &text, const UnitSizes &units);
+
   /** Exactly @p n numbers separated by commas; @p what is what they are called ("coordinates"). */
   std::vector<double> parse_numbers(const std::string &text,
                                     const unsigned int n,

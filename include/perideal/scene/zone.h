@@ -34,7 +34,7 @@ namespace PeriDeal
     explicit Zone(const Expression &formula);
 
     /** What lies no farther from pieces of cracks, which are still to be set. */
-    explicit Zone(const double reach);
+    static Zone near_cracks(const double reach);
 
     /**
      * Formulas need no values outside of this box, the body's: no part of the zone is looked for

@@ -71,8 +71,11 @@ namespace PeriDeal
      * After solve(): write all files, summary.json last.
      * @param files of this run, of which nothing has been written but what is known at the start
      * @param more  what the summary has besides
+     * @param tell  says notes, what was found and where the results are
      */
-    void write(std::unique_ptr<RunFiles> files, const nlohmann::ordered_json &more);
+    void write(std::unique_ptr<RunFiles>     files,
+               const nlohmann::ordered_json &more,
+               const Progress               &tell);
 
   private:
     using List = std::vector<Problem<dim> *>;
@@ -108,7 +111,7 @@ namespace PeriDeal
     void prepare_adaptation();
 
     nlohmann::ordered_json compute(); // the summary at the end
-    nlohmann::ordered_json finish(const nlohmann::ordered_json &more);
+    nlohmann::ordered_json finish(const nlohmann::ordered_json &more, const Progress &tell);
     void                   begin();
     void                   start();
     void                   pass_output_times();

@@ -9,21 +9,21 @@
 namespace PeriDeal
 {
   /**
-   * Compute a scene with `Models = auto`: try models and meshes from cheap to dear until the
-   * estimated error is within the tolerance of section `Accuracy`, or the budget is spent, and
-   * write the last one's results under the model name `auto`, with what was tried as `accuracy` in
-   * summary.json (doc/choosing_a_model.md).
+   * Compute a scene with the models that it names. With `Models = auto`: try models and meshes from
+   * cheap to dear until the estimated error is within the tolerance of section `Accuracy`, or the
+   * budget is spent, and write the last one's results under the model name `auto`, with what was
+   * tried as `accuracy` in summary.json (doc/choosing_a_model.md).
    *
    * Throws UserError, among others for scenes for which there is no choice yet. Collective.
    */
   template <int dim>
-  void run_chosen_model(const Scene<dim> &scene,
-                        const SceneText  &text,
-                        const MPI_Comm    communicator,
-                        const RunMode     mode,
-                        const bool        quiet);
+  void run_scene(const Scene<dim> &scene,
+                 const SceneText  &text,
+                 const MPI_Comm    communicator,
+                 const RunMode     mode,
+                 const bool        quiet);
 
-  /** Say what run_chosen_model() would try, and what that costs at most. Collective. */
+  /** Say what run_scene() would try with `Models = auto`, and what that costs at most. Collective. */
   template <int dim>
   void describe_choice(const Scene<dim> &scene,
                        const SceneText  &text,

@@ -8,7 +8,7 @@
 namespace PeriDeal
 {
   /** A solution that was compared with the one before, on a coarser mesh. */
-  struct Step
+  struct ComparedSolution
   {
     double fineness   = 0.; // in proportion to 1/h
     double difference = 0.; // of what is measured; none for the first
@@ -33,7 +33,7 @@ namespace PeriDeal
    * accident shows no small error: what the one before it said, with the order that is left, counts
    * for half.
    */
-  ObservedError observed_error(const std::vector<Step> &steps, const double best);
+  ObservedError observed_error(const std::vector<ComparedSolution> &steps, const double best);
 
   /**
    * The fineness with which an error gets as small as this one. The order may have been
