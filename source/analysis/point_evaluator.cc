@@ -388,6 +388,15 @@ namespace PeriDeal
 
 
   template <int dim>
+  void PointEvaluator<dim>::add_weights(const unsigned int point, Vector &weights) const
+  {
+    for (const Part &part : parts)
+      if (part.slot / n_slots == point)
+        weights.local_element(part.dof) += part.weight;
+  }
+
+
+  template <int dim>
   std::vector<Tensor<1, dim>> PointEvaluator<dim>::gradients(const Vector      &u,
                                                              const unsigned int n_components,
                                                              const unsigned int component) const

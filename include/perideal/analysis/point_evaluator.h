@@ -61,6 +61,12 @@ namespace PeriDeal
                                  const unsigned int component    = 0) const;
 
     /**
+     * Add to the owned unknowns of a field with one at each node what they count in the value at a
+     * point: the value is the product of weights and field. Not collective.
+     */
+    void add_weights(const unsigned int point, Vector &weights) const;
+
+    /**
      * The gradient of the interpolant, by the cell that holds the point. Only if points were looked
      * up in the mesh; else all zero. Collective.
      */

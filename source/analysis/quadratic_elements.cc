@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <perideal/analysis/quadratic_elements.h>
+#include <perideal/operators/parts/element_layout.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    std::unique_ptr<DoFHandler<dim>> quadratic_dofs(const Triangulation<dim> &mesh)
+    {
+      auto dofs = std::make_unique<DoFHandler<dim>>(mesh);
+      dofs->distribute_dofs(FE_Q<dim>(2));
+      return dofs;
+    }
+
+
+    /** The same cell with the unknowns of other elements. */
+    template <int dim>
+    typename DoFHandler<dim>::active_cell_iterator same_cell(
+      const typename DoFHandler<dim>::active_cell_iterator &cell,
+      const DoFHandler<dim>                                &dofs)
+    {
+      return {&dofs.get_triangulation(), cell->level(), cell->index(), &dofs};
+    }
+
+
+    /** A copy with the ghosts of a layout that owns the same unknowns. */
+    Vector with_ghosts(const Vector                                             &v,
+                       const std::shared_ptr<const Utilities::MPI::Partitioner> &layout)
+    {
+      Vector copy(layout);
+      for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+        copy.local_element(i) = v.local_element(i);
+      copy.update_ghost_values();
+      return copy;
+    }
+  } // namespace
+
+
+  template <int dim>
+  void mark_side(const DoFHandler<dim>             &dofs,
+                 const Utilities::MPI::Partitioner &layout,
+                 const BodyParameters<dim>         &body,
+                 const HangingNodes<dim>           &hanging,
+                 const std::string                 &side,
+                 Vector                            &marks)
+  {
+    BoundaryConditions<dim> conditions;
+    conditions.parts = body.boundary_conditions.parts;
+    for (SideCondition condition : body.boundary_conditions.dirichlet)
+      {
+        condition.value = Expression(condition.name == side ? 1. : 0.);
+        conditions.dirichlet.push_back(condition);
+      }
+    const PrescribedValues<dim> values(
+      dofs,
+      layout,
+      conditions,
+      hanging,
+      unknowns_of_parts(dofs, conditions, [&](const auto dof) { return hanging.is_hanging(dof); }));
+    marks = 0.;
+    values.distribute(marks, 0.);
+  }
+
+
+  template <int dim>
+  std::string QuadraticElements<dim>::why_not(const BodyParameters<dim> &body)
+  {
+    if (body.finite_elements.degree != 1)
+      return "'Degree' in section 'Finite elements' is not 1";
+    for (const Part &part : body.boundary_conditions.parts)
+      if (body.boundary_conditions.side_of(part.id) == numbers::invalid_boundary_id)
+        return "there are conditions in regions or at points";
+    return "";
+  }
+
+
+  template <int dim>
+  QuadraticElements<dim>::QuadraticElements(const FEMOperator<dim>    &op,
+                                            const BodyParameters<dim> &body,
+                                            const Coupling<dim>       *coupling)
+    : op(op)
+    , body(body)
+    , quadratic(quadratic_dofs(op.dof_handler().get_triangulation()))
+    , layout(element_layout(*quadratic, static_cast<const Coupling<dim> *>(nullptr)))
+    , linear_layout(element_layout(op.dof_handler(), static_cast<const Coupling<dim> *>(nullptr)))
+    , hanging(*quadratic, *layout)
+    , loads(*quadratic, layout, body.boundary_conditions, body.initial_and_source.source, hanging)
+    , linear_loads(op.dof_handler(),
+                   linear_layout,
+                   body.boundary_conditions,
+                   body.initial_and_source.source,
+                   op.hanging_nodes())
+    , material(*quadratic, body.material, body.initial_and_source.initial_value, true)
+    , linear_material(op.dof_handler(), body.material, body.initial_and_source.initial_value, true)
+    , prescribed(*quadratic, *layout, body.boundary_conditions, hanging, {})
+    , prolongation(quadratic->get_fe().n_dofs_per_cell(), GeometryInfo<dim>::vertices_per_cell)
+    , left_out(layout)
+    , vertex(layout->locally_owned_size(), 0)
+    , held(vertex)
+  {
+    const FiniteElement<dim> &fe = quadratic->get_fe();
+    for (unsigned int i = 0; i < prolongation.m(); ++i)
+      for (unsigned int v = 0; v < prolongation.n(); ++v)
+        prolongation(i, v) = op.dof_handler().get_fe().shape_value(v, fe.unit_support_point(i));
+    std::vector<types::global_dof_index> indices(fe.n_dofs_per_cell());
+    for (const auto &cell : quadratic->active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          cell->get_dof_indices(indices);
+          for (const unsigned int v : cell->vertex_indices())
+            if (layout->in_local_range(indices[v]))
+              vertex[layout->global_to_local(indices[v])] = 1;
+        }
+    for (const unsigned int i : prescribed.held())
+      held[i] = 1;
+    mark_cells_left_out(coupling);
+  }
+
+
+  template <int dim>
+  void QuadraticElements<dim>::mark_cells_left_out(const Coupling<dim> *coupling)
+  {
+    const unsigned int                   n = quadratic->get_fe().n_dofs_per_cell();
+    std::vector<types::global_dof_index> indices(n);
+    FullMatrix<double>                   matrix(prolongation.n(), prolongation.n()), mass(matrix);
+    Vector                               at_cut(linear_layout); // vertices of cut cells
+    std::vector<types::global_dof_index> vertices(prolongation.n());
+    const auto                           for_each_own = [&](const auto &visit) {
+      for (const auto &cell : op.dof_handler().active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            cell->get_dof_indices(vertices);
+            visit(cell);
+          }
+    };
+    for_each_own([&](const Cell &cell) {
+      if (op.cut_cells()[cell->active_cell_index()])
+        for (const auto index : vertices)
+          at_cut(index) += 1.;
+    });
+    at_cut.compress(VectorOperation::add);
+    at_cut.update_ghost_values();
+    const bool scaled = body.peridynamics.scales_beside_cracks();
+    for_each_own([&](const Cell &cell) {
+      bool out = op.cut_cells()[cell->active_cell_index()];
+      for (const auto index : vertices)
+        out = out || (scaled && at_cut(index) > 0.);
+      if (!out && coupling != nullptr)
+        {
+          linear_material.assemble(cell, matrix, mass);
+          out = coupling->change_cell(cell, matrix);
+        }
+      if (!out)
+        return;
+      same_cell(cell, *quadratic)->get_dof_indices(indices);
+      for (const auto index : indices)
+        {
+          left_out(index) += 1.;
+          if (const auto *const masters = hanging.constraints().get_constraint_entries(index);
+              hanging.is_hanging(index) && masters != nullptr)
+            for (const auto &[master, weight] : *masters)
+              left_out(master) += 1.;
+        }
+    });
+    left_out.compress(VectorOperation::add);
+    left_out.update_ghost_values();
+  }
+
+
+  template <int dim>
+  bool QuadraticElements<dim>::is_left_out(const Cell &cell) const
+  {
+    std::vector<types::global_dof_index> indices(prolongation.m());
+    same_cell(cell, *quadratic)->get_dof_indices(indices);
+    return left_out(indices.back()) > 0.;
+  }
+
+
+  template <int dim>
+  double QuadraticElements<dim>::share_left_out() const
+  {
+    unsigned long long n = 0;
+    for (const auto &cell : quadratic->active_cell_iterators())
+      if (cell->is_locally_owned() && is_left_out(cell))
+        ++n;
+    return double(Utilities::MPI::sum(n, quadratic->get_communicator())) /
+           quadratic->get_triangulation().n_global_active_cells();
+  }
+
+
+  template <int dim>
+  Vector QuadraticElements<dim>::prolonged(const Vector &v) const
+  {
+    const Vector                         values = with_ghosts(v, linear_layout);
+    Vector                               w(layout);
+    std::vector<types::global_dof_index> indices(prolongation.m()), vertices(prolongation.n());
+    for (const auto &cell : quadratic->active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          cell->get_dof_indices(indices);
+          same_cell(cell, op.dof_handler())->get_dof_indices(vertices);
+          for (unsigned int i = 0; i < indices.size(); ++i)
+            if (layout->in_local_range(indices[i]))
+              {
+                double value = 0.;
+                for (unsigned int k = 0; k < vertices.size(); ++k)
+                  value += prolongation(i, k) * values(vertices[k]);
+                w(indices[i]) = value;
+              }
+        }
+    return w;
+  }
+
+
+  template <int dim>
+  Vector QuadraticElements<dim>::restricted(const Vector &r) const
+  {
+    Vector                               result(linear_layout);
+    std::vector<char>                    done(layout->locally_owned_size(), 0);
+    std::vector<types::global_dof_index> indices(prolongation.m()), vertices(prolongation.n());
+    for (const auto &cell : quadratic->active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          cell->get_dof_indices(indices);
+          same_cell(cell, op.dof_handler())->get_dof_indices(vertices);
+          for (unsigned int i = 0; i < indices.size(); ++i)
+            if (layout->in_local_range(indices[i]) && !done[layout->global_to_local(indices[i])])
+              {
+                done[layout->global_to_local(indices[i])] = 1;
+                for (unsigned int k = 0; k < vertices.size(); ++k)
+                  result(vertices[k]) += prolongation(i, k) * r(indices[i]);
+              }
+        }
+    result.compress(VectorOperation::add);
+    op.hanging_nodes().condense(result);
+    return result;
+  }
+
+
+  template <int dim>
+  Vector QuadraticElements<dim>::prescribed_bubbles(const Vector &v, const double t) const
+  {
+    Vector       w    = prolonged(v);
+    const Vector flat = w;
+    prescribed.distribute(w, t);
+    w -= flat;
+    for (unsigned int i = 0; i < vertex.size(); ++i)
+      if (vertex[i] || left_out.local_element(i) > 0.)
+        w.local_element(i) = 0.;
+    hanging.interpolate(w);
+    return w;
+  }
+
+
+  template <int dim>
+  Vector QuadraticElements<dim>::boundary_bubbles(const std::string &side, const Vector &v) const
+  {
+    Vector       marks(layout);
+    const Vector flat = prolonged(v);
+    mark_side(*quadratic, *layout, body, hanging, side, marks);
+    Vector w(layout);
+    // An edge on which the field falls from 1 to 0 has half of the length too much or too little,
+    // of which a bubble of height c has 2/3 c.
+    for (const unsigned int i : prescribed.held())
+      if (!vertex[i] && left_out.local_element(i) == 0.)
+        w.local_element(i) = 1.5 * (marks.local_element(i) - flat.local_element(i));
+    hanging.interpolate(w);
+    return w;
+  }
+
+
+  template <int dim>
+  Vector QuadraticElements<dim>::residual(const Vector &w, const double t) const
+  {
+    const Vector field = with_ghosts(w, layout);
+    material.take(field);
+    const unsigned int                   n = prolongation.m();
+    FullMatrix<double>                   stiffness(n, n), other(n, n);
+    std::vector<types::global_dof_index> indices(n);
+    dealii::Vector<double>               of_cell(n), image(n);
+    Vector                               r(layout);
+    for (const auto &cell : quadratic->active_cell_iterators())
+      if (cell->is_locally_owned() && !is_left_out(cell))
+        {
+          material.assemble(cell, stiffness, other);
+          if (cell->at_boundary())
+            {
+              loads.find_transfer(cell, other);
+              stiffness.add(1., other);
+            }
+          cell->get_dof_indices(indices);
+          for (unsigned int i = 0; i < n; ++i)
+            of_cell(i) = field(indices[i]);
+          stiffness.vmult(image, of_cell);
+          for (unsigned int i = 0; i < n; ++i)
+            r(indices[i]) -= image(i);
+        }
+    r.compress(VectorOperation::add);
+    hanging.condense(r);
+    r += loads.at(t);
+    return r;
+  }
+
+
+  template <int dim>
+  Vector QuadraticElements<dim>::linear_residual(const Vector &v, const double t) const
+  {
+    const Vector field = with_ghosts(v, linear_layout);
+    linear_material.take(field);
+    const unsigned int                   n = prolongation.n();
+    FullMatrix<double>                   stiffness(n, n), other(n, n);
+    std::vector<types::global_dof_index> indices(n);
+    Vector                               r(linear_layout);
+    for (const auto &cell : op.dof_handler().active_cell_iterators())
+      if (cell->is_locally_owned() && !is_left_out(cell))
+        {
+          linear_material.assemble(cell, stiffness, other);
+          if (cell->at_boundary())
+            {
+              linear_loads.find_transfer(cell, other);
+              stiffness.add(1., other);
+            }
+          cell->get_dof_indices(indices);
+          for (unsigned int i = 0; i < n; ++i)
+            for (unsigned int k = 0; k < n; ++k)
+              r(indices[i]) -= stiffness(i, k) * field(indices[k]);
+        }
+    r.compress(VectorOperation::add);
+    op.hanging_nodes().condense(r);
+    r += linear_loads.at(t);
+    return r;
+  }
+
+
+  template <int dim>
+  double QuadraticElements<dim>::root_mean_square(const Vector &w) const
+  {
+    const Vector  field = with_ghosts(w, layout);
+    FEValues<dim> values(quadratic->get_fe(), QGauss<dim>(3), update_values | update_JxW_values);
+    std::vector<double> at_points(values.n_quadrature_points);
+    double              square = 0., volume = 0.;
+    for (const auto &cell : quadratic->active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          values.reinit(cell);
+          values.get_function_values(field, at_points);
+          for (const unsigned int q : values.quadrature_point_indices())
+            {
+              square += at_points[q] * at_points[q] * values.JxW(q);
+              volume += values.JxW(q);
+            }
+        }
+    const MPI_Comm communicator = quadratic->get_communicator();
+    return std::sqrt(Utilities::MPI::sum(square, communicator) /
+                     Utilities::MPI::sum(volume, communicator));
+  }
+
+
+  template <int dim>
+  std::vector<double> QuadraticElements<dim>::shares_of_cells(const Vector &r,
+                                                              const Vector &w) const
+  {
+    Vector                               share(layout), n_cells(layout);
+    std::vector<types::global_dof_index> indices(prolongation.m());
+    std::vector<double> result(quadratic->get_triangulation().n_active_cells(), 0.);
+    const auto          for_each_own = [&](const auto &visit) {
+      for (const auto &cell : quadratic->active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            cell->get_dof_indices(indices);
+            for (const auto index : indices)
+              visit(cell, index);
+          }
+    };
+    for_each_own([&](const auto &, const auto index) { n_cells(index) += 1.; });
+    n_cells.compress(VectorOperation::add);
+    for (unsigned int i = 0; i < vertex.size(); ++i)
+      if (!vertex[i])
+        share.local_element(i) =
+          r.local_element(i) * w.local_element(i) / std::max(1., n_cells.local_element(i));
+    share.update_ghost_values();
+    for_each_own([&](const auto &cell, const auto index) {
+      result[cell->active_cell_index()] += share(index);
+    });
+    return result;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                 \
+  template void        mark_side(const DoFHandler<dim> &,                                         \
+                                 const Utilities::MPI::Partitioner &,                             \
+                                 const BodyParameters<dim> &,                                     \
+                                 const HangingNodes<dim> &,                                       \
+                                 const std::string &,                                             \
+                                 Vector &);                                                       \
+  template std::string QuadraticElements<dim>::why_not(const BodyParameters<dim> &);              \
+  template QuadraticElements<dim>::QuadraticElements(const FEMOperator<dim> &,                    \
+                                                     const BodyParameters<dim> &,                 \
+                                                     const Coupling<dim> *);                      \
+  template bool   QuadraticElements<dim>::is_left_out(const Cell &) const;                        \
+  template double QuadraticElements<dim>::share_left_out() const;                                 \
+  template Vector QuadraticElements<dim>::prolonged(const Vector &) const;                        \
+  template Vector QuadraticElements<dim>::restricted(const Vector &) const;                       \
+  template Vector QuadraticElements<dim>::prescribed_bubbles(const Vector &, const double) const; \
+  template Vector QuadraticElements<dim>::boundary_bubbles(const std::string &, const Vector &)   \
+    const;                                                                                        \
+  template Vector QuadraticElements<dim>::residual(const Vector &, const double) const;           \
+  template Vector QuadraticElements<dim>::linear_residual(const Vector &, const double) const;    \
+  template double QuadraticElements<dim>::root_mean_square(const Vector &) const;                 \
+  template std::vector<double> QuadraticElements<dim>::shares_of_cells(const Vector &,            \
+                                                                       const Vector &) const;
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

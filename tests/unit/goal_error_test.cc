@@ -1,0 +1,670 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/distributed/grid_refinement.h>
+#include <deal.II/distributed/tria.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/grid/grid_generator.h>
+
+#include <perideal/analysis/field_error.h>
+#include <perideal/analysis/goal_error.h>
+#include <perideal/analysis/point_evaluator.h>
+#include <perideal/solvers/linear_solver.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <set>
+
+#include "distorted_mesh.h"
+#include "operator_test_tools.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+  using namespace OperatorTests;
+
+  namespace
+  {
+    template <int dim>
+    using Function = std::function<double(const Point<dim> &)>;
+
+
+    /** A steady problem with a known solution, and what is asked of it. */
+    template <int dim>
+    struct Case
+    {
+      std::string            name;
+      Settings               settings;
+      Function<dim>          exact;
+      std::vector<Goal<dim>> goals;
+      std::vector<double>    values; // of the goals
+    };
+
+
+    /** Its finite elements, and the parts that estimate their error. */
+    template <int dim>
+    struct Solved
+    {
+      explicit Solved(const Settings &settings,
+                      const ModelKind model        = ModelKind::finite_elements,
+                      const MPI_Comm  communicator = MPI_COMM_WORLD)
+        : problem(settings, model, communicator)
+        , u(problem.vector())
+        , solver(problem.op(), 1e-12, 2000)
+        , solve([this](Vector &x, const Vector &b) { solver.solve(0., 1., x, b); })
+      {
+        solve_steady(problem.op(), u, 0., 1e-12, 2000);
+        elements = std::make_unique<QuadraticElements<dim>>(
+          *problem.fem,
+          problem.scene,
+          model == ModelKind::coupled ? &problem.fem->bonds() : nullptr);
+      }
+
+      Problem<dim>                            problem;
+      Vector                                  u;
+      LinearSolver                            solver;
+      SolveSystem                             solve;
+      std::unique_ptr<QuadraticElements<dim>> elements;
+    };
+
+
+    /** The true error and what three estimates say of it. */
+    struct Row
+    {
+      double error = 0., weighted = 0., corrected = 0., quadratic = 0.;
+    };
+
+
+    template <int dim>
+    double value_at(const DoFHandler<dim> &dofs,
+                    const Cracks<dim>     &cracks,
+                    const Point<dim>      &p,
+                    const Vector          &u)
+    {
+      const std::vector<double> point(p.begin_raw(), p.end_raw());
+      return PointEvaluator<dim>(dofs, nullptr, cracks, {point}, "point").evaluate(u)[0];
+    }
+
+
+    /** Root of the mean square of exact - u. */
+    template <int dim>
+    double mean_error(const DoFHandler<dim> &dofs, const Vector &u, const Function<dim> &exact)
+    {
+      u.update_ghost_values();
+      FEValues<dim>       values(dofs.get_fe(),
+                           QGauss<dim>(4),
+                           update_values | update_quadrature_points | update_JxW_values);
+      std::vector<double> at_points(values.n_quadrature_points);
+      double              square = 0., volume = 0.;
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            values.reinit(cell);
+            values.get_function_values(u, at_points);
+            for (const unsigned int q : values.quadrature_point_indices())
+              {
+                const double e = at_points[q] - exact(values.quadrature_point(q));
+                square += e * e * values.JxW(q);
+                volume += values.JxW(q);
+              }
+          }
+      u.set_ghost_state(false);
+      const MPI_Comm communicator = dofs.get_communicator();
+      return std::sqrt(dealii::Utilities::MPI::sum(square, communicator) /
+                       dealii::Utilities::MPI::sum(volume, communicator));
+    }
+
+
+    /** Those of all goals, and at last those of the root mean square. */
+    template <int dim>
+    std::vector<Row> rows_of(const Case<dim> &test,
+                             const Settings  &more,
+                             const bool       with_quadratic,
+                             const ModelKind  model = ModelKind::finite_elements)
+    {
+      const Solved<dim>                 solved(test.settings + more, model);
+      const auto                       &scene = solved.problem.scene;
+      const GoalErrors<dim>             weighted(*solved.elements, solved.solve, solved.u);
+      const FieldError<dim>             corrected(*solved.elements, solved.solve, solved.u);
+      const DoFHandler<dim>            &fine_dofs = solved.elements->dof_handler();
+      std::unique_ptr<FEMOperator<dim>> fine;
+      Vector                            finer = solved.elements->quadratic_vector();
+      if (with_quadratic)
+        {
+          fine = std::make_unique<FEMOperator<dim>>(fine_dofs, scene);
+          solve_steady(*fine, finer, 0., 1e-12, 2000);
+        }
+      std::vector<Row> rows;
+      for (std::size_t k = 0; k < test.goals.size(); ++k)
+        {
+          const Goal<dim> &goal  = test.goals[k];
+          const GoalError  error = weighted.of(goal);
+          const bool       point = goal.side.empty();
+          Row              row;
+          row.error     = test.values[k] - error.value;
+          row.weighted  = error.estimate;
+          row.corrected = point ?
+                            value_at<dim>(fine_dofs, scene.cracks, goal.point, corrected.field()) :
+                            corrected.of_flow_through(goal.side);
+          if (with_quadratic)
+            row.quadratic = (point ? value_at<dim>(fine_dofs, scene.cracks, goal.point, finer) :
+                                     fine->balance(finer, 0., true).sides.at(goal.side)) -
+                            error.value;
+          rows.push_back(row);
+        }
+      Row mean;
+      mean.error     = mean_error<dim>(solved.problem.handler, solved.u, test.exact);
+      mean.weighted  = solved.elements->root_mean_square(weighted.solution_bubbles());
+      mean.corrected = corrected.root_mean_square();
+      if (with_quadratic)
+        {
+          finer -= solved.elements->prolonged(solved.u);
+          mean.quadratic = solved.elements->root_mean_square(finer);
+        }
+      rows.push_back(mean);
+      return rows;
+    }
+
+
+    Settings cells(const unsigned int n, const int dim = 2)
+    {
+      std::string text = std::to_string(n);
+      for (int d = 1; d < dim; ++d)
+        text += ", " + std::to_string(n);
+      return {{"Domain/Cells", text}};
+    }
+
+
+    std::string everywhere(const std::string &formula, const int dim = 2)
+    {
+      std::string text;
+      for (int side = 0; side < 2 * dim; ++side)
+        text += (side > 0 ? "; " : "") + box_side_names()[side] + ": " + formula;
+      return text;
+    }
+
+
+    /** u = sin(pi x) sin(pi y), 0 on all sides. */
+    Case<2> smooth()
+    {
+      return {"smooth",
+              {{"Time/Steady", "true"},
+               {"Initial and source/Source", "2*Pi^2*sin(Pi*x)*sin(Pi*y)"},
+               {"Boundary conditions/Dirichlet", everywhere("0")}},
+              [](const Point<2> &p) {
+                return std::sin(numbers::PI * p[0]) * std::sin(numbers::PI * p[1]);
+              },
+              {Goal<2>::value_at({0.5, 0.25}),
+               Goal<2>::value_at({0.3, 0.42}),
+               Goal<2>::flow_through("left")},
+              {std::sin(0.25 * numbers::PI),
+               std::sin(0.3 * numbers::PI) * std::sin(0.42 * numbers::PI),
+               -2.}};
+    }
+
+
+    /** The same on quadrilaterals whose vertices are moved by up to a fifth of their size. */
+    Case<2> distorted(const unsigned int n)
+    {
+      Case<2> test  = smooth();
+      test.name     = "distorted";
+      test.settings = test.settings + Settings{{"Domain/Shape", "mesh file"},
+                                               {"Domain/Mesh file", distorted_mesh<2>(n, 0.2)},
+                                               {"Boundary conditions/Dirichlet", "0: 0"}};
+      test.goals    = {Goal<2>::value_at({0.3, 0.42})};
+      test.values   = {std::sin(0.3 * numbers::PI) * std::sin(0.42 * numbers::PI)};
+      return test;
+    }
+
+
+    /** u = sin(pi x) sin(pi y) sin(pi z). */
+    Case<3> cube()
+    {
+      const auto u = [](const Point<3> &p) {
+        return std::sin(numbers::PI * p[0]) * std::sin(numbers::PI * p[1]) *
+               std::sin(numbers::PI * p[2]);
+      };
+      return {"cube",
+              {{"Time/Steady", "true"},
+               {"Initial and source/Source", "3*Pi^2*sin(Pi*x)*sin(Pi*y)*sin(Pi*z)"},
+               {"Boundary conditions/Dirichlet", everywhere("0", 3)}},
+              u,
+              {Goal<3>::value_at({0.5, 0.25, 0.5}), Goal<3>::value_at({0.3, 0.42, 0.6})},
+              {u({0.5, 0.25, 0.5}), u({0.3, 0.42, 0.6})}};
+    }
+
+
+    /** u = exp(x) sin(y), with a value, a flux and convection. */
+    Case<2> mixed()
+    {
+      return {"mixed",
+              {{"Time/Steady", "true"},
+               {"Boundary conditions/Dirichlet", "left: sin(y)"},
+               {"Boundary conditions/Flux", "bottom: -exp(x) ; top: exp(x)*cos(1)"},
+               {"Boundary conditions/Convection", "right: 2, 1.5*exp(1)*sin(y)"}},
+              [](const Point<2> &p) { return std::exp(p[0]) * std::sin(p[1]); },
+              {Goal<2>::value_at({0.5, 0.5}),
+               Goal<2>::value_at({0.3, 0.42}),
+               Goal<2>::flow_through("left"),
+               Goal<2>::flow_through("right")},
+              {std::exp(0.5) * std::sin(0.5),
+               std::exp(0.3) * std::sin(0.42),
+               -(1. - std::cos(1.)),
+               std::exp(1.) * (1. - std::cos(1.))}};
+    }
+
+
+    /** u = tanh(10 (x + y - 1)): a layer across the diagonal. */
+    Case<2> layer()
+    {
+      const auto u = [](const Point<2> &p) { return std::tanh(10. * (p[0] + p[1] - 1.)); };
+      // What enters on the left is the integral of -du/dx.
+      const double flow = -std::tanh(10.);
+      return {"layer",
+              {{"Time/Steady", "true"},
+               {"Initial and source/Source", "400*tanh(10*(x+y-1))*(1-tanh(10*(x+y-1))^2)"},
+               {"Boundary conditions/Dirichlet", everywhere("tanh(10*(x+y-1))")}},
+              u,
+              {Goal<2>::value_at({0.5, 0.5625}),
+               Goal<2>::value_at({0.3, 0.62}),
+               Goal<2>::flow_through("left")},
+              {u({0.5, 0.5625}), u({0.3, 0.62}), flow}};
+    }
+
+
+    /** kappa = 1 + x y, u = sin(x + 2 y). */
+    Case<2> graded()
+    {
+      const auto u = [](const Point<2> &p) { return std::sin(p[0] + 2. * p[1]); };
+      return {"graded",
+              {{"Time/Steady", "true"},
+               {"Material/Conductivity", "1 + x*y"},
+               {"Initial and source/Source", "5*(1+x*y)*sin(x+2*y) - (y+2*x)*cos(x+2*y)"},
+               {"Boundary conditions/Dirichlet", "left: sin(2*y) ; right: sin(1+2*y)"},
+               {"Boundary conditions/Flux", "bottom: -2*cos(x) ; top: 2*(1+x)*cos(x+2)"}},
+              u,
+              {Goal<2>::value_at({0.5, 0.25}),
+               Goal<2>::value_at({0.3, 0.42}),
+               Goal<2>::flow_through("left")},
+              {u({0.5, 0.25}), u({0.3, 0.42}), -0.5 * std::sin(2.)}};
+    }
+
+
+    /** u = Im sqrt(z), insulated on the crack from the left side to the middle. */
+    Case<2> crack(const std::string &mesh)
+    {
+      const auto u = [](const Point<2> &p) {
+        return std::sqrt(p.norm()) * std::sin(0.5 * std::atan2(p[1], p[0]));
+      };
+      const std::string value = "(x^2+y^2)^0.25*sin(atan2(y,x)/2)";
+      // du/dy = d Re sqrt(z)/dx: what enters at the top is the difference at its ends.
+      const auto re = [](const Point<2> &p) {
+        return std::sqrt(p.norm()) * std::cos(0.5 * std::atan2(p[1], p[0]));
+      };
+      return {"crack, " + mesh,
+              {{"Time/Steady", "true"},
+               {"Domain/Lower corner", "-1, -1"},
+               {"Domain/Upper corner", "1, 1"},
+               {"Cracks/Segments", "-1.5,0 ; 0,0"},
+               {"Cracks/Mesh", mesh},
+               {"Boundary conditions/Dirichlet",
+                "top: " + value + " ; bottom: " + value + " ; right: " + value},
+               {"Boundary conditions/Flux", "left: sin(atan2(y,x)/2)/(2*(x^2+y^2)^0.25)"}},
+              u,
+              {Goal<2>::value_at({0.5, 0.5}),
+               Goal<2>::value_at({-0.3, 0.42}),
+               Goal<2>::flow_through("top")},
+              {u({0.5, 0.5}), u({-0.3, 0.42}), re({1., 1.}) - re({-1., 1.})}};
+    }
+
+
+    /**
+     * -Laplace u = 1 on a square with a square hole, 0 on all sides: exercise 2.3 of Bangerth and
+     * Rannacher 2003, and of deal.II's step-14, on meshes refined by the estimate of a goal.
+     */
+    class SquareRing
+    {
+    public:
+      SquareRing()
+        : mesh(MPI_COMM_WORLD)
+      {
+        Triangulation<2> square, ring;
+        GridGenerator::subdivided_hyper_cube(square, 4, -1., 1.);
+        std::set<Triangulation<2>::active_cell_iterator> removed;
+        for (const auto &cell : square.active_cell_iterators())
+          if (std::abs(cell->center()[0]) < 0.5 && std::abs(cell->center()[1]) < 0.5)
+            removed.insert(cell);
+        GridGenerator::create_triangulation_with_removed_cells(square, removed, ring);
+        for (const auto &face : ring.active_face_iterators())
+          if (face->at_boundary())
+            face->set_boundary_id(0);
+        mesh.copy_triangulation(ring);
+        mesh.refine_global(1);
+        body.steady                    = true;
+        body.initial_and_source.source = Expression(1.);
+        body.set_own_mesh(0.1);
+        body.boundary_conditions.prescribe(0, Expression(0.));
+      }
+
+      /** Solve, estimate the value at (0.75, 0.75), and refine by 80 per cent of the shares. */
+      Row solve(const bool adapt)
+      {
+        const Goal<2> goal = Goal<2>::value_at({0.75, 0.75});
+        DoFHandler<2> dofs(mesh);
+        dofs.distribute_dofs(FE_Q<2>(1));
+        n_dofs = dofs.n_dofs();
+        FEMOperator<2> op(dofs, body);
+        Vector         u;
+        op.initialize_vector(u);
+        solve_steady(op, u, 0., 1e-12, 1000);
+        LinearSolver      solver(op, 1e-12, 1000);
+        const SolveSystem solution = [&](Vector &x, const Vector &b) {
+          solver.solve(0., 1., x, b);
+        };
+        const QuadraticElements<2> elements(op, body);
+        const GoalError            error = GoalErrors<2>(elements, solution, u).of(goal);
+        const FieldError<2>        field(elements, solution, u);
+        FEMOperator<2>             fine(elements.dof_handler(), body);
+        Vector                     finer = elements.quadratic_vector();
+        solve_steady(fine, finer, 0., 1e-12, 1000);
+        const Cracks<2> &cracks = body.cracks;
+        Row              row;
+        row.error     = 0.0334473 - error.value; // the value that step-14 has extrapolated
+        row.weighted  = error.estimate;
+        row.corrected = value_at<2>(elements.dof_handler(), cracks, goal.point, field.field());
+        row.quadratic =
+          value_at<2>(elements.dof_handler(), cracks, goal.point, finer) - error.value;
+        dealii::Vector<float> marks(mesh.n_active_cells());
+        for (unsigned int c = 0; c < marks.size(); ++c)
+          marks[c] = std::abs(error.cells[c]);
+        if (adapt)
+          parallel::distributed::GridRefinement::refine_and_coarsen_fixed_fraction(mesh,
+                                                                                   marks,
+                                                                                   0.8,
+                                                                                   0.02);
+        else
+          mesh.set_all_refine_flags();
+        mesh.execute_coarsening_and_refinement();
+        return row;
+      }
+
+      unsigned long long n_dofs = 0;
+
+    private:
+      parallel::distributed::Triangulation<2> mesh;
+      HeatParameters<2>                       body;
+    };
+
+
+    /** Markdown of the effectivities on finer and finer meshes. */
+    template <int dim>
+    void print_table(const Case<dim>          &test,
+                     std::vector<unsigned int> counts,
+                     const bool                with_quadratic,
+                     const Settings           &more  = {},
+                     const ModelKind           model = ModelKind::finite_elements)
+    {
+      for (const unsigned int n : counts)
+        {
+          const auto rows = rows_of<dim>(test, cells(n, dim) + more, with_quadratic, model);
+          if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+            for (std::size_t k = 0; k < rows.size(); ++k)
+              std::printf("| %s | %u | %s | %.3e | %.3e | %.3f | %.3f | %.3f |\n",
+                          test.name.c_str(),
+                          n,
+                          k == test.goals.size()     ? "field" :
+                          test.goals[k].side.empty() ? ("value " + std::to_string(k)).c_str() :
+                                                       ("flow " + test.goals[k].side).c_str(),
+                          rows[k].error,
+                          rows[k].weighted,
+                          rows[k].weighted / rows[k].error,
+                          rows[k].corrected / rows[k].error,
+                          rows[k].quadratic / rows[k].error);
+        }
+    }
+  } // namespace
+
+
+  namespace
+  {
+    /** Bubbles of a quadratic polynomial, but on the left side and where @p leave_out says. */
+    template <int dim>
+    void expect_exact_bubbles(const Settings &settings, const Function<dim> &leave_out)
+    {
+      const Function<dim> f = [](const Point<dim> &p) {
+        double value = 1.;
+        for (unsigned int d = 0; d < dim; ++d)
+          value += (d + 0.5) * p[d] - (d + 1.) * p[d] * p[(d + 1) % dim] + 0.7 * p[d] * p[d];
+        return value;
+      };
+      const Solved<dim> solved(
+        settings + Settings{{"Time/Steady", "true"}, {"Boundary conditions/Dirichlet", "left: 0"}});
+      Vector v = solved.problem.values(f);
+      solved.problem.fem->hanging_nodes().interpolate(v);
+      Vector w = solved.elements->recovered_bubbles(v);
+      w += solved.elements->prolonged(v);
+      std::map<types::global_dof_index, Point<dim>> places;
+      DoFTools::map_dofs_to_support_points(MappingQ1<dim>(),
+                                           solved.elements->dof_handler(),
+                                           places);
+      double       largest = 0.;
+      unsigned int n       = 0;
+      for (const auto &[dof, p] : places)
+        if (w.in_local_range(dof) && p[0] > 1e-9 && leave_out(p) == 0.)
+          {
+            largest = std::max(largest, std::abs(w(dof) - f(p)));
+            ++n;
+          }
+      EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 20u);
+      EXPECT_LT(largest, 1e-11);
+    }
+  } // namespace
+
+
+  TEST(GoalErrors, quadratic_fields_are_recovered)
+  {
+    const auto nothing = [](const auto &) { return 0.; };
+    expect_exact_bubbles<1>({{"Domain/Cells", "24"}}, nothing);
+    expect_exact_bubbles<2>({{"Domain/Cells", "6, 5"}}, nothing);
+    expect_exact_bubbles<3>({{"Domain/Cells", "4, 3, 4"}}, nothing);
+    // Hanging nodes follow from straight edges.
+    expect_exact_bubbles<2>(
+      {{"Domain/Cells", "16, 16"}, {"Domain/Coarsening", "1"}, {"Domain/Fine where", "0.3 - x"}},
+      [](const Point<2> &p) { return std::abs(p[0] - 0.5) < 0.2 ? 1. : 0.; });
+  }
+
+
+  namespace
+  {
+    /** Estimates of all goals and of the field lie between parts of the true errors. */
+    template <int dim>
+    void expect_effectivities(const std::string      &name,
+                              const std::vector<Row> &rows,
+                              double Row::*const estimate,
+                              const double       least,
+                              const double       most)
+    {
+      for (std::size_t k = 0; k < rows.size(); ++k)
+        {
+          EXPECT_GT(rows[k].*estimate / rows[k].error, least) << name << ", goal " << k;
+          EXPECT_LT(rows[k].*estimate / rows[k].error, most) << name << ", goal " << k;
+        }
+    }
+
+
+    std::vector<Row> all_but(std::vector<Row> rows, const std::size_t k)
+    {
+      rows.erase(rows.begin() + k);
+      return rows;
+    }
+  } // namespace
+
+
+  TEST(GoalErrors, corrected_fields_are_right_where_solutions_are_smooth)
+  {
+    // The flow of the first has its own test.
+    for (const auto &test : {smooth(), mixed(), graded(), layer()})
+      {
+        auto rows = rows_of<2>(test, cells(64), false);
+        if (test.name == "mixed")
+          rows = all_but(rows, 3); // of the side with convection
+        if (test.name == "smooth")
+          rows = all_but(rows, 2);
+        expect_effectivities<2>(test.name, rows, &Row::corrected, 0.9, 1.1);
+      }
+    expect_effectivities<3>("cube",
+                            rows_of<3>(cube(), cells(8, 3), false),
+                            &Row::corrected,
+                            0.8,
+                            1.2);
+  }
+
+
+  TEST(GoalErrors, dual_weights_are_right)
+  {
+    auto rows = rows_of<2>(mixed(), cells(32), false);
+    rows.pop_back(); // the field
+    expect_effectivities<2>("mixed", rows, &Row::weighted, 0.95, 1.05);
+    // Flows, with a source and a conductivity that varies, and into a side of steep flow.
+    for (const auto &test : {graded(), layer()})
+      {
+        const Row flow = rows_of<2>(test, cells(32), false)[2];
+        expect_effectivities<2>(test.name, {flow}, &Row::weighted, 0.95, 1.05);
+      }
+  }
+
+
+  TEST(GoalErrors, values_are_those_of_the_corrected_field)
+  {
+    for (const auto &test : {smooth(), mixed(), graded(), layer(), crack("faces"), crack("pairs")})
+      {
+        const auto rows = rows_of<2>(test, cells(test.name == "crack, pairs" ? 17 : 16), false);
+        for (const unsigned int k : {0, 1})
+          EXPECT_NEAR(rows[k].weighted, rows[k].corrected, 1e-9) << test.name;
+      }
+  }
+
+
+  TEST(GoalErrors, quadratic_elements_are_right)
+  {
+    for (const auto &test : {smooth(), mixed(), graded()})
+      expect_effectivities<2>(test.name,
+                              rows_of<2>(test, cells(32), true),
+                              &Row::quadratic,
+                              0.95,
+                              1.05);
+    expect_effectivities<2>("distorted",
+                            rows_of<2>(distorted(32), {}, true),
+                            &Row::quadratic,
+                            0.95,
+                            1.05);
+    // The tip of a crack: errors of both go with the size of cells.
+    expect_effectivities<2>("crack",
+                            rows_of<2>(crack("faces"), cells(32), true),
+                            &Row::quadratic,
+                            0.6,
+                            0.8);
+  }
+
+
+  TEST(GoalErrors, recovery_does_not_see_tips_and_cut_cells)
+  {
+    for (const Row &row : rows_of<2>(crack("faces"), cells(32), false))
+      EXPECT_LT(row.corrected / row.error, 0.3);
+    for (const Row &row : rows_of<2>(crack("pairs"), cells(33), false))
+      EXPECT_LT(row.corrected / row.error, 0.1);
+  }
+
+
+  TEST(GoalErrors, two_meshes)
+  {
+    for (const auto &test : {smooth(), graded(), crack("faces")})
+      for (const unsigned int n : {16, 24})
+        {
+          const Solved<2> coarse(test.settings + cells(n)), fine(test.settings + cells(32));
+          const double    difference =
+            difference_on_meshes<2>(fine.problem.handler, fine.u, coarse.problem.handler, coarse.u);
+          const double order = test.name == "crack, faces" ? 1. : 2.;
+          const double error = mean_error<2>(fine.problem.handler, fine.u, test.exact);
+          const double ratio = extrapolated_error(difference, 32., n, order) / error;
+          if (std::getenv("PERIDEAL_TABLES") != nullptr)
+            std::printf("| two meshes, %s | %u and 32 | %.3f |\n", test.name.c_str(), n, ratio);
+          // What the fields lack inside of their cells does not cancel in the difference, which
+          // counts the more the less the sizes differ.
+          EXPECT_GT(ratio, 0.9) << test.name << ' ' << n;
+          EXPECT_LT(ratio, n == 16 ? 1.25 : 1.5) << test.name << ' ' << n;
+        }
+  }
+
+
+  TEST(GoalErrors, same_on_every_number_of_processes)
+  {
+    std::vector<Case<2>> tests{mixed(), layer(), crack("faces"), crack("pairs")};
+    for (const Case<2> &test : tests)
+      {
+        const bool     graded_mesh = test.name == "layer";
+        const Settings more =
+          cells(16) + (graded_mesh ?
+                         Settings{{"Domain/Coarsening", "1"}, {"Domain/Fine where", "0.3 - x"}} :
+                         Settings());
+        const Solved<2> one(test.settings + more, ModelKind::finite_elements, MPI_COMM_SELF),
+          all(test.settings + more);
+        const GoalErrors<2> of_one(*one.elements, one.solve, one.u),
+          of_all(*all.elements, all.solve, all.u);
+        const FieldError<2> field_of_one(*one.elements, one.solve, one.u),
+          field_of_all(*all.elements, all.solve, all.u);
+        for (const Goal<2> &goal : test.goals)
+          {
+            const GoalError a = of_one.of(goal), b = of_all.of(goal);
+            EXPECT_NEAR(a.value, b.value, 1e-10) << test.name;
+            EXPECT_NEAR(a.estimate, b.estimate, 1e-10) << test.name;
+            double sum_a = 0., sum_b = 0.;
+            for (const double share : a.cells)
+              sum_a += std::abs(share);
+            for (const double share : b.cells)
+              sum_b += std::abs(share);
+            EXPECT_NEAR(sum_a, dealii::Utilities::MPI::sum(sum_b, MPI_COMM_WORLD), 1e-10)
+              << test.name;
+          }
+        EXPECT_NEAR(field_of_one.root_mean_square(), field_of_all.root_mean_square(), 1e-10)
+          << test.name;
+      }
+  }
+
+
+  TEST(GoalErrors, tables)
+  {
+    if (std::getenv("PERIDEAL_TABLES") == nullptr)
+      GTEST_SKIP() << "PERIDEAL_TABLES is not set";
+    for (const auto &test : {smooth(), mixed(), layer(), graded(), crack("faces")})
+      print_table<2>(test, {8, 16, 32, 64}, true);
+    print_table<2>(crack("pairs"), {9, 17, 33, 65}, false);
+    print_table<2>(smooth(), {9, 19, 39}, true);
+    print_table<3>(cube(), {8, 16}, true);
+    for (const unsigned int n : {8, 16, 32, 64})
+      print_table<2>(distorted(n), {n}, true);
+    print_table<2>(smooth(),
+                   {16, 32, 64},
+                   true,
+                   {{"Domain/Coarsening", "1"}, {"Domain/Fine where", "0.3 - x"}});
+    for (const bool adapt : {false, true})
+      {
+        SquareRing ring;
+        for (unsigned int cycle = 0; cycle < (adapt ? 9 : 5); ++cycle)
+          {
+            const Row row = ring.solve(adapt);
+            if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+              std::printf("| ring, %s | %llu | %.3e | %.3f | %.3f | %.3f |\n",
+                          adapt ? "adapted" : "uniform",
+                          ring.n_dofs,
+                          row.error,
+                          row.weighted / row.error,
+                          row.corrected / row.error,
+                          row.quadratic / row.error);
+          }
+      }
+  }
+} // namespace PeriDeal
