@@ -172,8 +172,8 @@ namespace PeriDeal
     if (dual.bubbles.size() > 0)
       weights += dual.bubbles;
     Vector z = elements.prolonged(dual.z);
-    // The dual solution of a value is singular there, so that bubbles of it are not recovered: those
-    // of u are weighted by what is smooth in Q1.
+    // The dual solution of a value is singular there, so that bubbles of it are not recovered.
+    // Those of u are, and z_h weights them.
     const bool at_a_point = goal.side.empty();
     if (!at_a_point)
       z += weights;
