@@ -14,7 +14,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <memory>
 #include <set>
 
@@ -427,7 +426,8 @@ namespace PeriDeal
 
   TEST(GoalErrors, same_on_every_number_of_processes)
   {
-    std::vector<Case<2>> tests{mixed(), layer(), crack("faces"), crack("pairs")};
+    std::vector<Case<2>> tests{mixed(), layer(), crack("faces"), crack("pairs"), crack("pairs")};
+    tests.back().name = "zone";
     for (const Case<2> &test : tests)
       {
         const bool     graded_mesh = test.name == "layer";
@@ -435,8 +435,13 @@ namespace PeriDeal
           cells(16) + (graded_mesh ?
                          Settings{{"Domain/Coarsening", "1"}, {"Domain/Fine where", "0.3 - x"}} :
                          Settings());
-        const Solved<2> one(test.settings + more, ModelKind::finite_elements, MPI_COMM_SELF),
-          all(test.settings + more);
+        const ModelKind model = test.name == "zone" ? ModelKind::coupled :
+                                                      ModelKind::finite_elements;
+        const Solved<2> one(test.settings + more, model, MPI_COMM_SELF),
+          all(test.settings + more, model);
+        EXPECT_EQ(one.elements->share_left_out(), all.elements->share_left_out());
+        EXPECT_EQ(one.elements->share_left_out() > 0.,
+                  test.name == "zone" || test.name == "crack, pairs");
         const GoalErrors<2> of_one(*one.elements, one.solve, one.u),
           of_all(*all.elements, all.solve, all.u);
         const FieldError<2> field_of_one(*one.elements, one.solve, one.u),
