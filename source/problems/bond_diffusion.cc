@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "diffusion_notes.h"
 #include "diffusion_parts.h"
 
 namespace PeriDeal
@@ -63,6 +64,7 @@ namespace PeriDeal
         }
         Timings::Scope scope(this->timings, "operator");
         bonds = std::make_unique<BondOperator<dim>>(*node_set, scene);
+        doubt = note_on_one_direction(scene, bonds->diffusion_bonds());
       }
 
       std::string name() const override
@@ -217,6 +219,10 @@ namespace PeriDeal
             (scene.material.interface_rule == InterfaceRule::arithmetic ? " mean" : "") +
             ", which is right for what flows along the interface; 'Interface rule = harmonic' in section "
             "'Material' is right for what crosses it, as around inclusions.");
+        for (const std::string &note :
+             {note_on_cut_families(scene, bonds->diffusion_bonds().weights()), doubt})
+          if (!note.empty())
+            list.push_back(note);
         return list;
       }
 
@@ -226,6 +232,7 @@ namespace PeriDeal
       const DoFHandler<dim>             &handler;
       Nodes<dim>                        *node_set = nullptr; // of the model
       std::unique_ptr<BondOperator<dim>> bonds;
+      std::string                        doubt; // about the surface correction
       mutable Vector                     node_volumes,
         cut; // for output; empty until needed, and when the cracks have changed
     };

@@ -11,6 +11,7 @@
 
 #include "diffusion_parts.h"
 #include "solid_fields.h"
+#include "solid_scene_notes.h"
 
 namespace PeriDeal
 {
@@ -189,10 +190,25 @@ namespace PeriDeal
             entry +
             "has not found all factors: moments of families differ from those of a complete one by up to " +
             number_text(states->bonds().rows.moments_gap) + " of them.");
+        const auto &family = states->bonds().families.weights().members();
+        for (const std::string &note : {note_on_few_bonds(scene, family),
+                                        states->brittle() ? note_on_trapping(scene, family) : "",
+                                        note_on_critical_stretch()})
+          if (!note.empty())
+            list.push_back(note);
         return list;
       }
 
     private:
+      std::string note_on_critical_stretch() const
+      {
+        if (!states->brittle() || scene.material.fracture_energy || !scene.domain.has_lattice() ||
+            states->bonds().families.nodes().n_owned() == 0)
+          return {};
+        const auto [energy, of_ball] = states->breaking().energies_of_first();
+        return note_on_stretch(scene, energy, of_ball);
+      }
+
       /** Without what lies in extra layers: half of a vertex on a side of the body. */
       double volume_in_body(const unsigned int i) const
       {

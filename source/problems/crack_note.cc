@@ -5,6 +5,10 @@
 
 #include <perideal/scene/lists.h>
 
+#include <cmath>
+
+#include "three_digits.h"
+
 namespace PeriDeal
 {
   template <int dim>
@@ -31,9 +35,14 @@ namespace PeriDeal
     if (scene.cracks.tips.empty())
       return;
     const CrackHistory<dim> history = scene.crack_history();
+    const double            leaps =
+      scene.domain.has_lattice() ?
+                   history.longest_advance() / scene.domain.spacing().norm() * std::sqrt(dim) :
+                   0.;
     notes.push_back(
       "the cracks grow in " + std::to_string(history.events().size()) +
       " events, between which no tip advances more than " + number_text(history.longest_advance()) +
+      (leaps > 1.5 ? ", a leap over " + three_digits(leaps) + " nodes at once" : "") +
       "; bonds are cut too early or too late by at most the time that it needs for half of that ('Growth step' in section "
       "'Cracks').");
   }

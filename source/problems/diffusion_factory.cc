@@ -11,6 +11,7 @@
 #include <algorithm>
 
 #include "crack_note.h"
+#include "diffusion_notes.h"
 #include "physics_factories.h"
 
 namespace PeriDeal
@@ -57,12 +58,15 @@ namespace PeriDeal
         require_diffusion(scene);
       }
 
-      void note_scene(const Scene<dim> &scene,
-                      const Triangulation<dim> &,
+      void note_scene(const Scene<dim>         &scene,
+                      const Triangulation<dim> &mesh,
                       std::vector<std::string> &notes) const override
       {
         note_missing_crack_scaling(scene, notes);
         note_diffusion(scene, notes);
+        note_transmission(scene, notes);
+        note_smooth_field(scene, notes);
+        note_unseen_source(scene, mesh, notes);
       }
 
       std::unique_ptr<Problem<dim>> make_problem(Model<dim>       &model,

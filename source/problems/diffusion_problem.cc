@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "diffusion_notes.h"
 #include "diffusion_parts.h"
 #include "effective_conductivity.h"
 #include "finite_results.h"
@@ -168,6 +169,8 @@ namespace PeriDeal
     if (stepper->current_step() > 0.)
       line << ", step " << stepper->current_step();
     context.progress.line(line.str());
+    if (const std::string note = note_on_fast_waves(*stepper, scene.time.end_time); !note.empty())
+      context.record.notes.push_back(this->name() + ": " + note);
   }
 
 

@@ -13,6 +13,7 @@
 
 #include <optional>
 
+#include "diffusion_notes.h"
 #include "diffusion_parts.h"
 
 namespace PeriDeal
@@ -40,6 +41,7 @@ namespace PeriDeal
       {
         number_unknowns();
         build_operator();
+        doubts = notes_on_cells(handler, scene, fem->cut_cells());
         if (model == ModelKind::coupled && scene.coupling.certificate)
           certify();
       }
@@ -235,10 +237,11 @@ namespace PeriDeal
 
       std::vector<std::string> own_notes() const override
       {
-        if (!certificate || certificate->fault().empty())
-          return {};
-        return {certificate->fault() +
-                ". 'Scheme = exchange' (section 'Coupling') has neither fault."};
+        std::vector<std::string> list = doubts;
+        if (certificate && !certificate->fault().empty())
+          list.push_back(certificate->fault() +
+                         ". 'Scheme = exchange' (section 'Coupling') has neither fault.");
+        return list;
       }
 
       const CouplingCertificate *examined() const override
@@ -465,6 +468,7 @@ namespace PeriDeal
       Nodes<dim>                        *node_set = nullptr; // null for finite elements alone
       std::unique_ptr<FEMOperator<dim>>  fem;
       std::optional<CouplingCertificate> certificate;
+      std::vector<std::string>           doubts;   // about cells at the start
       std::unique_ptr<Transfer>          transfer; // while the mesh changes
       double                             heat_before = 0.;
     };

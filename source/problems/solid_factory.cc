@@ -14,9 +14,11 @@
 #include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "crack_note.h"
 #include "physics_factories.h"
+#include "solid_scene_notes.h"
 
 namespace PeriDeal
 {
@@ -66,16 +68,12 @@ namespace PeriDeal
     }
 
 
-    /** Bonds alone have a Poisson ratio of their own, and keep the bulk modulus. Collective. */
+    /** The smallest and the largest Poisson ratio in cells of the body. Collective. */
     template <int dim>
-    void note_own_poisson_ratio(const Scene<dim>         &scene,
-                                const Triangulation<dim> &mesh,
-                                std::vector<std::string> &notes)
+    std::pair<double, double> poisson_ratios(const Scene<dim>         &scene,
+                                             const Triangulation<dim> &mesh)
     {
-      if (dim == 1 || !scene.elasticity.is_bond_based() || !runs(scene, ModelKind::peridynamics))
-        return;
-      const double own    = bond_based_poisson(dim, scene.elasticity.plane);
-      double       lowest = 1., highest = -1.;
+      double lowest = 1., highest = -1.;
       for (const auto &cell : mesh.active_cell_iterators())
         if (cell->is_locally_owned())
           {
@@ -83,8 +81,21 @@ namespace PeriDeal
             lowest          = std::min(lowest, nu);
             highest         = std::max(highest, nu);
           }
-      lowest  = Utilities::MPI::min(lowest, mesh.get_communicator());
-      highest = Utilities::MPI::max(highest, mesh.get_communicator());
+      return {Utilities::MPI::min(lowest, mesh.get_communicator()),
+              Utilities::MPI::max(highest, mesh.get_communicator())};
+    }
+
+
+    /** Bonds alone have a Poisson ratio of their own, and keep the bulk modulus. */
+    template <int dim>
+    void note_own_poisson_ratio(const Scene<dim>         &scene,
+                                const double              lowest,
+                                const double              highest,
+                                std::vector<std::string> &notes)
+    {
+      if (dim == 1 || !scene.elasticity.is_bond_based() || !runs(scene, ModelKind::peridynamics))
+        return;
+      const double own = bond_based_poisson(dim, scene.elasticity.plane);
       if (std::max(highest - own, own - lowest) < 1e-3)
         return;
       std::string found = number_text(lowest);
@@ -132,7 +143,11 @@ namespace PeriDeal
                       const Triangulation<dim> &mesh,
                       std::vector<std::string> &notes) const override
       {
-        note_own_poisson_ratio(scene, mesh, notes);
+        const auto [lowest, highest] = poisson_ratios(scene, mesh);
+        note_own_poisson_ratio(scene, lowest, highest, notes);
+        note_locking(scene, highest, notes);
+        note_tips_in_cells(scene, notes);
+        note_slow_oblique_cracks(scene, notes);
         note_growth(scene, notes);
       }
 

@@ -3,12 +3,16 @@
 
 #include "solid_notes.h"
 
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <sstream>
+
+#include "three_digits.h"
 
 namespace PeriDeal
 {
@@ -88,12 +92,7 @@ namespace PeriDeal
     {
       constexpr double tolerable = 0.01,
                        few       = 0.01; // where few bonds have broken it is not they that tell
-      const auto rounded         = [](const double x) {
-        std::ostringstream text;
-        text << std::setprecision(3) << x;
-        return text.str();
-      };
-      const auto note = [&](const auto &energy, const double lost) {
+      const auto note            = [&](const auto &energy, const double lost) {
         const double imbalance = energy.imbalance();
         const bool   of_bonds  = run.op().brittle() && lost > few * energy.exchanged;
         const double whole     = of_bonds ? lost : energy.exchanged;
@@ -102,13 +101,13 @@ namespace PeriDeal
         context.record.notes.push_back(
           run.name() + ": the energy balance does not close. What " +
           (imbalance < 0. ? "is missing" : "has come from nowhere") + " at the end, " +
-          rounded(std::abs(imbalance)) + ", is " + rounded(100. * std::abs(imbalance) / whole) +
-          " % of " +
+          three_digits(std::abs(imbalance)) + ", is " +
+          three_digits(100. * std::abs(imbalance) / whole) + " % of " +
           (of_bonds ? "what broken bonds have dissipated" :
-                      "what start and loads have brought in") +
+                                 "what start and loads have brought in") +
           (run.stepper ?
-             ". A smaller 'Time step' in section 'Time' makes it less: half the step a quarter, where it is not the breaking of bonds that makes it." :
-             ". Smaller steps of the loading ('Time step' in section 'Time') make it less."));
+                        ". A smaller 'Time step' in section 'Time' makes it less: half the step a quarter, where it is not the breaking of bonds that makes it." :
+                        ". Smaller steps of the loading ('Time step' in section 'Time') make it less."));
       };
       if (run.stepper)
         {
@@ -135,6 +134,55 @@ namespace PeriDeal
           std::to_string(found.n_nodes) + " nodes, worst at " + found.place +
           ". They are far beyond the small displacements that 'Kinematics = linear' in section 'Elasticity' is for: read them as those of a "
           "load of 1, in proportion to the load, or make the load smaller.");
+    }
+
+
+    /**
+     * What has turned by large angles without being stretched, as fragments do: small strains do
+     * not see that it grows.
+     */
+    template <int dim>
+    void note_turning(const SolidProblem<dim> &run, const RunContext &context)
+    {
+      constexpr double   much = 0.1, little = 0.01; // of a radian, of the body
+      const auto        &dofs = run.dofs();
+      const unsigned int n    = dofs.get_fe().n_dofs_per_cell();
+      if (dim == 1 || !run.stepper || run.op().nonlinear() ||
+          dofs.get_fe().n_dofs_per_vertex() == 0)
+        return;
+      FEValues<dim> values(dofs.get_fe(), QMidpoint<dim>(), update_gradients | update_JxW_values);
+      std::vector<types::global_dof_index> indices(n);
+      double                               turned = 0., whole = 0., largest = 0.;
+      run.displacement.update_ghost_values();
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            values.reinit(cell);
+            cell->get_dof_indices(indices);
+            Tensor<2, dim> gradient;
+            for (unsigned int i = 0; i < n; ++i)
+              for (unsigned int d = 0; d < dim; ++d)
+                gradient[d] += run.displacement(dim * indices[i] + d) * values.shape_grad(i, 0);
+            const Tensor<2, dim> strain = 0.5 * (gradient + transpose(gradient));
+            const double         angle  = (gradient - strain).norm() / std::sqrt(2.);
+            whole += values.JxW(0);
+            if (angle < much || strain.norm() > 0.5 * angle)
+              continue;
+            turned += values.JxW(0);
+            largest = std::max(largest, angle);
+          }
+      run.displacement.set_ghost_state(false);
+      const auto communicator = dofs.get_communicator();
+      turned = Utilities::MPI::sum(turned, communicator) / Utilities::MPI::sum(whole, communicator);
+      largest = Utilities::MPI::max(largest, communicator);
+      if (turned < little)
+        return;
+      context.record.notes.push_back(
+        run.name() + ": " + three_digits(100. * turned) + " % of the body has turned by up to " +
+        three_digits(largest) +
+        " (in radians). 'Kinematics = linear' in section 'Elasticity' is for small angles, and lets what turns so far grow by " +
+        three_digits(100. * (std::sqrt(1. + largest * largest) - 1.)) +
+        " %. 'Kinematics = full', for peridynamics, turns it as it is.");
     }
   } // namespace
 
@@ -168,6 +216,7 @@ namespace PeriDeal
     if (run.stepper || (!run.scene.time.steady && !run.scene.warms_slowly()))
       note_energy(run, context);
     note_inversion(run, context);
+    note_turning(run, context);
     note_torn_sides(run, context);
   }
 

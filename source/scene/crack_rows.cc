@@ -187,7 +187,7 @@ namespace PeriDeal
   void keep_cracks_off_nodes(Scene<dim> &scene)
   {
     if (dim == 1 || scene.cracks.cracks.empty() || !scene.domain.has_lattice() ||
-        scene.cracks.on_faces() || scene.cracks.nodes_on_cracks == NodesOnCracks::left)
+        scene.cracks.on_faces())
       return;
     const auto pieces = make_crack_geometries(
       scene.cracks.pieces(scene.cracks.tips.empty() ? 0. : scene.time.end_time));
@@ -203,7 +203,8 @@ namespace PeriDeal
                              " (section 'Cracks') runs along a row of " +
                              (at_centers ? "cell centres" : "nodes") + " of " +
                              text_of<dim>(scene.domain.cells) + " cells";
-    const bool fixed = scene.domain.is_image() || scene.domain.coarsening.times > 0 ||
+    const bool left  = scene.cracks.nodes_on_cracks == NodesOnCracks::left;
+    const bool fixed = left || scene.domain.is_image() || scene.domain.coarsening.times > 0 ||
                        scene.domain.has_extra_layers();
     const auto cells = fixed ? std::optional<Cells<dim>>() :
                                cells_off_cracks(pieces, scene.domain, at_centers);
@@ -216,9 +217,11 @@ namespace PeriDeal
       }
     else
       scene.domain.notes.push_back(
-        name +
-        ". These nodes belong to its left side, and it acts like a crack half a cell farther to the right. "
-        "Other 'Cells' (section 'Domain'), or 'Mesh = faces' for a crack on cell faces, make that more accurate.");
+        name + ". These nodes belong to its left side, and it acts like a crack half a cell, " +
+        number_text(0.5 * scene.domain.spacing()[axis_across(*piece)]) +
+        ", farther to the right. " +
+        (left ? "Without 'Nodes on cracks = left'" : "Other 'Cells' (section 'Domain')") +
+        ", or with 'Mesh = faces' for a crack on cell faces, it lies where it is.");
   }
 
 

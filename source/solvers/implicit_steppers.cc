@@ -57,6 +57,12 @@ namespace PeriDeal
         solver.operator_changed();
       }
 
+      /** The largest product of a fixed step and an eigenvalue; 0 where steps adapt. */
+      double largest_rate() const
+      {
+        return fixed ? dt * op.spectrum().sharp : 0.;
+      }
+
     protected:
       void begin_span(const Vector &u) override
       {
@@ -410,6 +416,13 @@ namespace PeriDeal
       {
         op.initialize_vector(load);
         op.initialize_vector(start);
+      }
+
+      /** The fastest wave gets the factor (1 - z/2)/(1 + z/2), which is negative from z = 2 on. */
+      double left_of_fast_waves() const override
+      {
+        const double z = this->largest_rate();
+        return std::max(0., (0.5 * z - 1.) / (0.5 * z + 1.));
       }
 
     private:

@@ -98,6 +98,17 @@ namespace PeriDeal
                20.;
       }
 
+      /** |a_s + b_s T_s|, whose Chebyshev polynomial is at most 1 beyond what is resolved. */
+      double left_of_fast_waves() const override
+      {
+        constexpr double resolved = 2.; // step times eigenvalue
+        if (!fixed || dt * op.spectrum().sharp <= resolved)
+          return 0.;
+        const unsigned int    s = n_stages(dt);
+        const RKCCoefficients k(s);
+        return k.a[s] + k.b[s];
+      }
+
       std::size_t memory_consumption() const override
       {
         return memory_of({&rate, &stage_rate, &before, &last, &now}) +

@@ -91,6 +91,15 @@ namespace PeriDeal
      */
     virtual double expected_applications(const double time_span) const = 0;
 
+    /**
+     * Of waves so fast that steps do not resolve them: what one of the steps may leave, as a factor
+     * of their size; 0 where steps adapt, or damp them.
+     */
+    virtual double left_of_fast_waves() const
+    {
+      return 0.;
+    }
+
     /** Bytes of this process's vectors. */
     virtual std::size_t memory_consumption() const
     {

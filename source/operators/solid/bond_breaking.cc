@@ -5,6 +5,7 @@
 
 #include <perideal/base/point_order.h>
 #include <perideal/base/user_error.h>
+#include <perideal/laws/kernel.h>
 #include <perideal/operators/solid/bond_breaking.h>
 
 #include <algorithm>
@@ -54,6 +55,24 @@ namespace PeriDeal
             sums.dilatations += spacing[d] * share * share / dim;
         }
       return sums;
+    }
+
+
+    /** The sum over bonds in a ball: half the mean of |n| over directions, a mean length. */
+    template <int dim>
+    double crossing_of_ball(const Peridynamics &p, const double delta)
+    {
+      constexpr unsigned int n_points = 2000;
+      constexpr double       mean     = dim == 1 ? 1. : dim == 2 ? 2. / numbers::PI : 0.5;
+      double                 longer = 0., all = 0.; // moments of omega
+      for (unsigned int k = 0; k < n_points; ++k)
+        {
+          const double r     = (k + 0.5) / n_points * delta;
+          const double omega = kernel_shape(p.kernel, r, delta) / std::pow(r, p.kernel_exponent);
+          all += omega * std::pow(r, dim + 1);
+          longer += omega * std::pow(r, dim + 2);
+        }
+      return 0.5 * mean * longer / all;
     }
 
 
@@ -152,6 +171,21 @@ namespace PeriDeal
     throw_on_all_if_any(nodes.communicator(), message);
     stretches.update_ghost_values();
     critical.assign(stretches.begin(), stretches.begin() + nodes.n_local());
+  }
+
+
+  template <int dim>
+  std::pair<double, double> BondBreaking<dim>::energies_of_first() const
+  {
+    const CrossingSums sums   = crossing_sums(bonds.families);
+    const StateLaw    &law    = bonds.laws[0];
+    const double       square = critical[0] * critical[0];
+    const double       shared =
+      bonds.laws.volumetric ? law.volumetric * law.dilatation * sums.dilatations : 0.;
+    const double ball =
+      crossing_of_ball<dim>(body.peridynamics, bonds.families.weights().horizon());
+    return {square * (law.extension * sums.bonds + shared),
+            square * (law.extension * ball + shared)};
   }
 
 

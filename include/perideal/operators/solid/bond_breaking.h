@@ -10,6 +10,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -98,6 +99,13 @@ namespace PeriDeal
     {
       return critical;
     }
+
+    /**
+     * The fracture energy that the critical stretch of the first node here means on its lattice,
+     * s^2 b B and the share of the dilatations, and with the B of the integral over a ball in place
+     * of that of the lattice. Not collective.
+     */
+    std::pair<double, double> energies_of_first() const;
 
     /**
      * 1 - the volume of neighbours over unbroken bonds over that of the whole family, at the owned

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "solid_scene_notes.h"
+
+#include <perideal/laws/elasticity.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "three_digits.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    bool breaks(const Scene<dim> &scene)
+    {
+      return scene.material.fracture_energy || scene.material.critical_stretch;
+    }
+
+
+    /**
+     * Of the end of a crack along an axis: how much farther than it the cells go that it takes
+     * away, in cells. A cell goes from its middle on.
+     */
+    double beyond_tip(const double place, const bool upwards)
+    {
+      const double part = place - std::floor(place), here = upwards ? part : 1. - part;
+      return here < 0.5 ? -here : 1. - here;
+    }
+  } // namespace
+
+
+  template <int dim>
+  void note_locking(const Scene<dim> &scene, const double poisson, std::vector<std::string> &notes)
+  {
+    constexpr double hardly_changes = 0.45, tolerable = 1.1;
+    const bool       elements =
+      (runs(scene, ModelKind::finite_elements) && scene.finite_elements.degree == 1) ||
+      runs(scene, ModelKind::coupled);
+    const bool plane_strain = dim == 3 || scene.elasticity.plane == PlaneState::strain;
+    if (dim == 1 || !elements || !plane_strain || scene.domain.shape != Shape::box ||
+        poisson < hardly_changes)
+      return;
+    const Tensor<1, dim> h    = scene.domain.spacing();
+    unsigned int         thin = 0, slender = 0;
+    for (unsigned int d = 1; d < dim; ++d)
+      {
+        const auto extent = [&](const unsigned int e) {
+          return scene.domain.upper[e] - scene.domain.lower[e];
+        };
+        thin    = extent(d) < extent(thin) ? d : thin;
+        slender = extent(d) > extent(slender) ? d : slender;
+      }
+    if (thin == slender)
+      slender = (thin + 1) % dim;
+    // A rectangle a x b bent along a, of the displacement (x y, 0): over the exact energy; of n of
+    // them over the height 1/n^2 is bending of cells.
+    const double nu = poisson / (1. - poisson), aspect = h[slender] / h[thin];
+    const double one_cell = (1. / (1. - nu) + 0.5 * aspect * aspect) / (1. + nu);
+    const double n        = scene.domain.cells[thin];
+    const double stiffer  = 1. + (one_cell - 1.) / (n * n);
+    if (stiffer < tolerable)
+      return;
+    notes.push_back(
+      "elements of degree 1 cannot bend without changing their volume, and with a Poisson ratio of " +
+      number_text(poisson) + " that takes almost any force: " + three_digits(n) +
+      " cells across make the body up to " + three_digits(stiffer) +
+      " times too stiff in bending. 'Degree = 2' in section 'Finite elements' does not lock.");
+  }
+
+
+  template <int dim>
+  void note_tips_in_cells(const Scene<dim> &scene, std::vector<std::string> &notes)
+  {
+    constexpr double tolerable = 0.1; // of a cell
+    if constexpr (dim == 2)
+      {
+        const auto &cracks = scene.cracks;
+        if (!runs(scene, ModelKind::finite_elements) || cracks.mesh != CrackMesh::removed ||
+            scene.domain.shape != Shape::box || !cracks.tips.empty())
+          return;
+        const Tensor<1, 2> h     = scene.domain.spacing();
+        const Point<2>     lower = scene.domain.lower, upper = scene.domain.upper;
+        for (unsigned int k = 0; k < cracks.cracks.size(); ++k)
+          {
+            const Point<2>    &a = cracks.cracks[k][0], &b = cracks.cracks[k][1];
+            const unsigned int axis = std::abs(b[0] - a[0]) > std::abs(b[1] - a[1]) ? 0 : 1;
+            if (std::abs(b[1 - axis] - a[1 - axis]) > 1e-9 * h[1 - axis])
+              continue; // across the cells it is a staircase
+            const double from = std::max(lower[axis], std::min(a[axis], b[axis])),
+                         to   = std::min(upper[axis], std::max(a[axis], b[axis]));
+            double gained = 0., most = 0.;
+            for (const bool upwards : {false, true})
+              {
+                const double tip = upwards ? to : from;
+                if (tip <= lower[axis] + 1e-9 * h[axis] || tip >= upper[axis] - 1e-9 * h[axis])
+                  continue;
+                double beyond =
+                  beyond_tip((tip - lower[axis]) / h[axis] + (upwards ? 1e-9 : -1e-9), upwards);
+                gained += beyond;
+                most = std::max(most, std::abs(beyond));
+              }
+            if (most < tolerable)
+              continue;
+            const double share = 0.5 * gained * h[axis] / (to - from);
+            notes.push_back(
+              "crack " + std::to_string(k + 1) + " (section 'Cracks') ends " + three_digits(most) +
+              " of a cell from the cells that it takes away ('Mesh = removed'): to finite elements it is " +
+              three_digits(std::abs(gained) * h[axis]) + (gained > 0. ? " longer" : " shorter") +
+              " in all, which makes stress intensities " + three_digits(100. * std::abs(share)) +
+              " % or more too " + (gained > 0. ? "large" : "small") +
+              ". 'Cells' in section 'Domain' with which its ends lie on edges of cells, or 'Mesh = faces', make up for it.");
+          }
+      }
+  }
+
+
+  template <int dim>
+  void note_slow_oblique_cracks(const Scene<dim> &scene, std::vector<std::string> &notes)
+  {
+    constexpr double from = 3., to = 42.; // degrees
+    if constexpr (dim == 2)
+      {
+        if (!breaks(scene) || !scene.elasticity.is_static() || !scene.domain.has_lattice())
+          return;
+        for (unsigned int k = 0; k < scene.cracks.cracks.size(); ++k)
+          {
+            const Tensor<1, 2> way   = scene.cracks.cracks[k][1] - scene.cracks.cracks[k][0];
+            const double       angle = std::atan2(std::min(std::abs(way[0]), std::abs(way[1])),
+                                            std::max(std::abs(way[0]), std::abs(way[1]))) *
+                                 180. / numbers::PI;
+            if (angle > from && angle < to)
+              notes.push_back(
+                "crack " + std::to_string(k + 1) + " (section 'Cracks') lies at " +
+                three_digits(angle) +
+                " degrees to the rows of nodes. In slow loading bonds break in groups, and it turns into the rows, where fewest are in its way. "
+                "With 'Solver = dynamics' in section 'Elasticity' it does not, nor where the lattice lies along it.");
+          }
+      }
+  }
+
+
+  template <int dim>
+  std::string note_on_few_bonds(const Scene<dim>                     &scene,
+                                const std::vector<FamilyMember<dim>> &family)
+  {
+    constexpr double tolerable = 0.05;
+    if (dim == 1 || family.empty() || !scene.material.uniform_moduli())
+      return {};
+    const Tensor<1, dim> h = scene.domain.spacing();
+    if (*std::max_element(h.begin_raw(), h.end_raw()) >
+        (1. + 1e-6) * *std::min_element(h.begin_raw(), h.end_raw()))
+      return {}; // what follows is for squares and cubes
+    double all = 0., crossed = 0.;
+    for (const FamilyMember<dim> &member : family)
+      {
+        const double x = member.offset[0] * h[0] / member.r, y = member.offset[1] * h[1] / member.r;
+        all += member.weight * member.r * member.r;
+        crossed += member.weight * member.r * member.r * x * x * y * y;
+      }
+    const double g = dim * (dim + 2) * crossed / all;
+    if (std::abs(g - 1.) < tolerable)
+      return {};
+    const Moduli moduli =
+      scene.material.moduli(scene.domain.lower + 0.5 * (scene.domain.upper - scene.domain.lower));
+    const double G    = moduli.shear,
+                 bulk = lambda_of(moduli, dim, scene.elasticity.plane) + 2. * G / dim;
+    const auto young  = [&](const double shear) {
+      return dim == 2 ? 4. * bulk * shear / (bulk + shear) :
+                         9. * bulk * shear / (3. * bulk + shear);
+    };
+    return "families of m = " + three_digits(scene.horizon() / h[0]) +
+           " with this kernel have a shear modulus of " + three_digits(g) +
+           " times that of 'Material' along the axes, and a plate pulled along one is " +
+           three_digits(young(G * (dim == 2 ? 2. - g : 0.5 * (5. - 3. * g))) / young(G)) +
+           " times as stiff as it should be. 'Kernel exponent = 0' in section 'Peridynamics' and a larger 'Horizon ratio' bring both near 1.";
+  }
+
+
+  template <int dim>
+  std::string note_on_trapping(const Scene<dim>                     &scene,
+                               const std::vector<FamilyMember<dim>> &family)
+  {
+    constexpr double few = 3.5;
+    if (dim == 1 || family.empty() || !scene.material.fracture_energy)
+      return {};
+    const Tensor<1, dim> h = scene.domain.spacing();
+    const double         m = scene.horizon() / *std::min_element(h.begin_raw(), h.end_raw());
+    if (m >= few)
+      return {};
+    int    n_bonds   = 0;
+    double strongest = 0., all = 0.;
+    for (const FamilyMember<dim> &member : family)
+      if (member.offset[0] > 0)
+        {
+          const double energy = member.offset[0] * member.weight * member.r * member.r;
+          n_bonds += member.offset[0];
+          all += energy;
+          strongest = std::max(strongest, energy / member.offset[0]);
+        }
+    return "with m = " + three_digits(m) +
+           " a crack along the rows gets on a column at a time, by " + std::to_string(n_bonds) +
+           " bonds that hold it back until the last breaks (one of them has " +
+           three_digits(100. * strongest / all) +
+           " % of the energy): loads at which it runs come out 10 to 20 % too large however fine the lattice is. "
+           "'Horizon ratio' of 4 or 5 (section 'Peridynamics') takes that away.";
+  }
+
+
+  template <int dim>
+  std::string note_on_stretch(const Scene<dim> &scene, const double energy, const double of_ball)
+  {
+    constexpr double tolerable = 0.05;
+    if (std::abs(energy / of_ball - 1.) < tolerable)
+      return {};
+    const Tensor<1, dim> h = scene.domain.spacing();
+    return "'Critical stretch' in section 'Material' is a fracture energy of " +
+           three_digits(energy) + " on this lattice of m = " +
+           three_digits(scene.horizon() / *std::min_element(h.begin_raw(), h.end_raw())) + ", " +
+           three_digits(energy / of_ball) +
+           " times that of a ball, from which textbooks have their formulas. 'Fracture energy' in its place is the same on every lattice.";
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template void        note_locking(const Scene<dim> &, const double, std::vector<std::string> &); \
+  template void        note_tips_in_cells(const Scene<dim> &, std::vector<std::string> &);         \
+  template void        note_slow_oblique_cracks(const Scene<dim> &, std::vector<std::string> &);   \
+  template std::string note_on_few_bonds(const Scene<dim> &,                                       \
+                                         const std::vector<FamilyMember<dim>> &);                  \
+  template std::string note_on_trapping(const Scene<dim> &,                                        \
+                                        const std::vector<FamilyMember<dim>> &);                   \
+  template std::string note_on_stretch(const Scene<dim> &, const double, const double);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal

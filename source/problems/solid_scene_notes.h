@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/laws/lattice_family.h>
+#include <perideal/scene/scene.h>
+
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /*
+   * Where methods for bodies that deform are known to fail (prm/failures), by numbers of the scene
+   * at hand. An empty text: nothing to say. Not collective.
+   */
+
+  /**
+   * Elements of degree 1 in a box of a material that hardly changes its volume.
+   * @param poisson the largest Poisson ratio in the body
+   */
+  template <int dim>
+  void note_locking(const Scene<dim> &scene, const double poisson, std::vector<std::string> &notes);
+
+  /** Ends of cracks inside the cells that they take away, or leave. */
+  template <int dim>
+  void note_tips_in_cells(const Scene<dim> &scene, std::vector<std::string> &notes);
+
+  /** Cracks at an angle to the rows of nodes, from which bonds break in groups. */
+  template <int dim>
+  void note_slow_oblique_cracks(const Scene<dim> &scene, std::vector<std::string> &notes);
+
+  /** The stiffness of a lattice whose families have few bonds. */
+  template <int dim>
+  std::string note_on_few_bonds(const Scene<dim>                     &scene,
+                                const std::vector<FamilyMember<dim>> &family);
+
+  /** Cracks that are held back between two rows of nodes. */
+  template <int dim>
+  std::string note_on_trapping(const Scene<dim>                     &scene,
+                               const std::vector<FamilyMember<dim>> &family);
+
+  /**
+   * A critical stretch where a fracture energy is meant.
+   * @param energy  per area of new crack, of the bonds that cross a plane of the lattice
+   * @param of_ball the same of the integral over a ball
+   */
+  template <int dim>
+  std::string note_on_stretch(const Scene<dim> &scene, const double energy, const double of_ball);
+} // namespace PeriDeal
