@@ -133,7 +133,7 @@ def write_between_marks(page, rows):
 def write_tables():
     """All scenes in doc/scenes.md, some of them in the README."""
     scenes = [scene for scene in sorted((ROOT / "prm").rglob("*.prm"), key=lambda s: (s.parent != ROOT / "prm", s.as_posix()))
-              if scene.parent.name != "failures" and not published_twin(scene)]  # the former are in doc/failures.md, the latter beside the others
+              if "failures" not in scene.parts and not published_twin(scene)]  # the former are in doc/failures.md, the latter beside the others
     write_between_marks(ROOT / "doc" / "scenes.md", [row_of(scene, ROOT / "doc") for scene in scenes])
     write_between_marks(ROOT / "README.md", [row_of(ROOT / "prm" / name, ROOT) for name in OF_README])
 
@@ -164,7 +164,7 @@ def main():
         write_tables()
         return 0
     scenes = [s.resolve() for s in options.scenes] or sorted(
-        s for s in (ROOT / "prm").rglob("*.prm") if s.parent.name != "failures" and not published_twin(s))
+        s for s in (ROOT / "prm").rglob("*.prm") if "failures" not in s.parts and not published_twin(s))
     failed = False
     for scene in scenes:
         old = FIGURES / f"{figure_name(scene)}.png"
