@@ -67,7 +67,8 @@ namespace PeriDeal
     const std::string middle = "set Segments = 0.2,0.5 ; 0.8,0.5";
     EXPECT_EQ(cells_of<2>(square("10, 10", middle), true), (Cells{{10, 11}}));
     EXPECT_EQ(cells_of<2>(square("10, 11", middle), false), (Cells{{10, 11}}));
-    EXPECT_EQ(cells_of<2>(square("10, 10", middle + "\nset Nodes on cracks = left"), false),
+    // Kept as given, which is said.
+    EXPECT_EQ(cells_of<2>(square("10, 10", middle + "\nset Nodes on cracks = left"), true),
               (Cells{{10, 10}}));
     EXPECT_EQ(cells_of<2>(square("10, 10", middle + "\nset Mesh = faces"), false),
               (Cells{{10, 10}}));
