@@ -185,8 +185,8 @@ namespace PeriDeal
     if (measure == AccuracyMeasure::flow)
       {
         const std::string &side = scene.accuracy.side;
-        const Json         all  = simulation.found()["models"]["auto"],
-                   flows        = all.value("boundary flux", Json::object());
+        const Json         all = simulation.found()["models"]["auto"], none = Json::object();
+        const Json        &flows = all.contains("boundary flux") ? all["boundary flux"] : none;
         std::vector<std::string> names;
         for (const auto &item : flows.items())
           names.push_back(item.key());
@@ -199,8 +199,10 @@ namespace PeriDeal
     else if (measure == AccuracyMeasure::stress_intensity)
       {
         const Json all = simulation.found()["models"]["auto"];
-        for (const auto &[end, k] : all.value("stress intensity", Json::object()).items())
-          numbers[end] = std::hypot(k["I"].template get<double>(), k["II"].template get<double>());
+        if (all.contains("stress intensity"))
+          for (const auto &[end, k] : all["stress intensity"].items())
+            numbers[end] =
+              std::hypot(k["I"].template get<double>(), k["II"].template get<double>());
       }
     return numbers;
   }

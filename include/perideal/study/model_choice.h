@@ -23,7 +23,7 @@ namespace PeriDeal
                  const RunMode     mode,
                  const bool        quiet);
 
-  /** Say what run_scene() would try with `Models = auto`, and what that costs at most. Collective. */
+  /** Say what run_scene() would try with `Models = auto`, and what that costs. Collective. */
   template <int dim>
   void describe_choice(const Scene<dim> &scene,
                        const SceneText  &text,
