@@ -111,6 +111,21 @@ def how_far_coupled(run):
     return f"{when} coupled model differs {' and '.join(parts)} in the relative L2 norm."
 
 
+def how_accurate(run):
+    """What `Models = auto` chose for the accuracy that was asked for."""
+    accuracy = run.summary.get("accuracy")
+    if not accuracy:
+        return None
+    tries = len(accuracy["steps"])
+    cells = accuracy["settings"]["Domain/Cells"].replace(", ", " x ")
+    graded = accuracy["settings"].get("Domain/Coarsening", "0") != "0"
+    mesh = f"a mesh that is {cells} cells fine at the crack" if graded else f"{cells} cells"
+    met = "" if accuracy["met"] else ": the budget did not allow more"
+    return (f"Chosen were {accuracy['model']} on {mesh}, in {tries} tries: "
+            f"the error ({accuracy['measure']}) is estimated as {percent(accuracy['estimate'])}, "
+            f"{percent(accuracy['tolerance'])} was asked for{met}.")
+
+
 def how_wrong(run):
     """Errors against the exact solution."""
     errors = {m: last((run.summary["models"][m].get("errors") or {}).get("relative l2"))
@@ -217,7 +232,7 @@ def what_broke(run, words):
 def sentences(run, words, difference):
     """Three to five sentences; difference: the largest one at the end, or None."""
     found = [what_ran(run, words), what_broke(run, words),
-             how_far_apart(run, words, difference), how_far_coupled(run), how_wrong(run),
+             how_far_apart(run, words, difference), how_far_coupled(run), how_accurate(run), how_wrong(run),
              what_it_cost(run),
              is_conserved(run, words), is_kept(run, words)]
     return [s for s in found if s]

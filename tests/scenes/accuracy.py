@@ -96,6 +96,15 @@ def others():
     spent = run_scene(text, {"Accuracy/Tolerance": "1e-7", "Accuracy/Budget": "1"})
     check(not spent.summary["accuracy"]["met"] and spent.summary["accuracy"]["budget exhausted"], "a budget of a second")
 
+    spent = run_scene(text, {"Accuracy/Budget": "1e-4"}, expect_error=True)
+    check_message(spent, "'Budget' in section 'Accuracy'", "two solutions")
+    # The scene that shows it, against itself asked for ten times more.
+    scene = open(os.path.join(SOURCE_DIR, "prm/coupling/chosen_model.prm")).read()
+    coarse, fine = (run_scene(scene, {"Accuracy/Tolerance": tolerance, "Output/Probes": "-0.1,0 ; 0,0.2 ; 0.5,0.2"}) for tolerance in ("2e-3", "2e-4"))
+    check(coarse.summary["accuracy"]["met"] and fine.summary["accuracy"]["met"], "chosen_model: the tolerance is met")
+    for mine, finer in zip(coarse.rows("auto"), fine.rows("auto")):
+        check_close(mine["value"], finer["value"], absolute=6e-3, what="chosen_model: a probe")
+
     def refused(overrides, *words):
         check_message(run_scene(crack.text(), overrides, expect_error=True), *words)
 
