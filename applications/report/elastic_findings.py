@@ -165,6 +165,6 @@ def sentences(run, words, difference, index, stressed):
                                  if loading.is_slow(run) else "")]
     found += intensities(run, words) + what_bonds_did(run, words) + largest_forces(run, words)
     found += [findings.how_far_apart(run, words, difference), findings.how_far_coupled(run),
-              findings.how_accurate(run), findings.how_wrong(run), what_is_stored(run), findings.what_it_cost(run),
-              are_balanced(run)]
+              findings.how_accurate(run), findings.how_wrong(run), what_is_stored(run),
+              findings.what_it_cost(run), are_balanced(run)]
     return [s for s in found if s]

@@ -232,7 +232,7 @@ def what_broke(run, words):
 def sentences(run, words, difference):
     """Three to five sentences; difference: the largest one at the end, or None."""
     found = [what_ran(run, words), what_broke(run, words),
-             how_far_apart(run, words, difference), how_far_coupled(run), how_accurate(run), how_wrong(run),
-             what_it_cost(run),
+             how_far_apart(run, words, difference), how_far_coupled(run),
+             how_accurate(run), how_wrong(run), what_it_cost(run),
              is_conserved(run, words), is_kept(run, words)]
     return [s for s in found if s]

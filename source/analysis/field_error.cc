@@ -15,6 +15,8 @@
 
 #include <cmath>
 
+#include "element_vectors.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -93,18 +95,14 @@ namespace PeriDeal
                               const DoFHandler<dim> &other_dofs,
                               const Vector          &other)
   {
-    const auto with_ghosts = [](const DoFHandler<dim> &of, const Vector &v) {
-      Vector copy(element_layout(of, static_cast<const Coupling<dim> *>(nullptr)));
-      for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
-        copy.local_element(i) = v.local_element(i);
-      copy.update_ghost_values();
-      return copy;
+    const auto ghosted = [](const DoFHandler<dim> &of, const Vector &v) {
+      return with_ghosts(v, element_layout(of, static_cast<const Coupling<dim> *>(nullptr)));
     };
-    const Vector        field = with_ghosts(dofs, u), other_field = with_ghosts(other_dofs, other);
-    FEValues<dim>       values(dofs.get_fe(),
+    const Vector            field = ghosted(dofs, u), other_field = ghosted(other_dofs, other);
+    FEValues<dim>           values(dofs.get_fe(),
                          QGauss<dim>(dofs.get_fe().degree + 1),
                          update_values | update_quadrature_points | update_JxW_values);
-    std::vector<double> of_cell(values.n_quadrature_points), here, weights;
+    std::vector<double>     of_cell(values.n_quadrature_points), here, weights;
     std::vector<Point<dim>> points;
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())

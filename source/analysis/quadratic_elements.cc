@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "element_vectors.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -25,28 +27,6 @@ namespace PeriDeal
       auto dofs = std::make_unique<DoFHandler<dim>>(mesh);
       dofs->distribute_dofs(FE_Q<dim>(2));
       return dofs;
-    }
-
-
-    /** The same cell with the unknowns of other elements. */
-    template <int dim>
-    typename DoFHandler<dim>::active_cell_iterator same_cell(
-      const typename DoFHandler<dim>::active_cell_iterator &cell,
-      const DoFHandler<dim>                                &dofs)
-    {
-      return {&dofs.get_triangulation(), cell->level(), cell->index(), &dofs};
-    }
-
-
-    /** A copy with the ghosts of a layout that owns the same unknowns. */
-    Vector with_ghosts(const Vector                                             &v,
-                       const std::shared_ptr<const Utilities::MPI::Partitioner> &layout)
-    {
-      Vector copy(layout);
-      for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
-        copy.local_element(i) = v.local_element(i);
-      copy.update_ghost_values();
-      return copy;
     }
   } // namespace
 
@@ -185,9 +165,7 @@ namespace PeriDeal
   template <int dim>
   bool QuadraticElements<dim>::is_left_out(const Cell &cell) const
   {
-    std::vector<types::global_dof_index> indices(prolongation.m());
-    same_cell(cell, *quadratic)->get_dof_indices(indices);
-    return left_out(indices.back()) > 0.;
+    return left_out(same_cell(cell, *quadratic)->dof_index(0)) > 0.; // that of the cell's middle
   }
 
 
@@ -284,66 +262,64 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** f - K v of the cells that count, v with ghosts, on all unknowns that do not hang. */
+    template <int dim, typename Counts>
+    Vector residual_of(const DoFHandler<dim>   &dofs,
+                       const Vector            &v,
+                       CellMaterial<dim>       &material,
+                       const HeatLoads<dim>    &loads,
+                       const HangingNodes<dim> &hanging,
+                       const Counts            &counts,
+                       const double             t)
+    {
+      material.take(v);
+      const unsigned int                   n = dofs.get_fe().n_dofs_per_cell();
+      FullMatrix<double>                   stiffness(n, n), other(n, n);
+      std::vector<types::global_dof_index> indices(n);
+      Vector                               r(v.get_partitioner());
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned() && counts(cell))
+          {
+            material.assemble(cell, stiffness, other);
+            if (cell->at_boundary())
+              {
+                loads.find_transfer(cell, other);
+                stiffness.add(1., other);
+              }
+            cell->get_dof_indices(indices);
+            for (unsigned int i = 0; i < n; ++i)
+              for (unsigned int k = 0; k < n; ++k)
+                r(indices[i]) -= stiffness(i, k) * v(indices[k]);
+          }
+      r.compress(VectorOperation::add);
+      hanging.condense(r);
+      r += loads.at(t);
+      return r;
+    }
+  } // namespace
+
+
   template <int dim>
   Vector QuadraticElements<dim>::residual(const Vector &w, const double t) const
   {
-    const Vector field = with_ghosts(w, layout);
-    material.take(field);
-    const unsigned int                   n = prolongation.m();
-    FullMatrix<double>                   stiffness(n, n), other(n, n);
-    std::vector<types::global_dof_index> indices(n);
-    dealii::Vector<double>               of_cell(n), image(n);
-    Vector                               r(layout);
-    for (const auto &cell : quadratic->active_cell_iterators())
-      if (cell->is_locally_owned() && !is_left_out(cell))
-        {
-          material.assemble(cell, stiffness, other);
-          if (cell->at_boundary())
-            {
-              loads.find_transfer(cell, other);
-              stiffness.add(1., other);
-            }
-          cell->get_dof_indices(indices);
-          for (unsigned int i = 0; i < n; ++i)
-            of_cell(i) = field(indices[i]);
-          stiffness.vmult(image, of_cell);
-          for (unsigned int i = 0; i < n; ++i)
-            r(indices[i]) -= image(i);
-        }
-    r.compress(VectorOperation::add);
-    hanging.condense(r);
-    r += loads.at(t);
-    return r;
+    const auto counts = [this](const Cell &cell) { return !is_left_out(cell); };
+    return residual_of(*quadratic, with_ghosts(w, layout), material, loads, hanging, counts, t);
   }
 
 
   template <int dim>
   Vector QuadraticElements<dim>::linear_residual(const Vector &v, const double t) const
   {
-    const Vector field = with_ghosts(v, linear_layout);
-    linear_material.take(field);
-    const unsigned int                   n = prolongation.n();
-    FullMatrix<double>                   stiffness(n, n), other(n, n);
-    std::vector<types::global_dof_index> indices(n);
-    Vector                               r(linear_layout);
-    for (const auto &cell : op.dof_handler().active_cell_iterators())
-      if (cell->is_locally_owned() && !is_left_out(cell))
-        {
-          linear_material.assemble(cell, stiffness, other);
-          if (cell->at_boundary())
-            {
-              linear_loads.find_transfer(cell, other);
-              stiffness.add(1., other);
-            }
-          cell->get_dof_indices(indices);
-          for (unsigned int i = 0; i < n; ++i)
-            for (unsigned int k = 0; k < n; ++k)
-              r(indices[i]) -= stiffness(i, k) * field(indices[k]);
-        }
-    r.compress(VectorOperation::add);
-    op.hanging_nodes().condense(r);
-    r += linear_loads.at(t);
-    return r;
+    const auto counts = [this](const Cell &cell) { return !is_left_out(cell); };
+    return residual_of(op.dof_handler(),
+                       with_ghosts(v, linear_layout),
+                       linear_material,
+                       linear_loads,
+                       op.hanging_nodes(),
+                       counts,
+                       t);
   }
 
 

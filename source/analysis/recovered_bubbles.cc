@@ -13,6 +13,8 @@
 #include <array>
 #include <cmath>
 
+#include "element_vectors.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -144,11 +146,7 @@ namespace PeriDeal
   template <int dim>
   Vector QuadraticElements<dim>::recovered_bubbles(const Vector &v) const
   {
-    Vector values(linear_layout);
-    for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
-      values.local_element(i) = v.local_element(i);
-    values.update_ghost_values();
-    const std::vector<Vector>            second   = second_derivatives(values);
+    const std::vector<Vector>            second = second_derivatives(with_ghosts(v, linear_layout));
     const unsigned int                   n_second = second.size() - 1;
     Vector                               w(layout), n_cells(layout);
     std::vector<types::global_dof_index> indices(prolongation.m());
@@ -156,11 +154,7 @@ namespace PeriDeal
     for (const auto &cell : op.dof_handler().active_cell_iterators())
       if (cell->is_locally_owned() && !is_left_out(cell))
         {
-          const Cell of_bubbles(&quadratic->get_triangulation(),
-                                cell->level(),
-                                cell->index(),
-                                quadratic.get());
-          of_bubbles->get_dof_indices(indices);
+          same_cell(cell, *quadratic)->get_dof_indices(indices);
           // Mean of what is known at some of the vertices; returns whether there is any.
           const auto mean = [&](const auto &takes_part) {
             double n = 0.;

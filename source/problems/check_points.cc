@@ -87,20 +87,12 @@ namespace PeriDeal
     }
 
 
-    std::string few_digits(const double x)
-    {
-      std::ostringstream text;
-      text << x;
-      return text.str();
-    }
-
-
     template <int dim>
     std::string text_of(const Point<dim> &p)
     {
       std::string text;
       for (unsigned int d = 0; d < dim; ++d)
-        text += (d > 0 ? ", " : "(") + few_digits(p[d]);
+        text += (d > 0 ? ", " : "(") + rounded_text(p[d], 6);
       return text + ")";
     }
   } // namespace
@@ -122,7 +114,7 @@ namespace PeriDeal
           continue;
         const std::string where = scene.boundary_conditions.where("Parts") + ", part '" +
                                   part.name + "': the point " + text_of(p) +
-                                  " lies outside the body, " + few_digits(near.distance) +
+                                  " lies outside the body, " + rounded_text(near.distance, 6) +
                                   " from the nearest corner of a cell, " + text_of(near.vertex);
         if (near.distance > near.diameter)
           AssertThrow(

@@ -7,7 +7,6 @@
 
 #include <cmath>
 
-#include "three_digits.h"
 
 namespace PeriDeal
 {
@@ -42,7 +41,7 @@ namespace PeriDeal
     notes.push_back(
       "the cracks grow in " + std::to_string(history.events().size()) +
       " events, between which no tip advances more than " + number_text(history.longest_advance()) +
-      (leaps > 1.5 ? ", a leap over " + three_digits(leaps) + " nodes at once" : "") +
+      (leaps > 1.5 ? ", a leap over " + rounded_text(leaps) + " nodes at once" : "") +
       "; bonds are cut too early or too late by at most the time that it needs for half of that ('Growth step' in section "
       "'Cracks').");
   }

@@ -18,7 +18,6 @@
 #include <array>
 #include <cmath>
 
-#include "three_digits.h"
 
 namespace PeriDeal
 {
@@ -43,13 +42,6 @@ namespace PeriDeal
               sum += std::abs(formula.value(values.quadrature_point(q))) * values.JxW(q);
           }
       return Utilities::MPI::sum(sum, mesh.get_communicator());
-    }
-
-
-    template <int dim>
-    bool exchanges_everywhere(const Scene<dim> &scene)
-    {
-      return scene.peridynamics.treatment == BoundaryTreatment::exchange;
     }
 
 
@@ -113,7 +105,7 @@ namespace PeriDeal
                           const Triangulation<dim> &mesh,
                           std::vector<std::string> &notes)
   {
-    constexpr double   most_points = 4e6, tolerable = 0.1;
+    constexpr double   most_points = 2e5, tolerable = 0.1;
     const Expression  &source = scene.initial_and_source.source;
     const unsigned int n      = static_cast<unsigned int>(
       std::min(16., std::pow(most_points / mesh.n_global_active_cells(), 1. / dim)));
@@ -121,7 +113,8 @@ namespace PeriDeal
       return;
     double     whole = 0., seen = 0.;
     const bool bonds_alone = !runs(scene, ModelKind::finite_elements) &&
-                             !runs(scene, ModelKind::coupled) && !exchanges_everywhere(scene);
+                             !runs(scene, ModelKind::coupled) &&
+                             scene.peridynamics.treatment != BoundaryTreatment::exchange;
     with_formulas(mesh.get_communicator(), [&] {
       whole = seen_by<dim>(mesh, QIterated<dim>(QMidpoint<1>(), n), source);
       seen  = !bonds_alone ?
@@ -133,8 +126,8 @@ namespace PeriDeal
       return;
     notes.push_back(
       std::string(bonds_alone ? "the nodes see " : "the quadrature points of the cells see ") +
-      three_digits(seen) + " of 'Source' in section 'Initial and source', whose integral is " +
-      three_digits(whole) + ": " + three_digits(seen / whole) +
+      rounded_text(seen) + " of 'Source' in section 'Initial and source', whose integral is " +
+      rounded_text(whole) + ": " + rounded_text(seen / whole) +
       " of it, since it is narrow beside the cells. Use more 'Cells' (section 'Domain'), or a wider source.");
   }
 
@@ -158,10 +151,10 @@ namespace PeriDeal
       }
     const double H = contact_conductance_of_transmission(t, kappa, horizon, ratio);
     notes.push_back(
-      "'Transmission = " + three_digits(t) +
-      "' in section 'Cracks' is the fraction that bonds of this horizon, " + three_digits(horizon) +
-      ", keep: it acts like a contact conductance of about " + three_digits(H) +
-      " here, and with half the horizon of " + three_digits(2. * H) +
+      "'Transmission = " + rounded_text(t) +
+      "' in section 'Cracks' is the fraction that bonds of this horizon, " + rounded_text(horizon) +
+      ", keep: it acts like a contact conductance of about " + rounded_text(H) +
+      " here, and with half the horizon of " + rounded_text(2. * H) +
       ". 'Contact conductance' is a property of the crack, the same on each lattice.");
   }
 
@@ -199,8 +192,8 @@ namespace PeriDeal
       return;
     notes.push_back(
       "peridynamics: there is no crack, one material and no 'Horizon' of its own, and finite elements solve the same problem more accurately: the slowest wave across the body decays too slowly by " +
-      three_digits(100. * bonds) + " % with bonds up to " + three_digits(scene.horizon()) +
-      " long, and by " + three_digits(100. * elements) +
+      rounded_text(100. * bonds) + " % with bonds up to " + rounded_text(scene.horizon()) +
+      " long, and by " + rounded_text(100. * elements) +
       " % with elements. 'Models = finite elements' is all that this scene needs.");
   }
 
@@ -255,7 +248,7 @@ namespace PeriDeal
       list.push_back(
         "in " + std::to_string(n_mixed) + (n_mixed == 1 ? " cell" : " cells") +
         " materials meet inside, with the mean of their conductivities: right for what flows along the interface, and up to " +
-        three_digits(largest) +
+        rounded_text(largest) +
         " times too much for what crosses it. 'Cells' in section 'Domain' with which interfaces lie on faces make it exact; more cells make it less.");
     if (n_removed > 0)
       {
@@ -266,7 +259,7 @@ namespace PeriDeal
           "the crack takes away " + std::to_string(n_removed) +
           " cells ('Mesh = removed' in section 'Cracks')" +
           (length > 0. ?
-             ", a gap " + three_digits(volume / length) + " wide in the mean, in place of a crack" :
+             ", a gap " + rounded_text(volume / length) + " wide in the mean, in place of a crack" :
              std::string()) +
           ". 'pairs' with 'Surface correction = crack scaling' (section 'Peridynamics') keeps what conducts along it.");
       }
@@ -307,8 +300,8 @@ namespace PeriDeal
         names.push_back("'" + name_of_side(side, true) + "'");
     return "families end at the " + std::string(names.size() == 1 ? "side " : "sides ") +
            join_names(names) + ": along " + (names.size() == 1 ? "it" : "each of them") +
-           " the body conducts as if it was " + three_digits(width) + " narrower, " +
-           three_digits(100. * most) +
+           " the body conducts as if it was " + rounded_text(width) + " narrower, " +
+           rounded_text(100. * most) +
            " % of its width in all. 'Boundary treatment = exchange' in section 'Peridynamics' lacks nothing there, nor does 'Symmetry' (section 'Boundary conditions') at sides without a given value.";
   }
 
@@ -338,7 +331,7 @@ namespace PeriDeal
     const std::string direction(1, "xyz"[static_cast<unsigned int>(p.correction_direction)]);
     return "'Correction direction = " + direction +
            "' in section 'Peridynamics' makes all bonds of a node stronger for those that it lacks in " +
-           direction + ", beside cracks up to " + three_digits(largest) +
+           direction + ", beside cracks up to " + rounded_text(largest) +
            " times: along the crack the body conducts too much there. With 'both' each direction has its own factor.";
   }
 
@@ -352,9 +345,9 @@ namespace PeriDeal
     const double n = std::max(1., std::round(end_time / stepper.current_step()));
     if (std::pow(left, n) < tolerable)
       return {};
-    return "a step of '" + stepper.name() + "' leaves up to " + three_digits(left) +
-           " of waves that it does not resolve, the " + three_digits(n) + " steps of this run " +
-           three_digits(std::pow(left, n)) +
+    return "a step of '" + stepper.name() + "' leaves up to " + rounded_text(left) +
+           " of waves that it does not resolve, the " + rounded_text(n) + " steps of this run " +
+           rounded_text(std::pow(left, n)) +
            ": what jumps, at the start or at a side, stays and rings. 'Time step = auto' in section 'Time' begins with steps that damp it, and 'Stepper = sdirk2' damps it in steps of any size.";
   }
 

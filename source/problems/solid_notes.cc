@@ -12,7 +12,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "three_digits.h"
 
 namespace PeriDeal
 {
@@ -101,8 +100,8 @@ namespace PeriDeal
         context.record.notes.push_back(
           run.name() + ": the energy balance does not close. What " +
           (imbalance < 0. ? "is missing" : "has come from nowhere") + " at the end, " +
-          three_digits(std::abs(imbalance)) + ", is " +
-          three_digits(100. * std::abs(imbalance) / whole) + " % of " +
+          rounded_text(std::abs(imbalance)) + ", is " +
+          rounded_text(100. * std::abs(imbalance) / whole) + " % of " +
           (of_bonds ? "what broken bonds have dissipated" :
                                  "what start and loads have brought in") +
           (run.stepper ?
@@ -178,10 +177,10 @@ namespace PeriDeal
       if (turned < little)
         return;
       context.record.notes.push_back(
-        run.name() + ": " + three_digits(100. * turned) + " % of the body has turned by up to " +
-        three_digits(largest) +
+        run.name() + ": " + rounded_text(100. * turned) + " % of the body has turned by up to " +
+        rounded_text(largest) +
         " (in radians). 'Kinematics = linear' in section 'Elasticity' is for small angles, and lets what turns so far grow by " +
-        three_digits(100. * (std::sqrt(1. + largest * largest) - 1.)) +
+        rounded_text(100. * (std::sqrt(1. + largest * largest) - 1.)) +
         " %. 'Kinematics = full', for peridynamics, turns it as it is.");
     }
   } // namespace

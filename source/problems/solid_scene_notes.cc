@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "three_digits.h"
 
 namespace PeriDeal
 {
@@ -69,8 +68,8 @@ namespace PeriDeal
       return;
     notes.push_back(
       "elements of degree 1 cannot bend without changing their volume, and with a Poisson ratio of " +
-      number_text(poisson) + " that takes almost any force: " + three_digits(n) +
-      " cells across make the body up to " + three_digits(stiffer) +
+      number_text(poisson) + " that takes almost any force: " + rounded_text(n) +
+      " cells across make the body up to " + rounded_text(stiffer) +
       " times too stiff in bending. 'Degree = 2' in section 'Finite elements' does not lock.");
   }
 
@@ -110,10 +109,10 @@ namespace PeriDeal
               continue;
             const double share = 0.5 * gained * h[axis] / (to - from);
             notes.push_back(
-              "crack " + std::to_string(k + 1) + " (section 'Cracks') ends " + three_digits(most) +
+              "crack " + std::to_string(k + 1) + " (section 'Cracks') ends " + rounded_text(most) +
               " of a cell from the cells that it takes away ('Mesh = removed'): to finite elements it is " +
-              three_digits(std::abs(gained) * h[axis]) + (gained > 0. ? " longer" : " shorter") +
-              " in all, which makes stress intensities " + three_digits(100. * std::abs(share)) +
+              rounded_text(std::abs(gained) * h[axis]) + (gained > 0. ? " longer" : " shorter") +
+              " in all, which makes stress intensities " + rounded_text(100. * std::abs(share)) +
               " % or more too " + (gained > 0. ? "large" : "small") +
               ". 'Cells' in section 'Domain' with which its ends lie on edges of cells, or 'Mesh = faces', make up for it.");
           }
@@ -138,7 +137,7 @@ namespace PeriDeal
             if (angle > from && angle < to)
               notes.push_back(
                 "crack " + std::to_string(k + 1) + " (section 'Cracks') lies at " +
-                three_digits(angle) +
+                rounded_text(angle) +
                 " degrees to the rows of nodes. In slow loading bonds break in groups, and it turns into the rows, where fewest are in its way. "
                 "With 'Solver = dynamics' in section 'Elasticity' it does not, nor where the lattice lies along it.");
           }
@@ -175,10 +174,10 @@ namespace PeriDeal
       return dim == 2 ? 4. * bulk * shear / (bulk + shear) :
                          9. * bulk * shear / (3. * bulk + shear);
     };
-    return "families of m = " + three_digits(scene.horizon() / h[0]) +
-           " with this kernel have a shear modulus of " + three_digits(g) +
+    return "families of m = " + rounded_text(scene.horizon() / h[0]) +
+           " with this kernel have a shear modulus of " + rounded_text(g) +
            " times that of 'Material' along the axes, and a plate pulled along one is " +
-           three_digits(young(G * (dim == 2 ? 2. - g : 0.5 * (5. - 3. * g))) / young(G)) +
+           rounded_text(young(G * (dim == 2 ? 2. - g : 0.5 * (5. - 3. * g))) / young(G)) +
            " times as stiff as it should be. 'Kernel exponent = 0' in section 'Peridynamics' and a larger 'Horizon ratio' bring both near 1.";
   }
 
@@ -204,10 +203,10 @@ namespace PeriDeal
           all += energy;
           strongest = std::max(strongest, energy / member.offset[0]);
         }
-    return "with m = " + three_digits(m) +
+    return "with m = " + rounded_text(m) +
            " a crack along the rows gets on a column at a time, by " + std::to_string(n_bonds) +
            " bonds that hold it back until the last breaks (one of them has " +
-           three_digits(100. * strongest / all) +
+           rounded_text(100. * strongest / all) +
            " % of the energy): loads at which it runs come out 10 to 20 % too large however fine the lattice is. "
            "'Horizon ratio' of 4 or 5 (section 'Peridynamics') takes that away.";
   }
@@ -221,9 +220,9 @@ namespace PeriDeal
       return {};
     const Tensor<1, dim> h = scene.domain.spacing();
     return "'Critical stretch' in section 'Material' is a fracture energy of " +
-           three_digits(energy) + " on this lattice of m = " +
-           three_digits(scene.horizon() / *std::min_element(h.begin_raw(), h.end_raw())) + ", " +
-           three_digits(energy / of_ball) +
+           rounded_text(energy) + " on this lattice of m = " +
+           rounded_text(scene.horizon() / *std::min_element(h.begin_raw(), h.end_raw())) + ", " +
+           rounded_text(energy / of_ball) +
            " times that of a ball, from which textbooks have their formulas. 'Fracture energy' in its place is the same on every lattice.";
   }
 

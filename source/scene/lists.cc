@@ -216,6 +216,14 @@ namespace PeriDeal
   }
 
 
+  std::string rounded_text(const double value, const int n_digits)
+  {
+    std::ostringstream out;
+    out << std::setprecision(n_digits) << value;
+    return out.str();
+  }
+
+
   template dealii::Point<1>              parse_point<1>(const std::string &, const std::string &);
   template dealii::Point<2>              parse_point<2>(const std::string &, const std::string &);
   template dealii::Point<3>              parse_point<3>(const std::string &, const std::string &);

@@ -20,20 +20,10 @@ namespace PeriDeal
 
   namespace
   {
-    /** Few digits, as people read them. */
-    std::string digits(const double value, const int n = 4)
-    {
-      std::ostringstream text;
-      text.precision(n);
-      text << value;
-      return text.str();
-    }
-
-
     std::string at_time(const double t, const json &summary)
     {
       const std::string unit = summary["units"].value("time", "");
-      return "t = " + digits(t) + (unit.empty() ? "" : " " + unit);
+      return "t = " + rounded_text(t, 4) + (unit.empty() ? "" : " " + unit);
     }
 
 
@@ -56,8 +46,9 @@ namespace PeriDeal
       const double relative = last_of(entries, "relative l2"),
                    largest  = last_of(entries, "maximum");
       if (std::isfinite(relative))
-        lines.push_back(pair + ": " + digits(100. * relative, 3) + " % (relative L2), at most " +
-                        digits(largest, 3) + (unit.empty() ? "" : " " + unit));
+        lines.push_back(pair + ": " + rounded_text(100. * relative, 3) +
+                        " % (relative L2), at most " + rounded_text(largest, 3) +
+                        (unit.empty() ? "" : " " + unit));
     }
 
 
@@ -67,7 +58,7 @@ namespace PeriDeal
         if (model.contains("errors"))
           if (const double error = last_of(model["errors"], "relative l2"); std::isfinite(error))
             lines.push_back("error of " + name + " against the exact solution: " +
-                            digits(100. * error, 3) + " % (relative L2)");
+                            rounded_text(100. * error, 3) + " % (relative L2)");
     }
 
 
@@ -108,7 +99,7 @@ namespace PeriDeal
             constexpr double small = 0.01;
             if (mode == "II" && std::abs(k_2) < small * std::abs(k_1))
               return std::string();
-            return digits(mode == "I" ? k_1 : k_2);
+            return rounded_text(mode == "I" ? k_1 : k_2, 4);
           });
       if (ends.size() > most)
         lines.push_back("stress intensities at " + std::to_string(ends.size() - most) +
@@ -126,7 +117,7 @@ namespace PeriDeal
       std::string text;
       if (model.contains("first broken bond"))
         for (const json &x : model["first broken bond"])
-          text += (text.empty() ? "" : ", ") + digits(x);
+          text += (text.empty() ? "" : ", ") + rounded_text(x, 4);
       return text.empty() ? text : " at (" + text + ")";
     }
 
@@ -138,8 +129,8 @@ namespace PeriDeal
         if (!model.contains("largest force") || model["largest force"]["value"] == 0.)
           return std::string();
         const json &found = model["largest force"];
-        return digits(found["value"]) + " on " + found["side"].get<std::string>() + " in " +
-               found["direction"].get<std::string>() +
+        return rounded_text(found["value"], 4) + " on " + found["side"].get<std::string>() +
+               " in " + found["direction"].get<std::string>() +
                (steady ? "" : " at " + at_time(found["time"], summary));
       });
       add_of_models(lines, "broken bonds", summary, [&](const json &model) {
@@ -222,7 +213,7 @@ namespace PeriDeal
                   summary,
                   [](const json &model) {
                     return model.contains("effective conductivity") ?
-                             digits(model["effective conductivity"], 6) :
+                             rounded_text(model["effective conductivity"], 6) :
                              std::string();
                   });
     add_intensities(lines, summary);

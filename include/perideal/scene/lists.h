@@ -82,4 +82,7 @@ namespace PeriDeal
 
   /** Shortest decimal text that reads back as the same number, as far as 12 digits allow. */
   std::string number_text(const double value);
+
+  /** With so many digits, as people read numbers in a sentence. */
+  std::string rounded_text(const double value, const int n_digits = 3);
 } // namespace PeriDeal

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include <perideal/base/point_order.h>
 #include <perideal/base/user_error.h>
@@ -62,13 +63,14 @@ namespace PeriDeal
     template <int dim>
     double crossing_of_ball(const Peridynamics &p, const double delta)
     {
-      constexpr unsigned int n_points = 2000;
-      constexpr double       mean     = dim == 1 ? 1. : dim == 2 ? 2. / numbers::PI : 0.5;
-      double                 longer = 0., all = 0.; // moments of omega
-      for (unsigned int k = 0; k < n_points; ++k)
+      constexpr double mean = dim == 1 ? 1. : dim == 2 ? 2. / numbers::PI : 0.5;
+      const QGauss<1>  points(20);
+      double           longer = 0., all = 0.; // moments of omega
+      for (unsigned int q = 0; q < points.size(); ++q)
         {
-          const double r     = (k + 0.5) / n_points * delta;
-          const double omega = kernel_shape(p.kernel, r, delta) / std::pow(r, p.kernel_exponent);
+          const double r = points.point(q)[0] * delta;
+          const double omega =
+            points.weight(q) * kernel_shape(p.kernel, r, delta) / std::pow(r, p.kernel_exponent);
           all += omega * std::pow(r, dim + 1);
           longer += omega * std::pow(r, dim + 2);
         }
