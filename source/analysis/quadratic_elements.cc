@@ -181,34 +181,11 @@ namespace PeriDeal
   }
 
 
+  /** Call visit(dof, dof of a vertex, weight) for the entries of P in rows of owned unknowns. */
   template <int dim>
-  Vector QuadraticElements<dim>::prolonged(const Vector &v) const
+  template <typename Visit>
+  void QuadraticElements<dim>::for_each_prolonged(const Visit &visit) const
   {
-    const Vector                         values = with_ghosts(v, linear_layout);
-    Vector                               w(layout);
-    std::vector<types::global_dof_index> indices(prolongation.m()), vertices(prolongation.n());
-    for (const auto &cell : quadratic->active_cell_iterators())
-      if (!cell->is_artificial())
-        {
-          cell->get_dof_indices(indices);
-          same_cell(cell, op.dof_handler())->get_dof_indices(vertices);
-          for (unsigned int i = 0; i < indices.size(); ++i)
-            if (layout->in_local_range(indices[i]))
-              {
-                double value = 0.;
-                for (unsigned int k = 0; k < vertices.size(); ++k)
-                  value += prolongation(i, k) * values(vertices[k]);
-                w(indices[i]) = value;
-              }
-        }
-    return w;
-  }
-
-
-  template <int dim>
-  Vector QuadraticElements<dim>::restricted(const Vector &r) const
-  {
-    Vector                               result(linear_layout);
     std::vector<char>                    done(layout->locally_owned_size(), 0);
     std::vector<types::global_dof_index> indices(prolongation.m()), vertices(prolongation.n());
     for (const auto &cell : quadratic->active_cell_iterators())
@@ -221,9 +198,31 @@ namespace PeriDeal
               {
                 done[layout->global_to_local(indices[i])] = 1;
                 for (unsigned int k = 0; k < vertices.size(); ++k)
-                  result(vertices[k]) += prolongation(i, k) * r(indices[i]);
+                  visit(indices[i], vertices[k], prolongation(i, k));
               }
         }
+  }
+
+
+  template <int dim>
+  Vector QuadraticElements<dim>::prolonged(const Vector &v) const
+  {
+    const Vector values = with_ghosts(v, linear_layout);
+    Vector       w(layout);
+    for_each_prolonged([&](const auto dof, const auto vertex_dof, const double weight) {
+      w(dof) += weight * values(vertex_dof);
+    });
+    return w;
+  }
+
+
+  template <int dim>
+  Vector QuadraticElements<dim>::restricted(const Vector &r) const
+  {
+    Vector result(linear_layout);
+    for_each_prolonged([&](const auto dof, const auto vertex_dof, const double weight) {
+      result(vertex_dof) += weight * r(dof);
+    });
     result.compress(VectorOperation::add);
     op.hanging_nodes().condense(result);
     return result;

@@ -294,28 +294,6 @@ namespace PeriDeal
   } // namespace
 
 
-  namespace
-  {
-    template <int dim>
-    void run_chosen_model(const Scene<dim> &scene,
-                          const SceneText  &text,
-                          const MPI_Comm    communicator,
-                          const RunMode     mode,
-                          const bool        quiet)
-    {
-      AssertThrow(
-        mode != RunMode::resume,
-        UserError("--resume: 'Models = auto' keeps no checkpoints; run the scene again."));
-      Choice<dim>    choice(scene, text, communicator, quiet);
-      auto           files = std::make_unique<RunFiles>(scene, text, communicator, mode);
-      const Progress progress(communicator, true);
-      const std::function<void()> search = [&choice] { choice.search(); };
-      with_orderly_end(*files, progress, search);
-      choice.write(std::move(files));
-    }
-  } // namespace
-
-
   template <int dim>
   void run_scene(const Scene<dim> &scene,
                  const SceneText  &text,
@@ -323,10 +301,16 @@ namespace PeriDeal
                  const RunMode     mode,
                  const bool        quiet)
   {
-    if (scene.general.automatic)
-      run_chosen_model(scene, text, communicator, mode, quiet);
-    else
-      Simulation<dim>(scene, text, communicator, quiet).run(mode);
+    if (!scene.general.automatic)
+      return Simulation<dim>(scene, text, communicator, quiet).run(mode);
+    AssertThrow(mode != RunMode::resume,
+                UserError("--resume: 'Models = auto' keeps no checkpoints; run the scene again."));
+    Choice<dim>                 choice(scene, text, communicator, quiet);
+    auto                        files = std::make_unique<RunFiles>(scene, text, communicator, mode);
+    const Progress              progress(communicator, true);
+    const std::function<void()> search = [&choice] { choice.search(); };
+    with_orderly_end(*files, progress, search);
+    choice.write(std::move(files));
   }
 
 

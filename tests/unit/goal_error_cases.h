@@ -4,8 +4,11 @@
 #pragma once
 
 #include <perideal/analysis/goal_error.h>
+#include <perideal/analysis/point_evaluator.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -45,6 +48,39 @@ namespace PeriDeal
     {
       double error = 0., weighted = 0., corrected = 0., quadratic = 0.;
     };
+
+
+    /** Of finite elements. */
+    template <int dim>
+    double value_at(const dealii::DoFHandler<dim> &dofs,
+                    const Cracks<dim>             &cracks,
+                    const Point<dim>              &p,
+                    const Vector                  &u)
+    {
+      const std::vector<double> point(p.begin_raw(), p.end_raw());
+      return PointEvaluator<dim>(dofs, nullptr, cracks, {point}, "point").evaluate(u)[0];
+    }
+
+
+    /** PERIDEAL_TABLES in the environment: print what is compared, and more of it. */
+    inline bool with_tables()
+    {
+      return std::getenv("PERIDEAL_TABLES") != nullptr;
+    }
+
+
+    /** A row of a table in Markdown. */
+    inline void print_row(const std::string &name, const Row &row)
+    {
+      if (with_tables() && dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+        std::printf("| %s | %.3e | %.3e | %.3f | %.3f | %.3f |\n",
+                    name.c_str(),
+                    row.error,
+                    row.weighted,
+                    row.weighted / row.error,
+                    row.corrected / row.error,
+                    row.quadratic / row.error);
+    }
 
 
     inline Settings cells(const unsigned int n, const int dim = 2)

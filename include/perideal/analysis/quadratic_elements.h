@@ -117,6 +117,9 @@ namespace PeriDeal
     template <typename Visit>
     void for_each_bubble(const Visit &visit) const;
 
+    template <typename Visit>
+    void for_each_prolonged(const Visit &visit) const;
+
     std::vector<Vector> second_derivatives(const Vector &v) const;
 
     const FEMOperator<dim>                                    &op;
