@@ -137,16 +137,16 @@ namespace PeriDeal
         points[k] = off_cracks(points[k], geometries, shift);
       }
     inner = points;
-    if (on_lattice)
+    const bool across_cells =
+      beside == BesideCracks::own_side && !at_centers && !cracks.on_faces() && !geometries.empty();
+    if (on_lattice && !across_cells)
       locate_on_lattice(*nodes, points);
     else if (at_centers && nodes != nullptr)
       locate_nearest(dofs, *nodes, points);
     else
       locate_in_mesh(dofs,
                      points,
-                     beside == BesideCracks::own_side && cracks.cut_pairs() ?
-                       geometries :
-                       std::vector<CrackGeometry<dim>>());
+                     across_cells ? geometries : std::vector<CrackGeometry<dim>>());
     find_gaps(coordinates, entry, outside);
   }
 

@@ -151,7 +151,9 @@ namespace PeriDeal
     require_memory(scene, communicator);
     output->open(text, communicator, mode);
     nlohmann::ordered_json summary;
-    with_orderly_end(output->files(), progress, [&] { summary = compute(); });
+    with_orderly_end(output->files(), progress, [&] {
+      summary = compute(nlohmann::ordered_json::object(), progress);
+    });
     output->close();
     progress.end();
     say_what_was_found(progress, summary, scene.general.output_directory);
@@ -159,7 +161,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  nlohmann::ordered_json Simulation<dim>::compute()
+  nlohmann::ordered_json Simulation<dim>::compute(const nlohmann::ordered_json &more,
+                                                  const Progress               &tell)
   {
     build();
     if (!scene.time.steady)
@@ -177,7 +180,7 @@ namespace PeriDeal
       }
     pass_output_times();
     progress.end();
-    return finish(nlohmann::ordered_json::object(), progress);
+    return finish(more, tell);
   }
 
 

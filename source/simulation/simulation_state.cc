@@ -214,14 +214,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::solve()
+  void Simulation<dim>::solve(const std::function<void(const double)> &see)
   {
     require_computable(scene, text);
     require_memory(scene, communicator);
-    Assert(scene.time.steady, ExcMessage("Only what is steady can be solved at once."));
     build();
     begin();
-    find_steady_state();
+    if (!scene.time.steady)
+      settle();
+    for (const double t : output_times())
+      {
+        advance_to(t);
+        if (see)
+          see(t);
+      }
   }
 
 
@@ -236,8 +242,8 @@ namespace PeriDeal
   nlohmann::ordered_json Simulation<dim>::found()
   {
     for (const auto &problem : problems)
-      problem->examine(0.);
-    add_totals(0.);
+      problem->examine(place.now);
+    add_totals(place.now);
     record->totals.clear(); // rows are added when they are written
     return summary_now(true);
   }
@@ -251,8 +257,13 @@ namespace PeriDeal
     output->adopt(std::move(files));
     nlohmann::ordered_json summary;
     with_orderly_end(output->files(), progress, [&] {
-      write_output(0.);
-      summary = finish(more, tell);
+      if (!scene.time.steady)
+        summary = compute(more, tell);
+      else
+        {
+          write_output(0.);
+          summary = finish(more, tell);
+        }
     });
     output->close();
     tell.end();
@@ -260,17 +271,17 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                        \
-  template void                   Simulation<dim>::prepare_adaptation();                 \
-  template bool                   Simulation<dim>::adapt(const double);                  \
-  template void                   Simulation<dim>::resume();                             \
-  template void                   Simulation<dim>::solve();                              \
-  template const Problem<dim>    &Simulation<dim>::problem() const;                      \
-  template nlohmann::ordered_json Simulation<dim>::found();                              \
-  template void                   Simulation<dim>::write(std::unique_ptr<RunFiles>,      \
-                                       const nlohmann::ordered_json &, \
-                                       const Progress &);              \
-  template void                   Simulation<dim>::find_steady_state();                  \
+#define PERIDEAL_INSTANTIATE(dim)                                                                    \
+  template void                   Simulation<dim>::prepare_adaptation();                             \
+  template bool                   Simulation<dim>::adapt(const double);                              \
+  template void                   Simulation<dim>::resume();                                         \
+  template void                   Simulation<dim>::solve(const std::function<void(const double)> &); \
+  template const Problem<dim>    &Simulation<dim>::problem() const;                                  \
+  template nlohmann::ordered_json Simulation<dim>::found();                                          \
+  template void                   Simulation<dim>::write(std::unique_ptr<RunFiles>,                  \
+                                       const nlohmann::ordered_json &,             \
+                                       const Progress &);                          \
+  template void                   Simulation<dim>::find_steady_state();                              \
   template void                   Simulation<dim>::offer_checkpoint(const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -22,16 +22,15 @@ namespace PeriDeal
     template <int dim>
     std::string obstacle(const Scene<dim> &scene)
     {
-      if (scene.domain.shape != Shape::box)
-        return "bodies other than a box ('Shape' in section 'Domain')";
-      if (!scene.time.steady)
-        return problem_factory(scene).n_components() > 1 ?
-                 "motion and loads that change with time" :
-                 "what changes with time: set 'Steady = true' in section 'Time' for the steady state";
-      if (scene.cracks.change())
-        return "cracks that grow or change ('Growth', 'Transmission' in section 'Cracks')";
-      if (scene.peridynamics.horizon > 0.)
-        return "a horizon that is a length ('Horizon' in section 'Peridynamics'), thus nonlocal solutions";
+      const bool deforms = problem_factory(scene).n_components() > 1;
+      if (scene.domain.shape != Shape::box || scene.domain.holes.has_one ||
+          !scene.domain.holes.listed.empty())
+        return "bodies other than a box ('Shape' and 'Holes' in section 'Domain')";
+      if (!scene.time.steady && deforms)
+        return "motion and loads that change with time";
+      if (scene.cracks.change() && (scene.time.steady || scene.peridynamics.horizon > 0.))
+        return "cracks that grow or change ('Growth', 'Transmission' in section 'Cracks') in a steady state, or with a "
+               "horizon that is a length";
       if (scene.elasticity.computes_temperature)
         return "a computed temperature ('Temperature change' in section 'Elasticity')";
       if (scene.material.fracture_energy || scene.material.critical_stretch)
@@ -44,22 +43,38 @@ namespace PeriDeal
 
 
   template <int dim>
-  Attempts<dim>::Attempts(const Scene<dim> &scene)
-    : scene(scene)
-    , box(cracked_box(scene))
+  void require_choice(const Scene<dim> &scene)
   {
     const std::string what = obstacle(scene);
     AssertThrow(what.empty(),
                 UserError("Entry 'Models': 'auto' does not choose for " + what +
                           ". Name models instead: finite elements, peridynamics, coupled."));
+  }
+
+
+  template <int dim>
+  Attempts<dim>::Attempts(const Scene<dim> &scene, const LimitOfAttempts limit)
+    : scene(scene)
+    , box(cracked_box(scene))
+  {
     for (unsigned int d = 0; d < dim; ++d)
       longest = std::max(longest, box.upper[d] - box.lower[d]);
+    family = family_for(scene, limit, !scene.cracks.cracks.empty() && on_faces(1.));
+  }
+
+
+  template <int dim>
+  typename Attempts<dim>::Family Attempts<dim>::family_for(const Scene<dim>     &scene,
+                                                           const LimitOfAttempts limit,
+                                                           const bool            on_faces)
+  {
+    if (limit == LimitOfAttempts::nonlocal)
+      return Family::bonds;
     if (scene.cracks.cracks.empty() || dim == 1)
-      return;
-    const bool deforms = problem_factory(scene).n_components() > 1;
-    family             = on_faces(1.) && !scene.cracks.conduct() ? Family::faces :
-                         deforms                                 ? Family::zone :
-                                                                   Family::pairs;
+      return Family::whole;
+    if (on_faces && !scene.cracks.conduct() && !scene.cracks.change())
+      return Family::faces;
+    return problem_factory(scene).n_components() > 1 ? Family::zone : Family::pairs;
   }
 
 
@@ -144,35 +159,53 @@ namespace PeriDeal
 
 
   template <int dim>
-  Attempt Attempts<dim>::at(const double fineness) const
+  void Attempts<dim>::set_mesh(const double fineness, Attempt &attempt) const
   {
-    Attempt attempt;
-    attempt.settings = {{"Domain/Node spacing", ""}, {"Cracks/Nodes on cracks", "left"}};
-    const auto set   = [&](const std::string &entry, const std::string &text) {
-      attempt.settings.emplace_back(entry, text);
-    };
-    const auto shift = [](CellCounts cells, const unsigned int levels) {
-      for (unsigned int &n : cells)
-        n <<= levels;
-      return cells;
-    };
-    const bool   on_cells = family == Family::whole || family == Family::faces;
-    unsigned int levels   = 0;
-    CellCounts   coarse   = counts(fineness);
+    unsigned int levels = 0;
+    CellCounts   cells  = counts(fineness);
     if (family == Family::faces)
       {
-        coarse = *on_faces(fineness);
-        levels = halvings(fineness_of(coarse) / fineness_of(*on_faces(1.)), dim == 3 ? 2. : 3.);
-        set("Domain/Fine where", "crack ends");
+        cells  = *on_faces(fineness);
+        levels = halvings(fineness_of(cells) / fineness_of(*on_faces(1.)), dim == 3 ? 2. : 3.);
+        attempt.settings.emplace_back("Domain/Fine where", "crack ends");
       }
-    else if (!on_cells)
+    else if (family != Family::whole && !scene.cracks.change())
       {
         levels = halvings(fineness / 4., 2.);
-        set("Domain/Fine where", "auto");
+        attempt.settings.emplace_back("Domain/Fine where", "auto");
       }
-    levels = possible_halvings(coarse, levels);
-    set("Domain/Cells", to_text(shift(coarse, levels)));
-    set("Domain/Coarsening", std::to_string(levels));
+    attempt.fineness = fineness_of(cells);
+    levels           = possible_halvings(cells, levels);
+    for (unsigned int &n : cells)
+      n <<= levels;
+    attempt.settings.emplace_back("Domain/Cells", to_text(cells));
+    attempt.settings.emplace_back("Domain/Coarsening", std::to_string(levels));
+  }
+
+
+  template <int dim>
+  Attempt Attempts<dim>::at(const double fineness) const
+  {
+    Attempt    attempt;
+    const auto set = [&](const std::string &entry, const std::string &text) {
+      attempt.settings.emplace_back(entry, text);
+    };
+    set("Domain/Node spacing", "");
+    if (family == Family::bonds)
+      {
+        attempt.model = ModelKind::peridynamics;
+        const double nodes =
+          std::max(2., std::round(fineness / longest * scene.peridynamics.horizon));
+        CellCounts cells = counts(nodes * longest / scene.peridynamics.horizon);
+        attempt.fineness = fineness_of(cells);
+        set("Domain/Cells", to_text(cells));
+        set("Domain/Coarsening", "0");
+        set("Models", to_string(attempt.model));
+        return attempt;
+      }
+    set_mesh(fineness, attempt);
+    const bool on_cells = family == Family::whole || family == Family::faces;
+    set("Cracks/Nodes on cracks", "left");
     set("Finite elements/Degree", on_cells ? "2" : "1");
     if (!scene.cracks.cracks.empty())
       set("Cracks/Mesh", family == Family::faces ? "faces" : "auto");
@@ -183,24 +216,68 @@ namespace PeriDeal
     set("Coupling/Overlap", "0");
     set("Coupling/Certificate", "false");
     set("Peridynamics/Horizon ratio", "3");
-    set("Peridynamics/Surface correction", on_cells ? "auto" : "crack scaling");
+    set("Peridynamics/Horizon", "");
+    set("Peridynamics/Surface correction",
+        on_cells || scene.cracks.change() ? "auto" : "crack scaling");
     set("Models", to_string(attempt.model));
-    attempt.fineness = fineness_of(coarse);
     return attempt;
   }
+
+
+  namespace
+  {
+    /**
+     * Where a crack's ends lie in their cells changes the error by factors of two, so that two
+     * differences do not show an order. Sequences of turned cracks have this one on average.
+     */
+    constexpr double order_across_cells = 1.75;
+  } // namespace
 
 
   template <int dim>
   double Attempts<dim>::best_order() const
   {
-    return family == Family::whole ? 3. : family == Family::faces ? (dim == 3 ? 2. : 3.) : 2.;
+    switch (family)
+      {
+        case Family::whole:
+          return 3.;
+        case Family::faces:
+          return dim == 3 ? 2. : 3.;
+        case Family::bonds:
+          return 2.;
+        default:
+          return order_across_cells;
+      }
+  }
+
+
+  template <int dim>
+  double Attempts<dim>::lowest_order() const
+  {
+    return family == Family::pairs || family == Family::zone ? order_across_cells : 1.;
+  }
+
+
+  template <int dim>
+  double Attempts<dim>::first_ratio() const
+  {
+    return family == Family::bonds ? 1.5 : 2.;
   }
 
 
   template <int dim>
   double Attempts<dim>::growth_of_cost() const
   {
-    return family == Family::pairs || family == Family::zone ? 2. * (dim - 1) : dim;
+    switch (family)
+      {
+        case Family::pairs:
+        case Family::zone:
+          return scene.cracks.change() ? dim : 2. * (dim - 1);
+        case Family::bonds:
+          return 2. * dim;
+        default:
+          return dim;
+      }
   }
 
 
@@ -210,16 +287,23 @@ namespace PeriDeal
     switch (family)
       {
         case Family::whole:
-          return "No crack and no horizon of its own: quadratic finite elements.";
+          return scene.peridynamics.horizon > 0. ?
+                   "No crack: quadratic finite elements for the classical solution." :
+                   "No crack and no horizon of its own: quadratic finite elements.";
         case Family::faces:
           return "The cracks run along the axes: quadratic finite elements with the cracks on faces "
                  "of cells, fine at their ends.";
         case Family::pairs:
-          return "The cracks lie across cells: finite elements, fine along the cracks, with the pairs "
-                 "of nodes that they do not part in the cells that they cut.";
-        default:
+          return std::string("The cracks ") +
+                 (scene.cracks.change() ?
+                    "grow: finite elements" :
+                    "lie across cells: finite elements, fine along the cracks") +
+                 ", with the pairs of nodes that they do not part in the cells that they cut.";
+        case Family::zone:
           return "The cracks lie across cells of a body that deforms: bonds around them, finite "
                  "elements elsewhere.";
+        default:
+          return "The horizon is a length: peridynamics for the nonlocal solution.";
       }
   }
 
@@ -227,11 +311,16 @@ namespace PeriDeal
   template <int dim>
   double Attempts<dim>::coarsest() const
   {
+    if (family == Family::bonds)
+      return 2. * longest / scene.peridynamics.horizon;
     const double fewest = dim == 1 ? 4. : dim == 2 ? 3. : 2.;
     return std::max(fewest, 0.25 * fineness_of_formulas(scene));
   }
 
 
+  template void require_choice(const Scene<1> &);
+  template void require_choice(const Scene<2> &);
+  template void require_choice(const Scene<3> &);
   template class Attempts<1>;
   template class Attempts<2>;
   template class Attempts<3>;

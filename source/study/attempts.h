@@ -21,22 +21,37 @@ namespace PeriDeal
   };
 
 
+  /** What a solution is compared with: the classical one, or the nonlocal one of the horizon. */
+  enum class LimitOfAttempts
+  {
+    classical,
+    nonlocal
+  };
+
+
+  /** Throws UserError for scenes for which nothing can be chosen. Not collective. */
+  template <int dim>
+  void require_choice(const Scene<dim> &scene);
+
+
   /**
-   * The models and meshes that are worth trying for a scene, one family from coarse to fine:
+   * The models and meshes that are worth trying for a scene, one family from coarse to fine. For
+   * the classical solution:
    *
    * - without cracks quadratic elements on a lattice;
    * - with cracks along faces of a lattice the same with the crack on faces, graded to its ends, so
    *   that the cells there are the cube of those far away;
    * - with others, what diffuses: linear elements, pairs of nodes in cut cells, scaled, fine along
-   *   the cracks, so that the cells there are the square of those far away; bodies that deform:
-   *   bonds around the cracks on such a mesh.
+   *   the cracks, so that the cells there are the square of those far away (where they grow, the
+   *   same everywhere); bodies that deform: bonds around the cracks on such a mesh.
+   *
+   * For the nonlocal one of a horizon that is a length: peridynamics, with ever more nodes in it.
    */
   template <int dim>
   class Attempts
   {
   public:
-    /** Throws UserError for scenes that have none. Not collective. */
-    explicit Attempts(const Scene<dim> &scene);
+    Attempts(const Scene<dim> &scene, const LimitOfAttempts limit);
 
     /** The coarsest that is worth a try: formulas of the scene are seen by it. Not collective. */
     double coarsest() const;
@@ -47,7 +62,13 @@ namespace PeriDeal
     /** How the error goes with 1/fineness where nothing disturbs it. Not collective. */
     double best_order() const;
 
-    /** How the number of unknowns does. Not collective. */
+    /** The lowest with which that is believed to go. Not collective. */
+    double lowest_order() const;
+
+    /** Of finenesses, from one to the next, while little is known. Not collective. */
+    double first_ratio() const;
+
+    /** How the cost grows with the fineness. Not collective. */
     double growth_of_cost() const;
 
     /** In a sentence, why this family. Not collective. */
@@ -59,10 +80,16 @@ namespace PeriDeal
       whole,
       faces,
       pairs,
-      zone
+      zone,
+      bonds
     };
 
+    static Family family_for(const Scene<dim>     &scene,
+                             const LimitOfAttempts limit,
+                             const bool            on_faces);
+
     CellCounts                counts(const double fineness) const;
+    void                      set_mesh(const double fineness, Attempt &attempt) const;
     std::optional<CellCounts> on_faces(const double fineness) const;
     double                    fineness_of(const CellCounts &cells) const;
 

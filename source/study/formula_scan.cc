@@ -136,6 +136,8 @@ namespace PeriDeal
                         }));
     };
     see(scene.initial_and_source.source);
+    if (!scene.time.steady)
+      see(scene.initial_and_source.initial_value);
     for (const Expression &force : scene.initial_and_source.body_force)
       see(force);
     if (!scene.material.uniform_conductivity())

@@ -25,6 +25,29 @@ namespace PeriDeal
   {
     using Json = nlohmann::ordered_json;
 
+    template <int dim>
+    constexpr unsigned int n_points_of_field = dim == 1 ? 1000 :
+                                               dim == 2 ? 2500 :
+                                                          4096;
+
+
+    /** Numbers between 0 and 1, as if by chance, that follow from a text. */
+    struct Chance
+    {
+      explicit Chance(const std::string &text)
+        : state(std::strtoull(text_hash(text).c_str(), nullptr, 16))
+      {}
+
+      double next()
+      {
+        state = state * 6364136223846793005ull + 1442695040888963407ull;
+        return static_cast<double>(state >> 11) / 9007199254740992.;
+      }
+
+      unsigned long long state;
+    };
+
+
     /** Points of a body and the part of it that each stands for. */
     struct Sample
     {
@@ -41,20 +64,6 @@ namespace PeriDeal
     template <int dim>
     Sample sample_of(const Triangulation<dim> &mesh, const double n)
     {
-      struct Chance
-      {
-        explicit Chance(const std::string &text)
-          : state(std::strtoull(text_hash(text).c_str(), nullptr, 16))
-        {}
-
-        double next()
-        {
-          state = state * 6364136223846793005ull + 1442695040888963407ull;
-          return static_cast<double>(state >> 11) / 9007199254740992.;
-        }
-
-        unsigned long long state;
-      };
       const double        share = std::min(1., n / mesh.n_global_active_cells());
       std::vector<double> own;
       for (const auto &cell : mesh.active_cell_iterators())
@@ -87,6 +96,33 @@ namespace PeriDeal
           sample.points.emplace_back(one.begin() + 1, one.end());
         }
       return sample;
+    }
+
+
+    /**
+     * A point in each of n equal parts of a box, somewhere in each of them, the same for all
+     * solutions. Not collective.
+     */
+    template <int dim>
+    std::vector<std::vector<double>> points_in(const Point<dim>  &lower,
+                                               const Point<dim>  &upper,
+                                               const unsigned int n)
+    {
+      const unsigned int along = std::lround(std::pow(n, 1. / dim));
+      Chance             chance("points");
+      unsigned int       all = 1;
+      for (unsigned int d = 0; d < dim; ++d)
+        all *= along;
+      std::vector<std::vector<double>> points;
+      for (unsigned int k = 0; k < all; ++k)
+        {
+          points.emplace_back();
+          unsigned int rest = k;
+          for (unsigned int d = 0; d < dim; ++d, rest /= along)
+            points.back().push_back(lower[d] +
+                                    (upper[d] - lower[d]) * (rest % along + chance.next()) / along);
+        }
+      return points;
     }
 
 
@@ -221,20 +257,106 @@ namespace PeriDeal
           worst = std::max(worst, std::abs(value - other) / std::abs(value));
       return worst;
     }
+
+
+    /**
+     * The largest difference at a time, as `field` and `probes` have it. Once a solution has come
+     * to rest, its range is no measure any more: a hundredth of the largest is.
+     */
+    double difference_of(const std::vector<SeenValues> &fine,
+                         const std::vector<SeenValues> &coarse,
+                         const AccuracyMeasure          measure)
+    {
+      constexpr double at_rest = 0.01;
+      double           widest = 0., worst = 0.;
+      for (const SeenValues &seen : fine)
+        widest = std::max(widest, seen.range);
+      for (std::size_t k = 0; k < fine.size(); ++k)
+        for (std::size_t c = 0; c < fine[k].values.size(); ++c)
+          {
+            double       sum = 0., largest = 0.;
+            unsigned int n = 0;
+            for (std::size_t i = 0; i < fine[k].values[c].size(); ++i)
+              if (const double d = fine[k].values[c][i] - coarse[k].values[c][i]; std::isfinite(d))
+                {
+                  sum += d * d;
+                  largest = std::max(largest, std::abs(d));
+                  ++n;
+                }
+            const double found = measure == AccuracyMeasure::probes ? largest : std::sqrt(sum / n);
+            if (found > 0.)
+              worst = std::max(worst, found / std::max(fine[k].range, at_rest * widest));
+          }
+      return worst;
+    }
   } // namespace
+
+
+  template <int dim>
+  SeenValues MeasuredError<dim>::see(const Problem<dim> &problem) const
+  {
+    const bool at_probes = scene.accuracy.measure == AccuracyMeasure::probes;
+    const std::vector<std::vector<double>> points =
+      at_probes ? scene.output.probes :
+                  points_in(scene.domain.lower, scene.domain.upper, n_points_of_field<dim>);
+    const PointEvaluator<dim> reader = reader_of(problem, scene.cracks, points);
+    SeenValues                seen;
+    for (unsigned int c = 0; c < problem.n_components(); ++c)
+      {
+        seen.values.push_back(reader.evaluate(problem.state(), problem.n_components(), c));
+        for (std::size_t i = 0; i < points.size(); ++i)
+          if (reader.is_gap(i))
+            seen.values.back()[i] = std::numeric_limits<double>::quiet_NaN();
+        seen.range = std::max(seen.range, range_of(problem, c));
+      }
+    return seen;
+  }
+
+
+  template <int dim>
+  std::vector<unsigned int> MeasuredError<dim>::constant_directions(
+    const Problem<dim> &problem) const
+  {
+    constexpr double       slack    = 1e-6;
+    constexpr unsigned int n_points = 64;
+    const double           range    = range_of(problem, 0);
+    if (dim == 1 || problem.n_components() > 1 || range == 0.)
+      return {};
+    const auto values = [&](const std::vector<std::vector<double>> &points) {
+      return reader_of(problem, scene.cracks, points).evaluate(problem.state(), 1, 0);
+    };
+    const auto                points = points_in(scene.domain.lower, scene.domain.upper, n_points);
+    const auto                before = values(points);
+    std::vector<unsigned int> constant;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        auto moved = points;
+        for (std::size_t k = 0; k < moved.size(); ++k) // to another point of the same line
+          moved[k][d] = points[(k * 7 + 3) % points.size()][d];
+        const auto after  = values(moved);
+        double     change = 0.;
+        for (std::size_t k = 0; k < after.size(); ++k)
+          change = std::max(change, std::abs(after[k] - before[k]));
+        if (change < slack * range)
+          constant.push_back(d);
+      }
+    return constant;
+  }
 
 
   template <int dim>
   std::optional<double> MeasuredError<dim>::difference(const MeasuredSolution<dim> &fine,
                                                        const MeasuredSolution<dim> &coarse) const
   {
-    const double        points_of_field = dim == 1 ? 1000. : dim == 2 ? 2500. : 4000.;
+    if (!scene.time.steady && scene.accuracy.measure != AccuracyMeasure::flow)
+      return difference_of(fine.seen, coarse.seen, scene.accuracy.measure);
     const Problem<dim> &problem = fine.simulation.problem(), &other = coarse.simulation.problem();
     switch (scene.accuracy.measure)
       {
         case AccuracyMeasure::field:
           {
-            const Sample sample = sample_of(problem.dofs().get_triangulation(), points_of_field);
+            const Sample sample =
+              sample_of(problem.dofs().get_triangulation(), n_points_of_field<dim>);
             return of_values(problem, other, sample.points, sample.weights);
           }
         case AccuracyMeasure::probes:

@@ -17,12 +17,22 @@ namespace PeriDeal
   using MeasuredNumbers = std::map<std::string, double>;
 
 
-  /** A solution and, where numbers are measured, those of it. */
+  /** Of a solution that changes with time, at a time of the output. */
+  struct SeenValues
+  {
+    std::vector<std::vector<double>>
+           values;     // of each component, at the points; gaps are no numbers
+    double range = 0.; // as section `Accuracy` has it
+  };
+
+
+  /** A solution and, where numbers are measured or it changes with time, what was seen of it. */
   template <int dim>
   struct MeasuredSolution
   {
-    Simulation<dim> &simulation;
-    MeasuredNumbers  numbers;
+    Simulation<dim>               &simulation;
+    const MeasuredNumbers         &numbers;
+    const std::vector<SeenValues> &seen;
   };
 
 
@@ -37,6 +47,9 @@ namespace PeriDeal
     /** Throws UserError where the scene has not what is measured. */
     explicit MeasuredError(const Scene<dim> &scene);
 
+    /** What difference() needs of a solution that changes with time, as it is now. */
+    SeenValues see(const Problem<dim> &problem) const;
+
     /** Numbers of a solution, none where fields are measured or its mesh is too coarse for them. */
     MeasuredNumbers numbers(Simulation<dim> &simulation) const;
 
@@ -47,6 +60,12 @@ namespace PeriDeal
      */
     std::optional<double> difference(const MeasuredSolution<dim> &fine,
                                      const MeasuredSolution<dim> &coarse) const;
+
+    /**
+     * The directions in which a solution does not vary, to a millionth of its range, seen along
+     * lines through some points. None of what has more components than one.
+     */
+    std::vector<unsigned int> constant_directions(const Problem<dim> &problem) const;
 
   private:
     double of_values(const Problem<dim>                     &fine,

@@ -11,18 +11,15 @@
 #include <perideal/simulation/run_files.h>
 #include <perideal/simulation/simulation.h>
 #include <perideal/study/model_choice.h>
-#include <perideal/study/observed_error.h>
 
 #include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <optional>
 #include <sstream>
 
-#include "attempts.h"
-#include "measured_error.h"
+#include "search.h"
 
 namespace PeriDeal
 {
@@ -31,18 +28,6 @@ namespace PeriDeal
   namespace
   {
     using Json = nlohmann::ordered_json;
-
-    /** An attempt that has been computed. */
-    template <int dim>
-    struct Tried
-    {
-      Attempt                          attempt;
-      std::shared_ptr<Scene<dim>>      scene;
-      std::unique_ptr<Simulation<dim>> simulation;
-      MeasuredNumbers                  numbers;
-      double                           wall_time = 0., cells = 0.;
-    };
-
 
     std::string short_name(const Attempt &attempt)
     {
@@ -77,43 +62,62 @@ namespace PeriDeal
         : scene(scene)
         , text(text)
         , communicator(communicator)
+        , quiet(quiet)
         , progress(communicator, quiet)
-        , attempts(scene)
         , measure(scene)
+        , classical(scene, text, communicator, measure, LimitOfAttempts::classical)
+        , nonlocal(scene, text, communicator, measure, LimitOfAttempts::nonlocal)
+        , is_nonlocal(scene.peridynamics.horizon > 0.)
         , start(Clock::now())
       {}
+
+      /** Compute, and write all files. */
+      void run(const RunMode mode)
+      {
+        auto           files = std::make_unique<RunFiles>(scene, text, communicator, mode);
+        const Progress silent(communicator, true);
+        with_orderly_end(*files, silent, [this] { search(); });
+        write(std::move(files));
+      }
+
+    private:
+      using Clock = std::chrono::steady_clock;
 
       /** Until the estimate is good enough, or nothing more may be spent. */
       void search()
       {
+        // Finite elements show how much a horizon matters if their own error does not.
+        constexpr double share_of_elements = 0.3;
+        const double     tolerance         = scene.accuracy.tolerance;
         progress.line(scene.general.title + "  (" + text.file_name + ")");
-        progress.line("Models = auto: " + attempts.reason());
-        compute(attempts.at(attempts.coarsest()));
-        for (;;)
-          {
-            next = finer(next_fineness());
-            if (is_met())
-              return;
-            limit = limit_before(next);
-            if (!limit.empty())
-              return require_estimate();
-            compute(next);
-          }
+        if (!scene.time.steady)
+          choose_time_tolerance();
+        refine(classical, (is_nonlocal ? share_of_elements : 1.) * (tolerance - time_error));
+        if (!is_nonlocal)
+          return;
+        limit.clear();
+        chosen = &nonlocal;
+        refine(nonlocal, tolerance - time_error);
       }
 
       void write(std::unique_ptr<RunFiles> files)
       {
         std::ostringstream line;
         line.precision(3);
-        line << "estimated error: " << 100. * now.error << " % (" << scene.accuracy.measure_text()
+        line << "estimated error: " << 100. * estimate() << " % (" << scene.accuracy.measure_text()
              << "), asked for " << 100. * scene.accuracy.tolerance << " %"
              << (is_met() ? "" : ": not reached within " + limit);
         progress.line(line.str());
-        last().simulation->write(std::move(files), {{"accuracy", describe()}}, progress);
+        say_horizon();
+        say_constant();
+        const Json more = {{"accuracy", describe()}};
+        if (scene.time.steady)
+          return chosen->last().simulation->write(std::move(files), more, progress);
+        progress.line("computing it again, with results on the way");
+        const Tried<dim> last = chosen->release();
+        Simulation<dim>(*last.scene, text, communicator, quiet)
+          .write(std::move(files), more, progress);
       }
-
-    private:
-      using Clock = std::chrono::steady_clock;
 
       double elapsed() const
       {
@@ -121,78 +125,118 @@ namespace PeriDeal
         return Utilities::MPI::max(seconds, communicator);
       }
 
-      Tried<dim> &last()
+      /** Of the chosen solution, all in all; negative if it is not known. */
+      double estimate() const
       {
-        return tried.back();
+        const double space = chosen->error().error;
+        if (space < 0.)
+          return space;
+        return time_error + space +
+               (is_nonlocal && chosen == &classical ? horizon_effect + nonlocal.error().error : 0.);
       }
 
-      const Tried<dim> &last() const
+      bool is_met() const
       {
-        return tried.back();
+        return ((chosen == &classical && is_nonlocal) || chosen->is_settled()) &&
+               estimate() <= scene.accuracy.tolerance;
+      }
+
+      /** One family, until its error is within a tolerance, or what is found will do. */
+      void refine(Search<dim> &family, const double tolerance)
+      {
+        progress.line("Models = auto: " + family.attempts().reason());
+        compute(family, family.first());
+        for (;;)
+          {
+            next = family.next(tolerance);
+            if (family.is_settled() && family.error().error <= tolerance)
+              return;
+            if (&family == &nonlocal && elements_will_do())
+              return;
+            limit = limit_before(family, next);
+            if (!limit.empty())
+              return require_estimate(family);
+            compute(family, next);
+          }
       }
 
       /**
-       * An order is seen in three solutions at least; a low one is not trusted as long as all are
-       * coarse, since it says more of the first than of the last.
+       * What the horizon changes is within the tolerance: finite elements are chosen. Where they
+       * are not, @p chosen is what it was.
        */
-      bool is_met() const
+      bool elements_will_do()
       {
-        const bool settled = steps.size() > 3 ||
-                             (steps.size() == 3 && now.order > 0.5 * attempts.best_order());
-        return settled && now.error <= scene.accuracy.tolerance;
+        horizon_effect =
+          *measure.difference(nonlocal.last().solution(), classical.last().solution());
+        if (nonlocal.error().error < 0.)
+          return false;
+        chosen = &classical;
+        if (is_met())
+          return true;
+        chosen = &nonlocal;
+        return false;
       }
 
-      /** An attempt with about this fineness, but with more than the last one. */
-      Attempt finer(const double fineness) const
+      /** So that steps in time add a small part of the tolerance, seen on the coarsest mesh. */
+      void choose_time_tolerance()
       {
-        const double least   = 1.1 * last().attempt.fineness;
-        Attempt      attempt = attempts.at(fineness);
-        for (double wanted = least; attempt.fineness < least; wanted *= 1.1)
-          attempt = attempts.at(wanted);
-        return attempt;
+        constexpr double share = 0.2, finer = 0.1, finest = 1e-10;
+        const auto       solution = [&](const double tolerance) {
+          classical.set(settings_in_time(tolerance));
+          return classical.solve(classical.first());
+        };
+        double     tolerance = std::min(1e-3, finer * scene.accuracy.tolerance);
+        Tried<dim> loose = solution(tolerance), strict = solution(finer * tolerance);
+        const auto difference = [&] {
+          return *measure.difference(strict.solution(), loose.solution());
+        };
+        for (time_error = difference();
+             time_error > share * scene.accuracy.tolerance && finer * tolerance > finest;
+             time_error = difference())
+          {
+            tolerance *= finer;
+            loose  = std::move(strict);
+            strict = solution(finer * tolerance);
+          }
+        for (Search<dim> *const family : {&classical, &nonlocal})
+          family->set(settings_in_time(tolerance));
+        progress.line("in time: Tolerance = " + number_text(tolerance) +
+                      " in section 'Time', error about " + rounded_text(100. * time_error) + " %");
       }
 
-      double next_fineness() const
+      static std::vector<Setting> settings_in_time(const double tolerance)
       {
-        constexpr double aim      = 0.7; // of the tolerance: an estimate is no bound
-        const double     farthest = dim == 3 ? 2. : 3.;
-        if (steps.size() < 3 || now.error <= scene.accuracy.tolerance)
-          return 2. * last().attempt.fineness;
-        return fineness_for(now, last().attempt.fineness, aim * scene.accuracy.tolerance, farthest);
-      }
-
-      double expected_time(const Attempt &attempt) const
-      {
-        return last().wall_time *
-               std::pow(attempt.fineness / last().attempt.fineness, attempts.growth_of_cost());
+        return {{"Time/Stepper", "auto"},
+                {"Time/Time step", "auto"},
+                {"Time/Tolerance", number_text(tolerance)}};
       }
 
       /** What keeps one more attempt from being made, in words, or nothing. Collective. */
-      std::string limit_before(const Attempt &attempt) const
+      std::string limit_before(const Search<dim> &family, const Attempt &attempt) const
       {
-        constexpr std::size_t most = 14, most_unknown = 5;
+        constexpr unsigned int most = 14, most_unknown = 5;
         scene.accuracy.refuse(
-          tried.size() >= most_unknown && steps.size() < 2,
+          family.n_tried() >= most_unknown && family.n_compared() < 2,
           "Measure",
           "is 'stress intensity', but there is none: it needs a box of one material without heating, and "
           "room around the ends of cracks for some cells.");
-        if (tried.size() >= most)
+        if (family.n_tried() >= most)
           return std::to_string(most) + " tries";
         if (scene.accuracy.budget > 0. &&
-            elapsed() + expected_time(attempt) > scene.accuracy.budget)
+            elapsed() + family.expected_time(attempt) > scene.accuracy.budget)
           return "'Budget'";
-        const double growth =
-          std::pow(attempt.fineness / last().attempt.fineness, attempts.growth_of_cost());
         const double taken = Utilities::MPI::sum(resident_memory(), communicator);
         const bool   given = scene.accuracy.memory > 0.;
         const double left  = given ? scene.accuracy.memory - taken : available_memory(communicator);
-        return last_memory * growth < left ? "" : given ? "'Memory'" : "the memory of the machine";
+        return family.expected_memory(attempt) < left ? "" :
+               given                                  ? "'Memory'" :
+                                                        "the memory of the machine";
       }
 
       /** Throws UserError if nothing can be said of an error yet. */
-      void require_estimate() const
+      void require_estimate(const Search<dim> &family) const
       {
-        if (now.error >= 0.)
+        if (family.error().error >= 0.)
           return;
         std::ostringstream what;
         what.precision(2);
@@ -200,96 +244,109 @@ namespace PeriDeal
         if (limit == "'Memory'")
           what << "the next one would take more.";
         else
-          what << "after " << elapsed() << " s the next one would take some " << expected_time(next)
-               << " s.";
+          what << "after " << elapsed() << " s the next one would take some "
+               << family.expected_time(next) << " s.";
         scene.accuracy.refuse(limit == "'Budget'", "Budget", what.str());
         scene.accuracy.refuse(limit == "'Memory'", "Memory", what.str());
         throw UserError("Entry 'Tolerance' in section 'Accuracy': " + limit +
                         " did not allow two solutions, which an estimate of the error needs.");
       }
 
-      void compute(const Attempt &attempt)
+      void compute(Search<dim> &family, const Attempt &attempt)
       {
-        const double begin = elapsed(), before = resident_memory();
-        Tried<dim>   one;
-        one.attempt                  = attempt;
-        one.scene                    = scene_variant(scene, attempt.settings);
-        one.scene->general.automatic = true;
-        one.simulation = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
-        one.simulation->solve();
-        one.numbers = measure.numbers(*one.simulation);
-        one.cells   = one.simulation->problem().dofs().get_triangulation().n_global_active_cells();
-        std::optional<double> difference;
-        if (!tried.empty())
-          {
-            difference = measure.difference({*one.simulation, one.numbers},
-                                            {*last().simulation, last().numbers});
-            last().simulation.reset();
-          }
-        if (!difference) // the first of which anything is known
-          steps.clear();
-        last_memory = Utilities::MPI::sum(std::max(1e6, resident_memory() - before), communicator);
-        tried.push_back(std::move(one));
-        steps.push_back({attempt.fineness, difference ? *difference : 0.});
-        now              = observed_error(steps, attempts.best_order());
-        last().wall_time = elapsed() - begin;
-        say();
-        history.push_back({{"model", to_string(attempt.model)},
-                           {"settings", settings_of(attempt)},
-                           {"estimate", now.error >= 0. ? Json(now.error) : Json()},
-                           {"wall time", last().wall_time}});
-      }
-
-      void say() const
-      {
+        family.compute(attempt);
+        const Tried<dim>  &last  = family.last();
+        const double       error = family.error().error;
         std::ostringstream line;
         line.precision(3);
-        line << "  " << short_name(last().attempt) << ": "
-             << readable_count(static_cast<unsigned long long>(last().cells)) << " cells, ";
-        if (now.error >= 0.)
-          line << "estimated error " << 100. * now.error << " %, ";
-        line << last().wall_time << " s";
+        line << "  " << short_name(attempt) << ": "
+             << readable_count(static_cast<unsigned long long>(last.cells)) << " cells, ";
+        if (error >= 0.)
+          line << "estimated error " << 100. * error << " %, ";
+        line << last.wall_time << " s";
         progress.line(line.str());
+        history.push_back({{"model", to_string(attempt.model)},
+                           {"settings", settings_of(attempt)},
+                           {"estimate", error >= 0. ? Json(error) : Json()},
+                           {"wall time", last.wall_time}});
+      }
+
+      void say_horizon() const
+      {
+        if (is_nonlocal)
+          progress.line("the horizon changes the solution by about " +
+                        rounded_text(100. * horizon_effect) + " %: " +
+                        (chosen == &classical ?
+                           "finite elements are right within the tolerance" :
+                           "that is more than finite elements may be wrong by"));
+      }
+
+      void say_constant()
+      {
+        constant = measure.constant_directions(chosen->last().simulation->problem());
+        std::string axes;
+        for (const unsigned int d : constant)
+          axes += std::string(axes.empty() ? "" : ", ") + "xyz"[d];
+        if (!constant.empty() && constant.size() < dim)
+          progress.line("the solution does not vary in " + axes + ": a scene of " +
+                        std::to_string(dim - constant.size()) + " dimension" +
+                        (dim - constant.size() == 1 ? "" : "s") +
+                        " ('Dimension') without it gives the same for less.");
+      }
+
+      Json left() const
+      {
+        const bool   cracked = !scene.cracks.cracks.empty();
+        const double space   = chosen->error().error;
+        return {{"mesh", cracked ? 0. : space},
+                {"crack", cracked ? space : 0.},
+                {"horizon", chosen == &classical && is_nonlocal ? horizon_effect : 0.},
+                {"zone", 0.},
+                {"time", time_error},
+                {"solver", scene.solver.tolerance}};
       }
 
       Json describe() const
       {
-        const bool cracked = !scene.cracks.cracks.empty();
-        return {{"measure", scene.accuracy.measure_text()},
-                {"tolerance", scene.accuracy.tolerance},
-                {"estimate", now.error},
-                {"met", is_met()},
-                {"budget exhausted", !limit.empty()},
-                {"model", to_string(last().attempt.model)},
-                {"settings", settings_of(last().attempt)},
-                {"reason", attempts.reason()},
-                {"observed order", now.order},
-                {"left",
-                 {{cracked ? "crack" : "mesh", now.error},
-                  {cracked ? "mesh" : "crack", 0.},
-                  {"horizon", 0.},
-                  {"zone", 0.},
-                  {"time", 0.},
-                  {"solver", scene.solver.tolerance}}},
-                {"steps", history},
-                {"next",
-                 {{"settings", settings_of(next)}, {"estimated wall time", expected_time(next)}}}};
+        const Attempt &attempt = chosen->last().attempt;
+        Json           all     = {
+                        {"measure", scene.accuracy.measure_text()},
+                        {"tolerance", scene.accuracy.tolerance},
+                        {"estimate", estimate()},
+                        {"met", is_met()},
+                        {"budget exhausted", !limit.empty()},
+                        {"model", to_string(attempt.model)},
+                        {"settings", settings_of(attempt)},
+                        {"reason", chosen->attempts().reason()},
+                        {"observed order", chosen->error().order},
+                        {"left", left()},
+                        {"steps", history},
+                        {"next",
+                         {{"settings", settings_of(next)},
+                          {"estimated wall time",
+                           (next.model == ModelKind::peridynamics ? nonlocal : classical).expected_time(next)}}}};
+        if (is_nonlocal)
+          all["horizon effect"] = horizon_effect;
+        for (const unsigned int d : constant)
+          all["constant along"].push_back(std::string(1, "xyz"[d]));
+        return all;
       }
 
-      const Scene<dim>             &scene;
-      const SceneText              &text;
-      const MPI_Comm                communicator;
-      Progress                      progress;
-      const Attempts<dim>           attempts;
-      const MeasuredError<dim>      measure;
-      const Clock::time_point       start;
-      std::vector<Tried<dim>>       tried;
-      std::vector<ComparedSolution> steps;
-      Json                          history = Json::array();
-      ObservedError                 now;
-      Attempt                       next;
-      double                        last_memory = 0.;
-      std::string                   limit; // that ended the search, in words
+      const Scene<dim>         &scene;
+      const SceneText          &text;
+      const MPI_Comm            communicator;
+      const bool                quiet;
+      Progress                  progress;
+      const MeasuredError<dim>  measure;
+      Search<dim>               classical, nonlocal;
+      Search<dim>              *chosen = &classical;
+      const bool                is_nonlocal;
+      const Clock::time_point   start;
+      double                    time_error = 0., horizon_effect = 0.;
+      Json                      history = Json::array();
+      Attempt                   next;
+      std::vector<unsigned int> constant; // directions
+      std::string               limit;    // that ended the search, in words
     };
   } // namespace
 
@@ -305,12 +362,8 @@ namespace PeriDeal
       return Simulation<dim>(scene, text, communicator, quiet).run(mode);
     AssertThrow(mode != RunMode::resume,
                 UserError("--resume: 'Models = auto' keeps no checkpoints; run the scene again."));
-    Choice<dim>                 choice(scene, text, communicator, quiet);
-    auto                        files = std::make_unique<RunFiles>(scene, text, communicator, mode);
-    const Progress              progress(communicator, true);
-    const std::function<void()> search = [&choice] { choice.search(); };
-    with_orderly_end(*files, progress, search);
-    choice.write(std::move(files));
+    require_choice(scene);
+    Choice<dim>(scene, text, communicator, quiet).run(mode);
   }
 
 
@@ -320,14 +373,18 @@ namespace PeriDeal
                        const MPI_Comm    communicator,
                        const bool        quiet)
   {
-    const Progress           progress(communicator, quiet);
-    const Attempts<dim>      attempts(scene);
+    const Progress progress(communicator, quiet);
+    require_choice(scene);
+    const bool               is_nonlocal = scene.peridynamics.horizon > 0.;
+    const Attempts<dim>      attempts(scene,
+                                 is_nonlocal ? LimitOfAttempts::nonlocal :
+                                                    LimitOfAttempts::classical);
     const MeasuredError<dim> measure(scene);
     progress.line(scene.general.title + "  (" + text.file_name + ")");
     progress.line("Models = auto would try, until the estimated error is at most " +
                   number_text(100. * scene.accuracy.tolerance) + " %:");
     double fineness = attempts.coarsest();
-    for (unsigned int k = 0; k < 5; ++k, fineness *= 2.)
+    for (unsigned int k = 0; k < 5; ++k, fineness *= attempts.first_ratio())
       {
         const Attempt     attempt  = attempts.at(fineness);
         const auto        variant  = scene_variant(scene, attempt.settings);

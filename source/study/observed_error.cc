@@ -10,8 +10,7 @@ namespace PeriDeal
 {
   namespace
   {
-    constexpr double lowest_order = 1.; // at ends of cracks, in the values
-    constexpr double usual_order  = 2.; // where none has been seen
+    constexpr double usual_order = 2.; // where none has been seen
 
     /** f0^-p - f1^-p over f1^-p - f2^-p, which grows with p. */
     double ratio(const double f0, const double f1, const double f2, const double p)
@@ -23,12 +22,13 @@ namespace PeriDeal
     double order_of(const ComparedSolution &first,
                     const ComparedSolution &second,
                     const ComparedSolution &third,
+                    const double            lowest,
                     const double            best)
     {
       if (!(third.difference > 0.) || !(second.difference > 0.))
         return best;
       const double seen = second.difference / third.difference;
-      double       low = lowest_order, high = best;
+      double       low = lowest, high = best;
       for (unsigned int k = 0; k < 40; ++k)
         {
           const double middle = 0.5 * (low + high);
@@ -48,7 +48,9 @@ namespace PeriDeal
   } // namespace
 
 
-  ObservedError observed_error(const std::vector<ComparedSolution> &steps, const double best)
+  ObservedError observed_error(const std::vector<ComparedSolution> &steps,
+                               const double                         lowest,
+                               const double                         best)
   {
     ObservedError     now{-1., best};
     const std::size_t n = steps.size();
@@ -56,7 +58,7 @@ namespace PeriDeal
       return now;
     now.order = std::min(best, usual_order);
     if (n > 2)
-      now.order = order_of(steps[n - 3], steps[n - 2], steps[n - 1], best);
+      now.order = order_of(steps[n - 3], steps[n - 2], steps[n - 1], lowest, best);
     now.error = error_of(steps[n - 2], steps[n - 1], now.order);
     if (n > 2)
       {

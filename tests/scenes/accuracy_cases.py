@@ -23,12 +23,12 @@ class Case:
         if self.kind == "elastic":
             lines.append("set Physics = elasticity")
         names = {"domain": "Domain", "material": "Material", "source": "Initial and source", "boundary": "Boundary conditions", "cracks": "Cracks",
-                 "elasticity": "Elasticity", "peridynamics": "Peridynamics"}
+                 "elasticity": "Elasticity", "peridynamics": "Peridynamics", "time": "Time"}
         for key, entries in self.sections.items():
             lines.append(f"subsection {names[key]}")
             lines += [f"  set {entry} = {value}" for entry, value in entries.items()]
             lines.append("end")
-        if self.kind != "elastic":
+        if self.kind != "elastic" and "time" not in self.sections:
             lines += ["subsection Time", "  set Steady = true", "end"]
         return "\n".join(lines) + "\n"
 
@@ -118,5 +118,89 @@ def crack_cases():
     ]
 
 
+def plate_in_tension(name, angle, half_length=0.5, nu=0.3):
+    """Westergaard: a crack without traction, an infinite plate in plane stress, E = 1, the stress 1 in all directions far away."""
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    c, s = (0. if abs(v) < 1e-15 else v for v in (c, s))
+    x, y = f"({c:.17g}*x+({s:.17g})*y)", f"({-s:.17g}*x+({c:.17g})*y)"
+    r1, r2 = (f"(({x}{sign}{half_length})^2+{y}^2)" for sign in "-+")
+    root, phase = f"sqrt(sqrt({r1}*{r2}))", f"(0.5*(atan2({y},{x}-{half_length})+atan2({y},{x}+{half_length})))"
+    along = f"({1 - nu}*{root}*cos{phase}-{1 + nu}*{y}*({y}*cos{phase}-{x}*sin{phase})/{root})"
+    across = f"(2*{root}*sin{phase}-{1 + nu}*{y}*({x}*cos{phase}+{y}*sin{phase})/{root})"
+    vector = f"{c:.17g}*{along}-({s:.17g})*{across}, {s:.17g}*{along}+({c:.17g})*{across}"
+
+    def exact(p):
+        z = (p[:, 0] + 1j * p[:, 1]) * (c - 1j * s)
+        w = np.sqrt(z - half_length + 0j) * np.sqrt(z + half_length + 0j)
+        u, v = (1 - nu) * w.real - (1 + nu) * z.imag * (z / w).imag, 2 * w.imag - (1 + nu) * z.imag * (z / w).real
+        return np.stack([c * u - s * v, s * u + c * v], axis=1)
+
+    ends = [(k * half_length * c, k * half_length * s) for k in (-1, 1)]
+    return Case(name, "elastic", exact, domain=SQUARE, material={"Young modulus": 1, "Poisson ratio": nu}, elasticity={"Plane": "stress"},
+                boundary={"Displacement": all_sides(vector, 2).replace("; ", " ; ")},
+                cracks={"Segments": " ; ".join(f"{x:.17g},{y:.17g}" for x, y in ends)})
+
+
+def elastic_cases():
+    """Lame constants 1 and 1 in the first two."""
+    pi, sin, cos = np.pi, np.sin, np.cos
+    moduli = {"Young modulus": 2.5, "Poisson ratio": 0.25}
+    zero = lambda n: np.zeros(n)
+    return [
+        Case("strained square", "elastic", lambda p: np.stack([sin(pi * p[:, 0]) * sin(pi * p[:, 1]), zero(len(p))], axis=1), material=moduli,
+             elasticity={"Plane": "strain"}, source={"Body force": "4*pi^2*sin(pi*x)*sin(pi*y), -2*pi^2*cos(pi*x)*cos(pi*y)"},
+             boundary={"Displacement": all_sides("0, 0", 2)}),
+        Case("strained cube", "elastic", lambda p: np.stack([zero(len(p)), zero(len(p)), sin(pi * p[:, 0]) * sin(pi * p[:, 1]) * sin(pi * p[:, 2])], axis=1), 3,
+             material=moduli, boundary={"Displacement": all_sides("0, 0, 0", 3)},
+             source={"Body force": "-2*pi^2*cos(pi*x)*sin(pi*y)*cos(pi*z), -2*pi^2*sin(pi*x)*cos(pi*y)*cos(pi*z), 5*pi^2*sin(pi*x)*sin(pi*y)*sin(pi*z)"}),
+        plate_in_tension("plate in tension", 0),
+        plate_in_tension("plate in tension, turned", 25),
+    ]
+
+
+def nonlocal_share(dim, wave, horizon):
+    """Of the classical rate of decay of a wave that peridynamics has: conical kernel over r^2, ever more nodes in the horizon."""
+    r = (np.arange(20000) + 0.5) / 20000 * horizon
+    kernel = (1 - r / horizon) / r ** 2
+    if dim == 1:
+        return np.sum(kernel * (1 - np.cos(wave * r))) / np.sum(kernel * (wave * r) ** 2 / 2)
+    angle = (np.arange(400) + 0.5) / 400 * 2 * math.pi
+    turned = np.array([np.mean(1 - np.cos(wave * x * np.cos(angle))) for x in r])
+    return np.sum(kernel * r * turned) / np.sum(kernel * r * (wave * r) ** 2 / 4)
+
+
+def nonlocal_cases():
+    """Products of sines keep their shape with mirrored fictitious nodes."""
+    pi, sin = np.pi, np.sin
+    mirror = {"Boundary treatment": "fictitious mirror"}
+    share = [nonlocal_share(2, math.sqrt(2) * pi, 0.25), nonlocal_share(1, 2 * pi, 0.1)]
+    return [
+        Case("sine of a horizon", "nonlocal", lambda p: sin(pi * p[:, 0]) * sin(pi * p[:, 1]) / share[0], source={"Source": "2*pi^2*sin(pi*x)*sin(pi*y)"},
+             boundary={"Dirichlet": all_sides("0", 2)}, peridynamics={"Horizon": 0.25, **mirror}),
+        Case("bar of a horizon", "nonlocal", lambda p: sin(2 * pi * p[:, 0]) / share[1], 1, source={"Source": "4*pi^2*sin(2*pi*x)"},
+             boundary={"Dirichlet": all_sides("0", 1)}, peridynamics={"Horizon": 0.1, **mirror}),
+    ]
+
+
+def transient_cases():
+    """At the end of a time."""
+    pi, sin, cos, exp = np.pi, np.sin, np.cos, np.exp
+    crack = insulated_crack("crack heated slowly", 20)
+    on_sides = crack.sections["boundary"]["Dirichlet"]
+    formula = on_sides[on_sides.index(":") + 1:on_sides.index("; right")]
+    warming = Case(crack.name, "transient", lambda p: (1 - math.exp(-1)) * crack.exact(p), domain=SQUARE, cracks=crack.sections["cracks"],
+                   source={"Source": f"exp(-t)*({formula})"}, time={"End time": 1}, boundary={"Dirichlet": all_sides(f"(1-exp(-t))*({formula})", 2)})
+    erf = np.vectorize(math.erf)
+    return [
+        Case("sine that decays", "transient", lambda p: exp(-2 * pi ** 2 * 0.1) * sin(pi * p[:, 0]) * sin(pi * p[:, 1]), time={"End time": 0.1},
+             source={"Initial value": "sin(pi*x)*sin(pi*y)"}, boundary={"Dirichlet": all_sides("0", 2)}),
+        Case("heated end", "transient", lambda p: 1 - erf(p[:, 0] / (2 * 0.1)), 1, time={"End time": 0.01}, boundary={"Dirichlet": "left: 1; right: 0"}),
+        Case("swinging source", "transient", lambda p: sin(pi * p[:, 0]) * cos(pi * p[:, 1] / 2) * math.cos(10 * 0.7), time={"End time": 0.7},
+             source={"Initial value": "sin(pi*x)*cos(pi*y/2)", "Source": "sin(pi*x)*cos(pi*y/2)*(1.25*pi^2*cos(10*t)-10*sin(10*t))"},
+             boundary={"Dirichlet": "left: 0; right: 0; top: 0"}),
+        warming,
+    ]
+
+
 def cases():
-    return smooth_cases() + crack_cases()
+    return smooth_cases() + crack_cases() + elastic_cases() + nonlocal_cases()

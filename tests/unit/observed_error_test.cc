@@ -32,7 +32,7 @@ namespace
       for (const std::vector<double> &f :
            {std::vector<double>{4., 8., 16.}, {4., 10., 17.}, {3., 6., 18., 22.}})
         {
-          const ObservedError found = observed_error(steps_of(f, p), 3.);
+          const ObservedError found = observed_error(steps_of(f, p), 1., 3.);
           EXPECT_NEAR(found.order, p, 1e-6);
           EXPECT_NEAR(found.error / (3. / std::pow(f.back(), p)), 1., 1e-6);
         }
@@ -41,17 +41,17 @@ namespace
 
   TEST(ObservedError, knows_little_of_few_solutions)
   {
-    EXPECT_LT(observed_error({}, 3.).error, 0.);
-    EXPECT_LT(observed_error({{4., 0.}}, 3.).error, 0.);
-    EXPECT_NEAR(observed_error({{4., 0.}, {8., 0.3}}, 3.).error, 0.1, 1e-12); // order 2
-    EXPECT_NEAR(observed_error({{4., 0.}, {8., 0.3}}, 1.).error, 0.3, 1e-12);
+    EXPECT_LT(observed_error({}, 1., 3.).error, 0.);
+    EXPECT_LT(observed_error({{4., 0.}}, 1., 3.).error, 0.);
+    EXPECT_NEAR(observed_error({{4., 0.}, {8., 0.3}}, 1., 3.).error, 0.1, 1e-12); // order 2
+    EXPECT_NEAR(observed_error({{4., 0.}, {8., 0.3}}, 1., 1.).error, 0.3, 1e-12);
   }
 
 
   TEST(ObservedError, is_not_misled_by_a_small_difference)
   {
     // Half of what the difference before has left, with the best order.
-    const ObservedError found = observed_error({{4., 0.}, {8., 0.3}, {16., 1e-9}}, 2.);
+    const ObservedError found = observed_error({{4., 0.}, {8., 0.3}, {16., 1e-9}}, 1., 2.);
     EXPECT_NEAR(found.order, 2., 1e-6);
     EXPECT_NEAR(found.error, 0.5 * 0.1 / 4., 1e-8);
   }

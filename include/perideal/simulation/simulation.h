@@ -15,6 +15,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -56,10 +57,11 @@ namespace PeriDeal
     void dry_run();
 
     /**
-     * Find the solution of a steady scene and write nothing, for programs that look at it first:
-     * problem(), found(), then write() or nothing.
+     * Find the solution and write nothing, for programs that look at it first: problem(), found(),
+     * then, of a steady scene, write() or nothing.
+     * @param see called with the times at which results would be written, each as it is reached
      */
-    void solve();
+    void solve(const std::function<void(const double)> &see = {});
 
     /** That of the first model. After solve(). Not collective. */
     const Problem<dim> &problem() const;
@@ -68,7 +70,8 @@ namespace PeriDeal
     nlohmann::ordered_json found();
 
     /**
-     * After solve(): write all files, summary.json last.
+     * Write all files, summary.json last: of a steady scene after solve(); else in place of it,
+     * since what is written on the way is not kept.
      * @param files of this run, of which nothing has been written but what is known at the start
      * @param more  what the summary has besides
      * @param tell  says notes, what was found and where the results are
@@ -110,7 +113,7 @@ namespace PeriDeal
     void check_mesh();
     void prepare_adaptation();
 
-    nlohmann::ordered_json compute(); // the summary at the end
+    nlohmann::ordered_json compute(const nlohmann::ordered_json &more, const Progress &tell);
     nlohmann::ordered_json finish(const nlohmann::ordered_json &more, const Progress &tell);
     void                   begin();
     void                   start();

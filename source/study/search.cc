@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "search.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/memory.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  Search<dim>::Search(const Scene<dim>         &scene,
+                      const SceneText          &text,
+                      const MPI_Comm            communicator,
+                      const MeasuredError<dim> &measure,
+                      const LimitOfAttempts     limit)
+    : scene(scene)
+    , text(text)
+    , communicator(communicator)
+    , measure(measure)
+    , family(scene, limit)
+  {}
+
+
+  template <int dim>
+  void Search<dim>::set(const std::vector<Setting> &of_all)
+  {
+    settings = of_all;
+  }
+
+
+  template <int dim>
+  const Attempts<dim> &Search<dim>::attempts() const
+  {
+    return family;
+  }
+
+
+  template <int dim>
+  Attempt Search<dim>::with_settings(const double fineness) const
+  {
+    Attempt attempt = family.at(fineness);
+    attempt.settings.insert(attempt.settings.end(), settings.begin(), settings.end());
+    return attempt;
+  }
+
+
+  template <int dim>
+  Attempt Search<dim>::first() const
+  {
+    return with_settings(family.coarsest());
+  }
+
+
+  template <int dim>
+  Attempt Search<dim>::next(const double tolerance) const
+  {
+    constexpr double aim      = 0.7; // of the tolerance: an estimate is no bound
+    const double     farthest = dim == 3 ? 2. : 3.;
+    const double     last     = latest.attempt.fineness;
+    const double     wanted   = n_compared() < 3 || now.error <= tolerance ?
+                                  family.first_ratio() * last :
+                                  fineness_for(now, last, aim * tolerance, farthest);
+    const double     least    = 1.1 * last;
+    Attempt          attempt  = with_settings(wanted);
+    for (double more = least; attempt.fineness < least; more *= 1.1)
+      attempt = with_settings(more);
+    return attempt;
+  }
+
+
+  template <int dim>
+  Tried<dim> Search<dim>::solve(const Attempt &attempt) const
+  {
+    using Clock      = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    Tried<dim> one;
+    one.attempt                  = attempt;
+    one.scene                    = scene_variant(scene, attempt.settings);
+    one.scene->general.automatic = true;
+    one.simulation = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
+    one.simulation->solve([&](const double) {
+      if (!scene.time.steady)
+        one.seen.push_back(measure.see(one.simulation->problem()));
+    });
+    one.numbers = measure.numbers(*one.simulation);
+    one.cells   = one.simulation->problem().dofs().get_triangulation().n_global_active_cells();
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    one.wall_time        = Utilities::MPI::max(seconds, communicator);
+    return one;
+  }
+
+
+  template <int dim>
+  void Search<dim>::compute(const Attempt &attempt)
+  {
+    const double          before = resident_memory();
+    Tried<dim>            one    = solve(attempt);
+    std::optional<double> difference;
+    if (n > 0)
+      difference = measure.difference(one.solution(), latest.solution());
+    latest = std::move(one);
+    ++n;
+    if (!difference) // the first of which anything is known
+      steps.clear();
+    last_memory = Utilities::MPI::sum(std::max(1e6, resident_memory() - before), communicator);
+    steps.push_back({attempt.fineness, difference ? *difference : 0.});
+    now = observed_error(steps, family.lowest_order(), family.best_order());
+  }
+
+
+  template <int dim>
+  const Tried<dim> &Search<dim>::last() const
+  {
+    return latest;
+  }
+
+
+  template <int dim>
+  Tried<dim> Search<dim>::release()
+  {
+    return std::move(latest);
+  }
+
+
+  template <int dim>
+  const ObservedError &Search<dim>::error() const
+  {
+    return now;
+  }
+
+
+  template <int dim>
+  bool Search<dim>::is_settled() const
+  {
+    return steps.size() > 3 || (steps.size() == 3 && now.order > 0.5 * family.best_order());
+  }
+
+
+  template <int dim>
+  unsigned int Search<dim>::n_tried() const
+  {
+    return n;
+  }
+
+
+  template <int dim>
+  unsigned int Search<dim>::n_compared() const
+  {
+    return steps.size();
+  }
+
+
+  template <int dim>
+  double Search<dim>::growth(const Attempt &attempt) const
+  {
+    return std::pow(attempt.fineness / latest.attempt.fineness, family.growth_of_cost());
+  }
+
+
+  template <int dim>
+  double Search<dim>::expected_time(const Attempt &attempt) const
+  {
+    return latest.wall_time * growth(attempt);
+  }
+
+
+  template <int dim>
+  double Search<dim>::expected_memory(const Attempt &attempt) const
+  {
+    return last_memory * growth(attempt);
+  }
+
+
+  template class Search<1>;
+  template class Search<2>;
+  template class Search<3>;
+} // namespace PeriDeal

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/study/observed_error.h>
+
+#include <memory>
+#include <vector>
+
+#include "attempts.h"
+#include "measured_error.h"
+
+namespace PeriDeal
+{
+  /** An attempt that has been computed. */
+  template <int dim>
+  struct Tried
+  {
+    Attempt                          attempt;
+    std::shared_ptr<Scene<dim>>      scene;
+    std::unique_ptr<Simulation<dim>> simulation;
+    MeasuredNumbers                  numbers;
+    std::vector<SeenValues>          seen; // at each time of the output, unless steady
+    double                           wall_time = 0., cells = 0.;
+
+    MeasuredSolution<dim> solution() const
+    {
+      return {*simulation, numbers, seen};
+    }
+  };
+
+
+  /**
+   * Attempts of one family, each finer than the one before, and what their differences say of the
+   * error of the last one. All functions are collective.
+   */
+  template <int dim>
+  class Search
+  {
+  public:
+    Search(const Scene<dim>         &scene,
+           const SceneText          &text,
+           const MPI_Comm            communicator,
+           const MeasuredError<dim> &measure,
+           const LimitOfAttempts     limit);
+
+    /** What all attempts have besides, from now on. */
+    void set(const std::vector<Setting> &settings);
+
+    const Attempts<dim> &attempts() const;
+
+    Attempt first() const;
+
+    /** What is worth a try after the last one, to get to an error. */
+    Attempt next(const double tolerance) const;
+
+    /** Solve, and compare with nothing. Throws UserError. */
+    Tried<dim> solve(const Attempt &attempt) const;
+
+    /** Solve, and compare with the last one, of which only its numbers are kept. */
+    void compute(const Attempt &attempt);
+
+    const Tried<dim> &last() const;
+
+    /** After it nothing may be asked of the last one's solution. */
+    Tried<dim> release();
+
+    /** Of the last one; negative if nothing is known yet. */
+    const ObservedError &error() const;
+
+    /**
+     * An order is seen in three solutions at least; a low one is not trusted as long as all are
+     * coarse, since it says more of the first than of the last.
+     */
+    bool is_settled() const;
+
+    unsigned int n_tried() const;
+    unsigned int n_compared() const; // with something known of the one before
+
+    /** Seconds, and bytes on all processes. */
+    double expected_time(const Attempt &attempt) const;
+    double expected_memory(const Attempt &attempt) const;
+
+  private:
+    Attempt with_settings(const double fineness) const;
+    double  growth(const Attempt &attempt) const;
+
+    const Scene<dim>             &scene;
+    const SceneText              &text;
+    const MPI_Comm                communicator;
+    const MeasuredError<dim>     &measure;
+    const Attempts<dim>           family;
+    std::vector<Setting>          settings; // of all
+    Tried<dim>                    latest;
+    unsigned int                  n = 0;
+    std::vector<ComparedSolution> steps;
+    ObservedError                 now;
+    double                        last_memory = 0.;
+  };
+} // namespace PeriDeal
