@@ -121,9 +121,11 @@ def how_accurate(run):
     graded = accuracy["settings"].get("Domain/Coarsening", "0") != "0"
     mesh = f"a mesh that is {cells} cells fine at the crack" if graded else f"{cells} cells"
     met = "" if accuracy["met"] else ": the budget did not allow more"
+    effect = accuracy.get("horizon effect")
+    horizon = "" if effect is None else f" The horizon changes the solution by about {percent(effect)}."
     return (f"Chosen were {accuracy['model']} on {mesh}, in {tries} tries: "
             f"the error ({accuracy['measure']}) is estimated as {percent(accuracy['estimate'])}, "
-            f"{percent(accuracy['tolerance'])} was asked for{met}.")
+            f"{percent(accuracy['tolerance'])} was asked for{met}.{horizon}")
 
 
 def how_wrong(run):

@@ -169,7 +169,7 @@ namespace PeriDeal
         levels = halvings(fineness_of(cells) / fineness_of(*on_faces(1.)), dim == 3 ? 2. : 3.);
         attempt.settings.emplace_back("Domain/Fine where", "crack ends");
       }
-    else if (family != Family::whole && !scene.cracks.change())
+    else if (family != Family::whole)
       {
         levels = halvings(fineness / 4., 2.);
         attempt.settings.emplace_back("Domain/Fine where", "auto");
@@ -217,21 +217,10 @@ namespace PeriDeal
     set("Coupling/Certificate", "false");
     set("Peridynamics/Horizon ratio", "3");
     set("Peridynamics/Horizon", "");
-    set("Peridynamics/Surface correction",
-        on_cells || scene.cracks.change() ? "auto" : "crack scaling");
+    set("Peridynamics/Surface correction", on_cells ? "auto" : "crack scaling");
     set("Models", to_string(attempt.model));
     return attempt;
   }
-
-
-  namespace
-  {
-    /**
-     * Where a crack's ends lie in their cells changes the error by factors of two, so that two
-     * differences do not show an order. Sequences of turned cracks have this one on average.
-     */
-    constexpr double order_across_cells = 1.75;
-  } // namespace
 
 
   template <int dim>
@@ -243,10 +232,10 @@ namespace PeriDeal
           return 3.;
         case Family::faces:
           return dim == 3 ? 2. : 3.;
-        case Family::bonds:
-          return 2.;
+        case Family::zone:
+          return 1.75; // sequences of turned cracks have that on average
         default:
-          return order_across_cells;
+          return 2.;
       }
   }
 
@@ -254,7 +243,9 @@ namespace PeriDeal
   template <int dim>
   double Attempts<dim>::lowest_order() const
   {
-    return family == Family::pairs || family == Family::zone ? order_across_cells : 1.;
+    // Where a crack's ends lie in their cells changes the error by factors of two, so that two
+    // differences do not show an order.
+    return family == Family::pairs || family == Family::zone ? best_order() : 1.;
   }
 
 
@@ -272,7 +263,7 @@ namespace PeriDeal
       {
         case Family::pairs:
         case Family::zone:
-          return scene.cracks.change() ? dim : 2. * (dim - 1);
+          return 2. * (dim - 1);
         case Family::bonds:
           return 2. * dim;
         default:
@@ -295,10 +286,9 @@ namespace PeriDeal
                  "of cells, fine at their ends.";
         case Family::pairs:
           return std::string("The cracks ") +
-                 (scene.cracks.change() ?
-                    "grow: finite elements" :
-                    "lie across cells: finite elements, fine along the cracks") +
-                 ", with the pairs of nodes that they do not part in the cells that they cut.";
+                 (scene.cracks.change() ? "grow" : "lie across cells") +
+                 ": finite elements, fine along the cracks, with the pairs of nodes that they do not "
+                 "part in the cells that they cut.";
         case Family::zone:
           return "The cracks lie across cells of a body that deforms: bonds around them, finite "
                  "elements elsewhere.";

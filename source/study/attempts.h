@@ -42,8 +42,8 @@ namespace PeriDeal
    * - with cracks along faces of a lattice the same with the crack on faces, graded to its ends, so
    *   that the cells there are the cube of those far away;
    * - with others, what diffuses: linear elements, pairs of nodes in cut cells, scaled, fine along
-   *   the cracks, so that the cells there are the square of those far away (where they grow, the
-   *   same everywhere); bodies that deform: bonds around the cracks on such a mesh.
+   *   the cracks, so that the cells there are the square of those far away; bodies that deform:
+   *   bonds around the cracks on such a mesh.
    *
    * For the nonlocal one of a horizon that is a length: peridynamics, with ever more nodes in it.
    */

@@ -278,7 +278,7 @@ namespace PeriDeal
                         rounded_text(100. * horizon_effect) + " %: " +
                         (chosen == &classical ?
                            "finite elements are right within the tolerance" :
-                           "that is more than finite elements may be wrong by"));
+                           "finite elements would be wrong by that"));
       }
 
       void say_constant()

@@ -30,7 +30,8 @@ namespace PeriDeal
      */
     bool take(const double new_alpha, const double norm)
     {
-      constexpr double margin = 4e-3;
+      constexpr double      margin  = 4e-3;
+      constexpr std::size_t n_least = 12; // before that a start may not have seen what is stiffest
       alpha.push_back(new_alpha);
       const Eigen::VectorXd diagonal = Eigen::Map<Eigen::VectorXd>(alpha.data(), alpha.size());
       const Eigen::VectorXd side     = Eigen::Map<Eigen::VectorXd>(beta.data(), beta.size());
@@ -42,7 +43,8 @@ namespace PeriDeal
       // may be a little above it.
       bound = ritz.eigenvalues()[end] + std::max(residual, margin * ritz.eigenvalues()[end]);
       beta.push_back(norm);
-      return residual < margin * bound || norm <= 1e-12 * bound || bound <= enough;
+      return residual < margin * bound || norm <= 1e-12 * bound ||
+             (bound <= enough && alpha.size() >= n_least);
     }
 
     double value() const
