@@ -362,40 +362,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::dry_run()
-  {
-    require_computable(scene, text);
-    const double before = Utilities::MPI::sum(resident_memory(), communicator);
-    build();
-    begin();
-    double computing = 0., memory = 0.; // negative if it is not known
-    List   all = companions();
-    all.insert(all.end(), problems.begin(), problems.end());
-    for (std::size_t k = 0; k < all.size(); ++k)
-      {
-        const bool   says = k + problems.size() >= all.size();
-        const double own  = all[k]->time_of_run(output_times(), says, context(), memory);
-        computing         = own >= 0. && computing >= 0. ? computing + own : -1.;
-      }
-    if (adaptation.grading)
-      progress.line("With 'Zone = adaptive' all figures are those of the mesh at the start.");
-    for (const std::string &note : record->notes)
-      progress.note(note);
-    std::vector<double> components;
-    for (const auto &problem : problems)
-      components.push_back(components_written(*problem, problems.size()));
-    for (const std::string &line : describe_costs(scene,
-                                                  computing,
-                                                  before + memory,
-                                                  mesh->n_global_active_cells(),
-                                                  components,
-                                                  communicator))
-      progress.line(line);
-    progress.line("The scene is valid. Nothing was computed.");
-  }
-
-
-  template <int dim>
   double Simulation<dim>::share_done(const unsigned int n, const double to) const
   {
     double some = 0., all = 0.;

@@ -4,10 +4,14 @@
 // What changes in a run besides its solutions: the mesh, how far it is; and keeping all of it, or
 // looking at it before it is written.
 
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/memory.h>
 #include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
 #include <perideal/problems/computable.h>
 #include <perideal/problems/result_record.h>
+#include <perideal/problems/run_context.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/with_formulas.h>
 #include <perideal/simulation/estimate.h>
@@ -17,6 +21,7 @@
 
 #include "checkpoint_clock.h"
 #include "closing.h"
+#include "model_comparison.h"
 #include "run_output.h"
 
 namespace PeriDeal
@@ -214,6 +219,40 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Simulation<dim>::dry_run()
+  {
+    require_computable(scene, text);
+    const double before = Utilities::MPI::sum(resident_memory(), communicator);
+    build();
+    begin();
+    double computing = 0., memory = 0.; // negative if it is not known
+    List   all = companions();
+    all.insert(all.end(), problems.begin(), problems.end());
+    for (std::size_t k = 0; k < all.size(); ++k)
+      {
+        const bool   says = k + problems.size() >= all.size();
+        const double own  = all[k]->time_of_run(output_times(), says, context(), memory);
+        computing         = own >= 0. && computing >= 0. ? computing + own : -1.;
+      }
+    if (adaptation.grading)
+      progress.line("With 'Zone = adaptive' all figures are those of the mesh at the start.");
+    for (const std::string &note : record->notes)
+      progress.note(note);
+    std::vector<double> components;
+    for (const auto &problem : problems)
+      components.push_back(components_written(*problem, problems.size()));
+    for (const std::string &line : describe_costs(scene,
+                                                  computing,
+                                                  before + memory,
+                                                  mesh->n_global_active_cells(),
+                                                  components,
+                                                  communicator))
+      progress.line(line);
+    progress.line("The scene is valid. Nothing was computed.");
+  }
+
+
+  template <int dim>
   void Simulation<dim>::solve(const std::function<void(const double)> &see)
   {
     require_computable(scene, text);
@@ -272,6 +311,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                    \
+  template void                   Simulation<dim>::dry_run();                                        \
   template void                   Simulation<dim>::prepare_adaptation();                             \
   template bool                   Simulation<dim>::adapt(const double);                              \
   template void                   Simulation<dim>::resume();                                         \
