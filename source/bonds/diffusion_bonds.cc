@@ -28,7 +28,7 @@ namespace PeriDeal
     bond.intact =
       topology.volume(node) * topology.volume(neighbor) * w * material.of_bond(node, neighbor);
     bond.weight = bond.intact * kept_fraction(node, neighbor, bond.cut);
-    if (!node_factors.empty())
+    if (!node_factors.empty() && (corrects_all || !bond.cut)) // crack scaling leaves what crosses
       bond.weight *= node_factors.of_bond(node, neighbor);
     bonds.push_back(bond);
   }

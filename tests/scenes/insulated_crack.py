@@ -6,7 +6,7 @@ Reference: finite elements on doubled vertices, 60 to 480 cells, Richardson-extr
 square-root singularities at the tips, so that everything here converges with order 1. The peridynamic values at 60 to 240 cells are those
 of an independent program (tests/reference) with the same rule: nodes on the crack belong to its left side, and bonds through the very tips are cut.
 
-    insulated_crack.py finite_elements | peridynamics | pairs | fine
+    insulated_crack.py finite_elements | peridynamics | pairs | conducting | fine
 """
 
 import math
@@ -188,9 +188,59 @@ def pairs():
                             what=f"{model}, correction {correction}: a {name} crack through nodes, and 1e-9 beside them")
 
 
+def half_of_plate(conductance, cells):
+    """Heat through the top in units of kappa x the difference from the crack to the top: a quarter of the plate by finite elements. By
+    symmetry the crack is a Convection with twice its conductance, and the line ahead of it is held."""
+    run = run_scene(SCENE, settings(cells, True, Models="finite elements", Domain__Lower_corner="0, 0", Cracks__Segments="", Output__Probes="",
+                                    Boundary_conditions__Parts="ahead: bottom if x > 0.5000001; crack: bottom if x < 0.5",
+                                    Boundary_conditions__Dirichlet="top: 1; ahead: 0",
+                                    Boundary_conditions__Convection=f"crack: {2 * conductance}, 0", Material__Conductivity="1"))
+    return 2 * run.model("finite elements")["boundary flux"]["top"]
+
+
+def conducting():
+    """Cracks with a contact conductance H: half across the plate, against finite elements on its symmetric half, and through all of it,
+    against resistances in series."""
+    conductances, rows, kinds = (0.0, 0.4, 4.0, 40.0, 1e9), [], ("finite elements", "coupled", "peridynamics", "peridynamics, m = 6")
+    size = {}
+    for conductance in conductances:
+        a, b, c = (half_of_plate(conductance, n) for n in (40, 80, 160))
+        limit = 2.0 if conductance > 1e6 else c + (c - b) / ((b - a) / (c - b) - 1)  # of its own order, 1 and above
+        for kind, segments, exact in (("partly", "-0.5,0 ; 0.5,0", limit), ("all", "-1.5,0 ; 1.5,0", 4 / (2 + 1 / max(conductance, 1e-300)))):
+            if exact < 1e-9:
+                continue
+            for correction in ("none", "crack scaling"):
+                for cells in (20, 40, 80):
+                    found = []
+                    for m in (3, 6):
+                        models = kinds[:3] if m == 3 else kinds[2:3]
+                        run = run_scene(SCENE, settings(
+                            cells, True, Models=", ".join(models), Domain__Cells=f"{cells}, {cells + 1}", Material__Conductivity="1",
+                            Boundary_conditions__Dirichlet="top: 1; bottom: -1", Cracks__Segments=segments, Output__Probes="",
+                            Cracks__Contact_conductance=conductance, Coupling__Zone="cracks: 1", Peridynamics__Surface_correction=correction,
+                            Peridynamics__Horizon_ratio=m, Peridynamics__Boundary_treatment="exchange"))
+                        found += [100 * (run.model(model)["boundary flux"]["top"] / exact - 1) for model in models]
+                    rows.append((kind, conductance, correction, cells, *found))
+                    for name, error in zip(kinds, found):
+                        size[kind, conductance, correction, cells, name] = abs(error)
+    print_table("Heat through a plate with a crack of contact conductance H (kappa 1, sides 2), error in %",
+                ("crack", "H", "correction", "cells", *kinds), rows)
+    for (kind, conductance, correction, cells, name), error in size.items():
+        what = f"{name}, crack through {kind}, H = {conductance}, {cells} cells, {correction}: error in %"
+        if correction == "none":
+            continue
+        plain = size[kind, conductance, "none", cells, name]
+        if conductance > 1e6:  # as without a crack
+            check_close(error, plain, absolute=1e-4, what=what)
+        elif kind == "all":  # what is scaled is a horizon wide
+            check_less(error, 14.5 * (6 if "6" in name else 3) / cells, what)
+        else:
+            check_less(error, plain + 0.05, what + ", against that without scaling")
+
+
 def main():
     parts = {"finite_elements": finite_elements, "peridynamics": peridynamics, "pairs": pairs,
-             "fine": lambda: peridynamics((60, 120, 240, 480))}
+             "conducting": conducting, "fine": lambda: peridynamics((60, 120, 240, 480))}
     for name in sys.argv[1:] or ("finite_elements", "peridynamics", "pairs"):
         parts[name]()
     finish()

@@ -29,6 +29,36 @@ namespace PeriDeal
   }
 
 
+  TEST(CrackSideFactors, cracks_that_conduct)
+  {
+    // Nothing gets through: as without what crosses.
+    EXPECT_EQ(crack_side_factor(true, 3., 2., {0., 1.}), 1.5);
+    // Everything does: nothing is missing, even where the sums say so.
+    EXPECT_EQ(crack_side_factor(true, 3., 2., {1., 1.}), 1.);
+    EXPECT_EQ(crack_side_factor(true, 3., 3., {1., 1.}), 1.);
+    // Half of it: g = (3 - 0.5)/(2 - 0.5) counts for a quarter.
+    EXPECT_NEAR(crack_side_factor(true, 3., 2., {0.5, 1.}), 1. + 0.25 * (5. / 3. - 1.), 1e-15);
+    // Nothing but what crosses: nothing to scale.
+    EXPECT_EQ(crack_side_factor(true, 3., 0.5, {0.5, 1.}), 1.);
+
+    const IndexSet         all = complete_index_set(2);
+    const Vector           layout(all, MPI_COMM_SELF);
+    CrackSideFactors       factors;
+    CrackSideFactors::Sums sums(layout);
+    factors.start(layout);
+    sums.mark({0, 1});
+    sums.expected = 3.;
+    sums.trace    = 2.;
+    sums.add_crossing(0, 1, 4., {0.25, 0.5});
+    sums.compress();
+    factors.find({0, 1}, sums);
+    EXPECT_NEAR(factors.at(0), 1. + 0.25 * (5. / 3. - 1.), 1e-15);
+    EXPECT_EQ(factors.at(1), factors.at(0));
+    sums.clear({0, 1});
+    EXPECT_EQ(sums.crossing.linfty_norm() + sums.crossing_whole.linfty_norm(), 0.);
+  }
+
+
   TEST(CrackSideFactors, means)
   {
     const IndexSet         all = complete_index_set(4);

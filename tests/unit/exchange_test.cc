@@ -219,6 +219,34 @@ TEST(Exchange, both_forms_agree)
 }
 
 
+/** A crack through the whole body is a resistance in series, with crack scaling, too. */
+TEST(Exchange, scaled_contact_conductance)
+{
+  const auto flux = [](const std::string &zone, const double H, const std::string &correction) {
+    const Problem<2> problem(cells("20, 21", "1, 1.05") +
+                               Settings{{"Cracks/Segments", "-1,0.52 ; 2,0.52"},
+                                        {"Cracks/Contact conductance", std::to_string(H)},
+                                        {"Peridynamics/Surface correction", correction},
+                                        {"Coupling/Zone", zone},
+                                        {"Boundary conditions/Dirichlet", "bottom: 0 ; top: 1"}},
+                             ModelKind::coupled);
+    Vector           u = problem.vector();
+    solve_steady(problem.op(), u, 0., 1e-12, 1000);
+    return problem.op().balance(u, 0., true).sides.at("top");
+  };
+  for (const std::string zone : {"everywhere", "cracks: 1"})
+    {
+      EXPECT_NEAR(flux(zone, 0., "crack scaling"), 0., 1e-10) << zone;
+      for (const double H : {0.4, 4., 40.})
+        {
+          const double exact = 1. / (1.05 + 1. / H);
+          EXPECT_NEAR(flux(zone, H, "crack scaling"), exact, 0.025 * exact) << zone << ", " << H;
+        }
+      EXPECT_NEAR(flux(zone, 1e12, "crack scaling"), flux(zone, 1e12, "none"), 1e-10) << zone;
+    }
+}
+
+
 /** Far from the sides peridynamics by exchange is peridynamics. */
 TEST(Exchange, equals_bonds_alone_inside)
 {

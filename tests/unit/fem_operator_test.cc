@@ -115,6 +115,35 @@ namespace PeriDeal
   }
 
 
+  TEST(FiniteElements, scaled_pairs_with_contact_conductance)
+  {
+    // The pairs across the crack conduct as the conductance says, whatever the factors; the rows of
+    // cells on both sides conduct (1 + g)/2 times as much.
+    const double kappa = 2., h = 1. / 9.;
+    for (const double H : {0.4, 3., 40., 1e12})
+      {
+        const Problem<2> problem({{"Domain/Cells", "9, 9"},
+                                  {"Material/Conductivity", "2"},
+                                  {"Cracks/Segments", "-1,0.48 ; 2,0.48"},
+                                  {"Cracks/Contact conductance", std::to_string(H)},
+                                  {"Peridynamics/Surface correction", "crack scaling"},
+                                  {"Boundary conditions/Dirichlet", "bottom: 0 ; top: 1"}},
+                                 ModelKind::finite_elements);
+        Vector           u = problem.vector();
+        solve_steady(problem.op(), u, 0., 1e-13, 1000);
+        const double flux = problem.op().balance(u, 0., true).sides.at("top");
+        // In units of kappa V: 2 expected, 1 of the whole cells, 1/6 of the pairs along the crack,
+        // 5/6 t of those across it.
+        const double t = H * h / (H * h + kappa), across = 5. / 6. * t,
+                     g = 1. + (1. - t) * (1. - t) * ((2. - across) / (7. / 6.) - 1.);
+        EXPECT_NEAR(flux,
+                    1. / ((1. - 3. * h) / kappa + 4. * h / (kappa * (1. + g)) + h / kappa + 1. / H),
+                    1e-9)
+          << H;
+      }
+  }
+
+
   TEST(FiniteElements, faces_split_the_body)
   {
     const Problem<2> halves(

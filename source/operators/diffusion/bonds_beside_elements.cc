@@ -89,7 +89,8 @@ namespace PeriDeal
         for (const auto &bond : bonds)
           if (bond.weight != 0.)
             rows[k].emplace_back(bond.neighbor,
-                                 bond.weight * factors.of_bond(nodes[k], bond.neighbor));
+                                 bond.weight *
+                                   (bond.cut ? 1. : factors.of_bond(nodes[k], bond.neighbor)));
       }
     return rows;
   }
@@ -303,9 +304,15 @@ namespace PeriDeal
         {
           coupled->bonds_of(i, bonds);
           for (const auto &bond : bonds)
-            sums.trace.local_element(i) +=
-              0.5 * bond.weight *
-              coupled->families().neighbors().bond_vector(i, bond.neighbor).norm_square();
+            {
+              const double half_square =
+                0.5 * coupled->families().neighbors().bond_vector(i, bond.neighbor).norm_square();
+              sums.trace.local_element(i) += bond.weight * half_square;
+              if (!bond.cut)
+                continue;
+              sums.crossing.local_element(i) += bond.weight * half_square;
+              sums.crossing_whole.local_element(i) += bond.intact * half_square;
+            }
         }
   }
 
@@ -324,10 +331,9 @@ namespace PeriDeal
           for (const auto &bond : bonds)
             if (bond.cut && bond.weight > 0.)
               {
-                const double factor = factors.of_bond(i, bond.neighbor);
                 families.cracks().crossed_cracks(i, bond.neighbor, crossed);
                 for (const auto &[crack, side] : crossed) // each bond is seen from both of its ends
-                  balance.cracks[crack] += 0.5 * side * factor * bond.weight *
+                  balance.cracks[crack] += 0.5 * side * bond.weight *
                                            (u.local_element(bond.neighbor) - u.local_element(i));
               }
         }

@@ -43,11 +43,13 @@ namespace PeriDeal
   void CellMatrices<dim>::assemble_cut(const Cell &cell, const bool with_bonds) const
   {
     assemble_whole(cell, with_bonds);
+    separated.clear();
     if (cut_by_cracks.is_cut(cell))
       cut_by_cracks.cut_matrix(
         cell,
         [&] { return material.center_conductivity(cell); },
-        matrices.stiffness);
+        matrices.stiffness,
+        factors.empty() ? nullptr : &separated);
     if (bonds != nullptr && with_bonds)
       bonds->coupling().finish_cell(cell, matrices.stiffness);
   }
@@ -58,8 +60,18 @@ namespace PeriDeal
                                                                     const bool  with_bonds) const
   {
     assemble_cut(cell, with_bonds);
-    if (!factors.empty())
-      matrices.stiffness *= factors.of_cell(matrices.indices);
+    if (factors.empty())
+      return matrices;
+    const double factor = factors.of_cell(matrices.indices);
+    matrices.stiffness *= factor;
+    for (const auto &pair : separated) // they stay as they are
+      {
+        const double more = (1. - factor) * pair.kept;
+        matrices.stiffness(pair.a, pair.b) -= more;
+        matrices.stiffness(pair.b, pair.a) -= more;
+        matrices.stiffness(pair.a, pair.a) += more;
+        matrices.stiffness(pair.b, pair.b) += more;
+      }
     return matrices;
   }
 
@@ -115,6 +127,11 @@ namespace PeriDeal
             continue;
           assemble_cut(cell, true);
           sums.add(cell, indices, matrices.stiffness, dim * material.center_conductivity(cell));
+          for (const auto &pair : separated)
+            sums.add_crossing(indices[pair.a],
+                              indices[pair.b],
+                              (cell->vertex(pair.b) - cell->vertex(pair.a)).norm_square(),
+                              {pair.kept, pair.whole});
         }
     sums.compress();
     if (bonds != nullptr)

@@ -46,6 +46,7 @@ namespace PeriDeal
     for (const unsigned int i : of_nodes)
       {
         Tensor<1, dim> moments;
+        CrossingShare  crossing;
         bool           cut = false;
         bonds.bonds_of(i, family);
         for (const auto &bond : family)
@@ -53,14 +54,18 @@ namespace PeriDeal
             const Tensor<1, dim> xi = bonds.neighbors().bond_vector(i, bond.neighbor);
             for (unsigned int d = 0; d < dim; ++d)
               moments[d] += bond.weight * xi[d] * xi[d];
-            cut = cut || bond.cut;
+            if (!bond.cut)
+              continue;
+            cut = true;
+            crossing.kept += 0.5 * bond.weight * xi.norm_square();
+            crossing.whole += 0.5 * bond.intact * xi.norm_square();
           }
         const double kappa_volume = bonds.conductivities().of_node(i) * nodes.volume(i);
         double       trace        = 0.;
         for (unsigned int d = 0; d < dim; ++d)
           trace += 0.5 * moments[d];
         if (!energy)
-          factors[0].local_element(i) = crack_side_factor(cut, dim * kappa_volume, trace);
+          factors[0].local_element(i) = crack_side_factor(cut, dim * kappa_volume, trace, crossing);
         for (unsigned int d = 0; d < n_directions && energy; ++d)
           {
             factors[d].local_element(i) = 2. * kappa_volume / moments[first + d];

@@ -9,9 +9,17 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  double crack_side_factor(const bool beside_crack, const double expected, const double trace)
+  double crack_side_factor(const bool           beside_crack,
+                           const double         expected,
+                           const double         trace,
+                           const CrossingShare &crossing)
   {
-    return beside_crack && trace > 0. ? std::clamp(expected / trace, 0.5, 4.) : 1.;
+    const double beside = trace - crossing.kept; // what the factor multiplies
+    if (!beside_crack || !(beside > 0.))
+      return 1.;
+    const double g         = std::clamp((expected - crossing.kept) / beside, 0.5, 4.);
+    const double held_back = crossing.whole > 0. ? 1. - crossing.kept / crossing.whole : 1.;
+    return 1. + held_back * held_back * (g - 1.);
   }
 
 
@@ -19,6 +27,8 @@ namespace PeriDeal
     : marked(layout.get_partitioner())
     , trace(layout.get_partitioner())
     , expected(layout.get_partitioner())
+    , crossing(layout.get_partitioner())
+    , crossing_whole(layout.get_partitioner())
   {}
 
 
@@ -37,16 +47,29 @@ namespace PeriDeal
   }
 
 
+  void CrackSideFactors::Sums::add_crossing(const types::global_dof_index a,
+                                            const types::global_dof_index b,
+                                            const double                  distance_square,
+                                            const CrossingShare          &conductance)
+  {
+    for (const auto i : {a, b})
+      {
+        crossing(i) += 0.5 * conductance.kept * distance_square;
+        crossing_whole(i) += 0.5 * conductance.whole * distance_square;
+      }
+  }
+
+
   void CrackSideFactors::Sums::compress()
   {
-    trace.compress(VectorOperation::add);
-    expected.compress(VectorOperation::add);
+    for (Vector *v : {&trace, &expected, &crossing, &crossing_whole})
+      v->compress(VectorOperation::add);
   }
 
 
   void CrackSideFactors::Sums::clear(const std::vector<unsigned int> &nodes)
   {
-    for (Vector *v : {&marked, &trace, &expected})
+    for (Vector *v : {&marked, &trace, &expected, &crossing, &crossing_whole})
       {
         v->zero_out_ghost_values();
         for (const unsigned int i : nodes)
@@ -67,9 +90,11 @@ namespace PeriDeal
   void CrackSideFactors::find(const std::vector<unsigned int> &nodes, const Sums &sums)
   {
     for (const unsigned int i : nodes)
-      factors.local_element(i) = crack_side_factor(sums.marked.local_element(i) > 0.,
-                                                   sums.expected.local_element(i),
-                                                   sums.trace.local_element(i));
+      factors.local_element(i) =
+        crack_side_factor(sums.marked.local_element(i) > 0.,
+                          sums.expected.local_element(i),
+                          sums.trace.local_element(i),
+                          {sums.crossing.local_element(i), sums.crossing_whole.local_element(i)});
     factors.update_ghost_values();
   }
 

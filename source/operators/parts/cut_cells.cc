@@ -139,17 +139,23 @@ namespace PeriDeal
   template <int dim>
   void CutCells<dim>::cut_matrix(const Cell                    &cell,
                                  const std::function<double()> &conductivity,
-                                 FullMatrix<double>            &stiffness) const
+                                 FullMatrix<double>            &stiffness,
+                                 std::vector<SeparatedPair>    *separated) const
   {
     const FullMatrix<double> original = stiffness;
     stiffness                         = 0.;
     if (rule.removes && !(broken && damaged[cell->active_cell_index()]))
       return;
+    std::vector<std::pair<unsigned int, int>> crossed;
     for (const unsigned int a : cell->vertex_indices())
       for (unsigned int b = 0; b < a; ++b)
         {
-          const double w = std::max(0., -original(a, b)) * kept_fraction(cell, a, b, conductivity);
-          stiffer        = stiffer || original(a, b) > 1e-12 * original(a, a);
+          crossed.clear();
+          const double kept  = kept_fraction(cell, a, b, conductivity, &crossed),
+                       whole = std::max(0., -original(a, b)), w = whole * kept;
+          if (separated != nullptr && (!crossed.empty() || kept < 1.))
+            separated->push_back({a, b, w, whole});
+          stiffer = stiffer || original(a, b) > 1e-12 * original(a, a);
           stiffness(a, b) -= w;
           stiffness(b, a) -= w;
           stiffness(a, a) += w;

@@ -14,7 +14,7 @@ namespace PeriDeal
   /**
    * What finite elements conduct cell by cell: the matrix of the whole cell, of which a coupling
    * takes what its bonds conduct, cracks what they cut (CutCells), and which is multiplied by the
-   * mean of the factors of its vertices (CrackSideFactors).
+   * mean of the factors of its vertices (CrackSideFactors), but for the pairs that cracks separate.
    *
    * The arguments of the constructor must outlive this.
    */
@@ -99,5 +99,8 @@ namespace PeriDeal
     CrackSideFactors               &factors;
     CutCells<dim>                   cut_by_cracks;
     mutable Matrices                matrices; // memory of the cell loops
+
+    /** Pairs of the cell cut last; only where there are factors. */
+    mutable std::vector<typename CutCells<dim>::SeparatedPair> separated;
   };
 } // namespace PeriDeal

@@ -11,22 +11,39 @@
 
 namespace PeriDeal
 {
+  /** What the bonds and the pairs of cut cells that cracks cross add to a node's trace. */
+  struct CrossingShare
+  {
+    double kept  = 0.; // as they conduct
+    double whole = 0.; // as they would without cracks
+  };
+
+
   /**
-   * The factor g of crack-side scaling: 1 for a node that is not beside a crack, and where trace is
-   * not positive; else expected/trace, clipped to [0.5, 4].
+   * The factor of crack-side scaling, for a node that is not beside a crack 1, else
+   *
+   *   1 + (1 - t)^2 (g - 1),   g = (expected - kept)/(trace - kept), clipped to [0.5, 4],
+   *
+   * with t = kept/whole, what cracks let through, 0 where nothing crosses them. g is 1 where what
+   * is left of the trace is not positive.
    */
-  double crack_side_factor(const bool beside_crack, const double expected, const double trace);
+  double crack_side_factor(const bool           beside_crack,
+                           const double         expected,
+                           const double         trace,
+                           const CrossingShare &crossing = {});
 
 
   /**
    * Crack-side scaling (`Surface correction = crack scaling`): what a node loses with its broken
    * bonds and cut cells, the others make up for. Node i has the factor
    *
-   *   g_i = E_i/T_i, T_i = -(1/2) sum_j tr K_ij r_ij^2, clipped to [0.5, 4],
+   *   g_i = (E_i - X_i)/(T_i - X_i), T_i = -(1/2) sum_j tr K_ij r_ij^2, clipped to [0.5, 4],
    *
-   * where E_i is T_i of an infinite body: V_i d kappa for heat and V_i C_abab for a solid. Nodes
-   * that are not beside a crack have the factor 1. Bonds are multiplied by the mean of both ends'
-   * factors, cells by that of their vertices'.
+   * where E_i is T_i of an infinite body: V_i d kappa for heat and V_i C_abab for a solid, and X_i
+   * what crosses a crack that conducts, 0 for others; such cracks blend g_i with 1
+   * (crack_side_factor()). Nodes that are not beside a crack have the factor 1. Bonds are
+   * multiplied by the mean of both ends' factors, cells by that of their vertices', but not what
+   * crosses a crack: a contact conductance says what that conducts.
    *
    * Both sums are those of bonds and cells without factors: add up Sums, then call find().
    */
@@ -34,8 +51,8 @@ namespace PeriDeal
   {
   public:
     /**
-     * Memory for the sums, by nodes: which are beside a crack (above 0), T and E. Zero outside of
-     * the search for factors.
+     * Memory for the sums, by nodes: which are beside a crack (above 0), T, E, X and X without
+     * cracks. Zero outside of the search for factors.
      */
     struct Sums
     {
@@ -64,13 +81,19 @@ namespace PeriDeal
                const dealii::FullMatrix<double>                   &stiffness,
                const double                                        modulus);
 
+      /** Add what two vertices of a cell that a crack separates conduct. Not collective. */
+      void add_crossing(const dealii::types::global_dof_index a,
+                        const dealii::types::global_dof_index b,
+                        const double                          distance_square,
+                        const CrossingShare                  &conductance);
+
       /** Add what nodes have on other processes. Collective. */
       void compress();
 
       /** Set owned nodes to zero, and all ghosts. Not collective. */
       void clear(const std::vector<unsigned int> &nodes);
 
-      Vector marked, trace, expected;
+      Vector marked, trace, expected, crossing, crossing_whole;
     };
 
     /** No node has a factor, which is a factor of 1. */

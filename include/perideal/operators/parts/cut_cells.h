@@ -78,10 +78,21 @@ namespace PeriDeal
                          const std::function<double()>             &conductivity,
                          std::vector<std::pair<unsigned int, int>> *crossed = nullptr) const;
 
-    /** Turn the matrix of a whole cell into that of a cut one: of its pairs, or nothing. */
+    /** A pair of a cell's vertices that some crack separates. */
+    struct SeparatedPair
+    {
+      unsigned int a, b;
+      double       kept, whole; // w_ab, and w_ab without cracks
+    };
+
+    /**
+     * Turn the matrix of a whole cell into that of a cut one: of its pairs, or nothing.
+     * @param separated if given, the separated pairs are appended
+     */
     void cut_matrix(const Cell                    &cell,
                     const std::function<double()> &conductivity,
-                    dealii::FullMatrix<double>    &stiffness) const;
+                    dealii::FullMatrix<double>    &stiffness,
+                    std::vector<SeparatedPair>    *separated = nullptr) const;
 
     /**
      * The pairs of some cell conduct more than it did as a whole, since K_ab > 0 somewhere (cells
