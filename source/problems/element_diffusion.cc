@@ -268,6 +268,8 @@ namespace PeriDeal
             list.emplace_back("share of the body in the zone",
                               to_text(100. * fem->bonds().zone_share()) + " %");
           }
+        else if (scene.peridynamics.scales_beside_cracks() && scene.cracks.cut_pairs())
+          list.emplace_back("surface correction", "crack scaling");
         if (!scene.cracks.cracks.empty())
           list.emplace_back("cracks",
                             scene.cracks.cut_pairs() ? "pairs" :

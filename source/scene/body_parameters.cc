@@ -114,6 +114,8 @@ namespace PeriDeal
       body.cracks.parse(physics);
       body.peridynamics.parse(physics);
       body.peridynamics.treatment = BoundaryTreatment::none;
+      if (physics != Physics::elasticity)
+        body.peridynamics.surface_correction = SurfaceCorrection::none;
       body.coupling.parse();
       body.elasticity.parse(physics, dim);
       body.finite_elements.parse();

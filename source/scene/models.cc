@@ -114,7 +114,7 @@ namespace PeriDeal
       EntryType::choice,
       "auto",
       "",
-      "What makes up for missing bonds. `auto`: nothing for what diffuses; families of elastic peridynamics go on beyond planes of symmetry and all flat sides of a lattice, and beyond the whole boundary of a mesh from a file with nodes at vertices (where bonds may break, and in motion, "
+      "What makes up for missing bonds. `auto`: for what diffuses crack scaling beside insulated cracks that lie still, where it is the more accurate one for all models of the scene, else nothing; families of elastic peridynamics go on beyond planes of symmetry and all flat sides of a lattice, and beyond the whole boundary of a mesh from a file with nodes at vertices (where bonds may break, and in motion, "
       "beyond those with conditions), at no more cost than their bonds; not beyond holes of lattices. Factors of bonds: beside cracks only (`crack scaling`, for finite elements with "
       "`Mesh = pairs`, too); or wherever the energy of a unit gradient is not that of the classical body (`energy`), at sides, cracks and "
       "voids. Elasticity has `energy`, of stretches along the axes, `volume`, by the volumes of both ends' families, and `moments`, the smallest change of bonds "
@@ -174,8 +174,6 @@ namespace PeriDeal
     flux_treatment       = choice<FluxTreatment>("Flux treatment");
     surface_correction   = choice<SurfaceCorrection>("Surface correction");
     correction_direction = choice<CorrectionDirection>("Correction direction");
-    if (physics != Physics::elasticity && surface_correction == SurfaceCorrection::automatic)
-      surface_correction = SurfaceCorrection::none;
     if (physics != Physics::elasticity &&
         (surface_correction == SurfaceCorrection::volume ||
          surface_correction == SurfaceCorrection::moments || completes_families()))

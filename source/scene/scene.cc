@@ -241,6 +241,32 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /**
+     * Whether `Surface correction = auto` is crack scaling: where something diffuses beside
+     * insulated cracks that lie still, and every model of the scene gets more accurate by it
+     * (doc/theory.md).
+     */
+    template <int dim>
+    bool is_scaled_by_itself(const Scene<dim> &scene)
+    {
+      const Cracks<dim>  &cracks = scene.cracks;
+      const Peridynamics &pd     = scene.peridynamics;
+      // A crack that conducts gets better by it if it ends in the body, else worse.
+      if (dim == 1 || scene.deforms || cracks.cracks.empty() || cracks.change() ||
+          cracks.conduct() || !cracks.cut_pairs() || scene.finite_elements.degree != 1 ||
+          !scene.domain.has_lattice())
+        return false;
+      const bool complete = pd.treatment == BoundaryTreatment::exchange ||
+                            (pd.treatment == BoundaryTreatment::fictitious_mirror &&
+                             pd.calibration == Calibration::discrete &&
+                             pd.self_term == SelfTerm::none && !scene.domain.has_voids());
+      return complete || !runs(scene, ModelKind::peridynamics);
+    }
+  } // namespace
+
+
   template <int dim>
   void Scene<dim>::validate()
   {
@@ -257,6 +283,9 @@ namespace PeriDeal
                                    !this->obstacle_to_bonds_on_elements().first.empty() ?
                                  BoundaryTreatment::none :
                                  BoundaryTreatment::exchange;
+    if (!this->deforms && peridynamics.surface_correction == SurfaceCorrection::automatic)
+      peridynamics.surface_correction =
+        is_scaled_by_itself(*this) ? SurfaceCorrection::crack_scaling : SurfaceCorrection::none;
     if (domain.has_lattice() && material.phases.all().need_mesh())
       entry_error(
         material.phases.where("Regions"),

@@ -6,6 +6,7 @@
 #include <perideal/problems/computable.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 namespace PeriDeal
 {
@@ -16,6 +17,11 @@ namespace PeriDeal
     {
       scene.general.set("Dimension", std::to_string(dim));
       scene.cracks.set("Nodes on cracks", "left"); // the lattice is the one asked for
+      // Nor are bonds of what diffuses corrected by themselves.
+      if (std::none_of(settings.begin(), settings.end(), [](const auto &entry) {
+            return entry.second == "elasticity";
+          }))
+        scene.peridynamics.set("Surface correction", "none");
       for (const auto &[path, text] : settings)
         {
           const auto  slash   = path.rfind('/');

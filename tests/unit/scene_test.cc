@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/scene/scene_lines.h>
+
 #include "scene_test_tools.h"
 
 namespace PeriDeal
@@ -174,6 +176,44 @@ end
     scene.domain.set("Cells", "12");
     scene.parse_and_validate();
     EXPECT_EQ(scene.domain.cells[0], 12u);
+  }
+
+
+  TEST(Scenes, surface_corrections_by_themselves)
+  {
+    const auto taken = [](const std::vector<std::string> &more) {
+      std::vector<std::string> overrides{"Cracks/Segments=0.2,0.5 ; 0.6,0.55",
+                                         "Boundary conditions/Dirichlet=top: 1 ; bottom: 0"};
+      overrides.insert(overrides.end(), more.begin(), more.end());
+      Scene<2> scene;
+      parse_scene<2>({"a.prm", apply_overrides("set Title = x\n", "a.prm", overrides)}, scene);
+      return scene.peridynamics.surface_correction;
+    };
+    const std::string pd = "Peridynamics/", models = "Models=";
+    const auto        scaled = SurfaceCorrection::crack_scaling, none = SurfaceCorrection::none;
+    EXPECT_EQ(taken({}), scaled);
+    EXPECT_EQ(taken({models + "finite elements"}), scaled);
+    EXPECT_EQ(taken({models + "coupled"}), scaled);
+    EXPECT_EQ(taken({"Physics=moisture"}), scaled);
+    EXPECT_EQ(taken({pd + "Boundary treatment=fictitious mirror"}), scaled);
+    EXPECT_EQ(taken({pd + "Boundary treatment=none", models + "finite elements, coupled"}), scaled);
+
+    EXPECT_EQ(taken({pd + "Surface correction=none"}), none);
+    EXPECT_EQ(taken({pd + "Surface correction=energy", "Domain/Nodes=cell centers"}),
+              SurfaceCorrection::energy);
+    EXPECT_EQ(taken({"Cracks/Segments="}), none);
+    EXPECT_EQ(taken({"Cracks/Transmission=0.3"}), none);
+    EXPECT_EQ(taken({"Cracks/Contact conductance=3"}), none);
+    EXPECT_EQ(taken({"Cracks/Transmission=min(1, t)"}), none);
+    EXPECT_EQ(taken({"Cracks/Growth=2: 0, 0.1,0"}), none);
+    EXPECT_EQ(
+      taken({"Cracks/Mesh=faces", "Cracks/Segments=0.25,0.5 ; 0.5,0.5", "Domain/Cells=8, 8"}),
+      none);
+    EXPECT_EQ(taken({"Cracks/Mesh=removed"}), none);
+    EXPECT_EQ(taken({"Domain/Nodes=cell centers"}), none); // no exchange
+    EXPECT_EQ(taken({pd + "Boundary treatment=none"}), none);
+    EXPECT_EQ(taken({pd + "Boundary treatment=fictitious mirror", pd + "Calibration=analytic"}),
+              none);
   }
 
 
