@@ -17,11 +17,13 @@ namespace PeriDeal
     /** With the status as the first entry, where one looks for it. */
     std::string text_of(const Json        &summary,
                         const std::string &status,
-                        const std::string &message = "")
+                        const std::string &message = "",
+                        const Json        &more    = Json::object())
     {
       Json all = {{"status", status}};
       if (!message.empty())
         all["message"] = message;
+      all.update(more);
       all.update(summary);
       return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     }
@@ -66,11 +68,11 @@ namespace PeriDeal
   }
 
 
-  void SummaryFile::end(const std::string &status, const std::string &message)
+  void SummaryFile::end(const std::string &status, const std::string &message, const Json &more)
   {
     if (!folder.writes())
       return;
-    folder.write(file_name, text_of(known, status, message));
+    folder.write(file_name, text_of(known, status, message, more));
     clear_farewell();
   }
 

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "guard_causes.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -37,6 +39,20 @@ namespace PeriDeal
   {
     return name() + ": time stepping";
   }
+
+
+  template <int dim>
+  Trip Problem<dim>::watch(const double t)
+  {
+    return extent_of(state()).finite ?
+             Trip() :
+             values_not_finite(state(), n_components(), place_of_nodes(*this), field_name(), t);
+  }
+
+
+  template <int dim>
+  void Problem<dim>::explain(Trip &)
+  {}
 
 
   template <int dim>

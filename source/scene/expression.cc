@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/diverged.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
 
@@ -368,7 +371,23 @@ namespace PeriDeal
 
   void DeferredFormulaErrors::throw_if_any(const MPI_Comm communicator) const
   {
-    throw_on_all_if_any(communicator, message);
+    const std::string found = first(communicator);
+    constexpr double  none  = std::numeric_limits<double>::quiet_NaN();
+    if (found.empty())
+      return;
+    Diverged error(found, "formulas", none, none);
+    error.trip.cause = found;
+    throw error;
+  }
+
+
+  std::string DeferredFormulaErrors::first(const MPI_Comm communicator) const
+  {
+    const unsigned int rank   = dealii::Utilities::MPI::this_mpi_process(communicator),
+                       n_proc = dealii::Utilities::MPI::n_mpi_processes(communicator);
+    const unsigned int owner =
+      dealii::Utilities::MPI::min(message.empty() ? n_proc : rank, communicator);
+    return owner == n_proc ? "" : dealii::Utilities::MPI::broadcast(communicator, message, owner);
   }
 
 

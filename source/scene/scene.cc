@@ -186,6 +186,7 @@ namespace PeriDeal
             &solver,
             &output,
             &checkpoint,
+            &guards,
             &accuracy,
             &reference,
             &units};
@@ -230,6 +231,7 @@ namespace PeriDeal
     // a body that deforms and cannot be steady, though it is said to be: its solver says so
     output.parse(time.end_time, this->deforms ? rests : time.steady);
     checkpoint.parse(time.end_time, this->deforms ? rests : time.steady);
+    guards.parse();
     accuracy.parse();
     const bool layers = domain.has_extra_layers();
     output.make_grid(domain.is_box(),

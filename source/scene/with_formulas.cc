@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/base/user_error.h>
+#include <perideal/base/diverged.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/with_formulas.h>
 
@@ -13,6 +13,12 @@ namespace PeriDeal
     try
       {
         action();
+      }
+    catch (Diverged &diverged) // on all processes
+      {
+        if (diverged.trip.cause.empty())
+          diverged.trip.cause = errors.first(communicator);
+        throw;
       }
     catch (const UserError &)
       {

@@ -3,10 +3,11 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/diverged.h>
 #include <perideal/base/process_end.h>
-#include <perideal/base/user_error.h>
 #include <perideal/simulation/run_files.h>
 
+#include "run_guards.h"
 #include "summary_parts.h"
 
 namespace PeriDeal
@@ -180,10 +181,17 @@ namespace PeriDeal
   }
 
 
-  bool RunFiles::end_early(const std::string &message, const bool diverged)
+  bool RunFiles::end_early(const std::string &message, const bool diverged, const Json &more)
   {
+    // A run that has diverged on its way has that to tell, if nothing else.
+    const bool on_its_way = more.contains("guard") && more["guard"]["step"] > 0;
+    if (!has_results && diverged && on_its_way)
+      {
+        folder.commit();
+        has_results = true;
+      }
     if (has_results)
-      summary_file.end(diverged && !folder.failed() ? "diverged" : "stopped", message);
+      summary_file.end(diverged && !folder.failed() ? "diverged" : "stopped", message, more);
     return has_results;
   }
 
@@ -192,14 +200,24 @@ namespace PeriDeal
                         const Progress              &progress,
                         const std::function<void()> &action)
   {
-    const auto end = [&](const std::string &message, const bool diverged) {
+    const auto end = [&](const std::string    &message,
+                         const bool            diverged,
+                         const RunFiles::Json &more = RunFiles::Json::object()) {
       progress.end();
-      if (files.end_early(message, diverged))
-        progress.line("Results until then: " + files.folder.directory());
+      if (!files.end_early(message, diverged, more))
+        return;
+      progress.line("Results until then: " + files.folder.directory());
+      if (const std::string last = files.last_checkpoint(); diverged && !last.empty())
+        progress.line("The last checkpoint before: " + last);
     };
     try
       {
         action();
+      }
+    catch (const Diverged &error)
+      {
+        end(error.message(), true, {{"guard", describe_trip(error.trip, files.last_checkpoint())}});
+        throw;
       }
     catch (const UserError &error)
       {

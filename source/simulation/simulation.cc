@@ -27,6 +27,7 @@
 #include "checkpoint_clock.h"
 #include "closing.h"
 #include "model_comparison.h"
+#include "run_guards.h"
 #include "run_output.h"
 #include "summary_parts.h"
 
@@ -45,6 +46,7 @@ namespace PeriDeal
     , progress(communicator, quiet)
     , record(std::make_unique<ResultRecord>())
     , output(std::make_unique<RunOutput<dim>>(scene, *record))
+    , guards(std::make_unique<RunGuards<dim>>(scene.guards, progress, *record, timings))
   {}
 
 
@@ -72,7 +74,7 @@ namespace PeriDeal
             [this](const std::string &model, double &memory) {
               return estimate_model(scene, model, communicator, memory);
             },
-            clock ? AfterStep([this](const double t) { offer_checkpoint(t); }) : AfterStep()};
+            clock ? AfterStep([this](const double t) { after_step(t); }) : AfterStep()};
   }
 
 
@@ -129,17 +131,6 @@ namespace PeriDeal
   std::vector<const Problem<dim> *> Simulation<dim>::reported() const
   {
     return {problems.begin(), problems.end()};
-  }
-
-
-  template <int dim>
-  typename Simulation<dim>::List Simulation<dim>::companions() const
-  {
-    List list;
-    for (const auto &model : models)
-      for (const auto &companion : model->companions)
-        list.push_back(companion.get());
-    return list;
   }
 
 
@@ -242,6 +233,8 @@ namespace PeriDeal
     if (scene.time.steady)
       return;
     settle();
+    for (Problem<dim> *const problem : all_problems())
+      guards->over(*problem, 0., [&] { guards->look(*problem, 0.); });
     const bool at_stops = tells_at_stops();
     if (at_stops)
       add_totals(0.);
@@ -311,8 +304,11 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::write_output(const double t)
   {
-    for (const auto &problem : problems)
-      problem->examine(t);
+    for (Problem<dim> *const problem : problems)
+      guards->over(*problem, t, [&] {
+        guards->look(*problem, t);
+        problem->examine(t);
+      });
     progress.doing("writing results");
     Timings::Scope scope(timings, "output");
     if (!adaptation.readers_fit)
@@ -358,21 +354,6 @@ namespace PeriDeal
       }
     problems[0]->describe_scene(summary, at_the_end);
     return summary;
-  }
-
-
-  template <int dim>
-  double Simulation<dim>::share_done(const unsigned int n, const double to) const
-  {
-    double some = 0., all = 0.;
-    for (unsigned int k = 0; k < problems.size(); ++k)
-      {
-        const double work = problems[k]->work_of(to - place.now);
-        all += work;
-        if (k < n)
-          some += work;
-      }
-    return (place.now + some / all * (to - place.now)) / scene.time.end_time;
   }
 
 
@@ -437,11 +418,14 @@ namespace PeriDeal
       {
         Problem<dim>  &companion = *before_all[place.problem];
         Timings::Scope scope(timings, companion.field_name());
-        companion.advance(
-          place.now,
-          to,
-          [](const double) {},
-          context());
+        guards->over(companion, to, [&] {
+          companion.advance(
+            place.now,
+            to,
+            [](const double) {},
+            context());
+          guards->look(companion, to);
+        });
       }
     for (; place.problem < before_all.size() + problems.size(); ++place.problem)
       {
@@ -451,11 +435,14 @@ namespace PeriDeal
         progress.doing(problem.doing(stop, n_stops, t));
         if (!problem.tells_at_stops())
           progress.advancing(place.now, to, before, after);
-        problem.advance(
-          place.now,
-          to,
-          [&](const double share) { progress.update(before + share * (after - before)); },
-          context());
+        guards->over(problem, to, [&] {
+          problem.advance(
+            place.now,
+            to,
+            [&](const double share) { progress.update(before + share * (after - before)); },
+            context());
+          guards->look(problem, to);
+        });
       }
     place.problem = 0;
     place.now     = to;

@@ -22,11 +22,47 @@
 #include "checkpoint_clock.h"
 #include "closing.h"
 #include "model_comparison.h"
+#include "run_guards.h"
 #include "run_output.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
+
+  template <int dim>
+  typename Simulation<dim>::List Simulation<dim>::companions() const
+  {
+    List list;
+    for (const auto &model : models)
+      for (const auto &companion : model->companions)
+        list.push_back(companion.get());
+    return list;
+  }
+
+
+  template <int dim>
+  typename Simulation<dim>::List Simulation<dim>::all_problems() const
+  {
+    List all = companions();
+    all.insert(all.end(), problems.begin(), problems.end());
+    return all;
+  }
+
+
+  template <int dim>
+  double Simulation<dim>::share_done(const unsigned int n, const double to) const
+  {
+    double some = 0., all = 0.;
+    for (unsigned int k = 0; k < problems.size(); ++k)
+      {
+        const double work = problems[k]->work_of(to - place.now);
+        all += work;
+        if (k < n)
+          some += work;
+      }
+    return (place.now + some / all * (to - place.now)) / scene.time.end_time;
+  }
+
 
   template <int dim>
   void Simulation<dim>::prepare_adaptation()
@@ -186,11 +222,23 @@ namespace PeriDeal
 
 
   template <int dim>
+  void Simulation<dim>::after_step(const double t)
+  {
+    if (guards->are_on())
+      guards->after_step(*all_problems()[place.problem], t);
+    offer_checkpoint(t);
+  }
+
+
+  template <int dim>
   void Simulation<dim>::offer_checkpoint(const double t)
   {
     const CheckpointClock::Need need = clock->need(t);
     if (need == CheckpointClock::Need::none)
       return;
+    const List all = all_problems();
+    if (place.problem < all.size()) // the others have been looked at where they got to
+      guards->look(*all[place.problem], t);
     const double      before = clock->elapsed();
     const std::string failure =
       output->files().write_checkpoint(t, wall_time_before + before, [this](Archive &archive) {
@@ -225,9 +273,8 @@ namespace PeriDeal
     const double before = Utilities::MPI::sum(resident_memory(), communicator);
     build();
     begin();
-    double computing = 0., memory = 0.; // negative if it is not known
-    List   all = companions();
-    all.insert(all.end(), problems.begin(), problems.end());
+    double     computing = 0., memory = 0.; // negative if it is not known
+    const List all = all_problems();
     for (std::size_t k = 0; k < all.size(); ++k)
       {
         const bool   says = k + problems.size() >= all.size();
@@ -310,18 +357,22 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                    \
-  template void                   Simulation<dim>::dry_run();                                        \
-  template void                   Simulation<dim>::prepare_adaptation();                             \
-  template bool                   Simulation<dim>::adapt(const double);                              \
-  template void                   Simulation<dim>::resume();                                         \
-  template void                   Simulation<dim>::solve(const std::function<void(const double)> &); \
-  template const Problem<dim>    &Simulation<dim>::problem() const;                                  \
-  template nlohmann::ordered_json Simulation<dim>::found();                                          \
-  template void                   Simulation<dim>::write(std::unique_ptr<RunFiles>,                  \
-                                       const nlohmann::ordered_json &,             \
-                                       const Progress &);                          \
-  template void                   Simulation<dim>::find_steady_state();                              \
+#define PERIDEAL_INSTANTIATE(dim)                                                                   \
+  template std::vector<Problem<dim> *> Simulation<dim>::companions() const;                         \
+  template std::vector<Problem<dim> *> Simulation<dim>::all_problems() const;                       \
+  template double              Simulation<dim>::share_done(const unsigned int, const double) const; \
+  template void                Simulation<dim>::after_step(const double);                           \
+  template void                Simulation<dim>::dry_run();                                          \
+  template void                Simulation<dim>::prepare_adaptation();                               \
+  template bool                Simulation<dim>::adapt(const double);                                \
+  template void                Simulation<dim>::resume();                                           \
+  template void                Simulation<dim>::solve(const std::function<void(const double)> &);   \
+  template const Problem<dim> &Simulation<dim>::problem() const;                                    \
+  template nlohmann::ordered_json Simulation<dim>::found();                                         \
+  template void                   Simulation<dim>::write(std::unique_ptr<RunFiles>,                 \
+                                       const nlohmann::ordered_json &,            \
+                                       const Progress &);                         \
+  template void                   Simulation<dim>::find_steady_state();                             \
   template void                   Simulation<dim>::offer_checkpoint(const double);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/diverged.h>
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/heat_steps.h>
@@ -169,8 +170,11 @@ namespace PeriDeal
              "converge in "
           << most << " rounds near t = " << t
           << ". Choose a smaller 'Time step' or 'Tolerance', or 'Stepper = rkc2'.";
-        AssertThrow(false, UserError(message.str()));
-        return 0.;
+        throw Diverged(message.str(),
+                       "solver",
+                       capacity_norm(op, change),
+                       goal * capacity_norm(op, U),
+                       t);
       }
 
       void solve_once(const Vector &u, const Vector &w, const double s, const double t, Vector &U)
@@ -248,7 +252,8 @@ namespace PeriDeal
         const double level = std::max(capacity_norm(op, u), capacity_norm(op, next));
         const double bound = (order == 3 ? third_order_tolerance : tolerance) * level;
         const double size  = level == 0. ? 0. : capacity_norm(op, error) / bound;
-        AssertThrow(std::isfinite(size), UserError(unstable_message(t)));
+        if (!std::isfinite(size))
+          throw not_finite(unstable_message(t), t);
         return size;
       }
 

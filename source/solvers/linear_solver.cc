@@ -4,6 +4,7 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_gmres.h>
 
+#include <perideal/base/diverged.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/scene.h>
 #include <perideal/solvers/floating_part.h>
@@ -108,10 +109,14 @@ namespace PeriDeal
                                    const Vector &rhs,
                                    const double  wanted)
   {
-    AssertThrow( // also where nothing converges to: the 2-norm of what is not a number is 0
-      std::isfinite(rhs.l1_norm()),
-      UserError(
-        "The loads are not finite. Check the material, the sources or loads, and the boundary values."));
+    // Also where nothing converges to: the 2-norm of what is not a number is 0.
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (!std::isfinite(rhs.l1_norm()))
+      throw Diverged(
+        "The loads are not finite. Check the material, the sources or loads, and the boundary values.",
+        "finite values",
+        none,
+        none);
     const double size = wanted > 0. ? wanted : rhs.l2_norm();
     if (size == 0.)
       {
@@ -143,7 +148,7 @@ namespace PeriDeal
           << " iterations at a relative residual of " << failure.last_residual / size
           << ", above 'Tolerance' = " << tolerance
           << " in section 'Solver'. Raise 'Tolerance' or 'Maximum iterations' there, or check for parts of the body that nothing holds, for instance because cracks have cut them off.";
-        AssertThrow(false, UserError(message.str()));
+        throw Diverged(message.str(), "solver", failure.last_residual / size, tolerance);
       }
     n_last_iterations  = control.last_step();
     n_first_iterations = n_first_iterations == 0 ? n_last_iterations : n_first_iterations;

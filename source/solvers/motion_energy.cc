@@ -25,11 +25,11 @@ namespace PeriDeal
   {}
 
 
-  double MotionAccount::kinetic_energy(const Vector &v, const bool supports_only) const
+  double MotionAccount::kinetic_energy(const Vector &v, const Nodes which) const
   {
     double sum = 0.;
     for (unsigned int i = 0; i < held.size(); ++i)
-      if (held[i] || !supports_only)
+      if (which == Nodes::all || held[i] == (which == Nodes::held))
         sum += v.local_element(i) * v.local_element(i) / inverse_mass[i];
     return 0.5 * Utilities::MPI::sum(sum, v.get_mpi_communicator());
   }
@@ -65,8 +65,8 @@ namespace PeriDeal
     if (started)
       return;
     started       = true;
-    start         = kinetic_energy(v, false) + op.energy(u);
-    support_start = kinetic_energy(v, true);
+    start         = kinetic_energy(v, Nodes::all) + op.energy(u);
+    support_start = kinetic_energy(v, Nodes::held);
   }
 
 
@@ -99,12 +99,12 @@ namespace PeriDeal
   MotionEnergy MotionAccount::energy(const Vector &u, const Vector &v, const Vector &forces) const
   {
     MotionEnergy result;
-    result.kinetic  = kinetic_energy(v, false);
+    result.kinetic  = kinetic_energy(v, Nodes::all);
     result.strain   = op.energy(u);
     result.released = op.released_energy();
     result.start    = started ? start : result.kinetic + result.strain;
     // What supports give to the nodes that they hold themselves.
-    result.work      = started ? work + kinetic_energy(v, true) - support_start : 0.;
+    result.work      = started ? work + kinetic_energy(v, Nodes::held) - support_start : 0.;
     result.exchanged = std::max(exchanged, result.start + std::abs(result.work));
     if (started)
       result.drift = result.imbalance() - (kept_back(forces) - jumps);
@@ -112,23 +112,33 @@ namespace PeriDeal
   }
 
 
-  std::string MotionAccount::fault(const Vector &v, const unsigned long long n_steps)
+  Trip MotionAccount::fault(const Vector &v, const unsigned long long n_steps)
   {
     constexpr double too_much = 30.; // steps near the stable one exchange some energy with nothing
     // A force that sets in gives a velocity before it has done any work, which it has a step later.
     constexpr unsigned int later   = 10;
-    const double           kinetic = kinetic_energy(v, false) - kinetic_energy(v, true);
+    const double           kinetic = kinetic_energy(v, Nodes::free);
     if (!(kinetic > too_much * (start + effort)))
       suspected_at = never;
     else if (suspected_at == never)
       suspected_at = n_steps;
-    std::ostringstream message;
+    Trip trip;
     if (!std::isfinite(kinetic))
-      message << "produced values that are not finite";
+      {
+        trip.monitor = "finite values";
+        trip.found   = "produced values that are not finite";
+      }
     else if (suspected_at != never && n_steps >= suspected_at + later)
-      message << "made a kinetic energy of " << kinetic << " where start and loads had brought in "
-              << start + effort;
-    return message.str();
+      {
+        std::ostringstream message;
+        message << "made a kinetic energy of " << kinetic
+                << " where start and loads had brought in " << start + effort;
+        trip.monitor = "energy";
+        trip.found   = message.str();
+      }
+    trip.value = kinetic;
+    trip.bound = too_much * (start + effort);
+    return trip;
   }
 
 

@@ -78,24 +78,32 @@ namespace PeriDeal
 
   void MotionStepper::check(const Vector &v, const double t)
   {
-    const std::string fault = account.fault(v, spent.steps);
-    AssertThrow(
-      fault.empty(),
-      UserError("The run became unstable: stepper '" + name() + "' " + fault +
-                " before t = " + number(t) +
-                ". Choose a smaller 'Time step', or 'Stepper = newmark', in section 'Time'."));
+    const Trip fault = account.fault(v, spent.steps);
+    if (fault)
+      throw Diverged("The run became unstable: stepper '" + name() + "' " + fault.found +
+                       " before t = " + number(t) +
+                       ". Choose a smaller 'Time step', or 'Stepper = newmark', in section 'Time'.",
+                     fault.monitor,
+                     fault.value,
+                     fault.bound,
+                     t);
   }
 
 
   void MotionStepper::check_drift(const Vector &u, const Vector &v, const double t)
   {
-    const std::string fault = account.drift_fault(energy(u, v), allowed_drift);
-    AssertThrow(fault.empty(),
-                UserError("The energy of the motion is not kept: before t = " + number(t) +
-                          " stepper '" + name() + "' has " + fault +
-                          ". The body deforms too much within a step of " + number(account.step()) +
-                          ": choose a 'Time step' of " + number(0.5 * account.step()) +
-                          " or less in section 'Time', or a smaller load."));
+    const MotionEnergy found = energy(u, v);
+    const std::string  fault = account.drift_fault(found, allowed_drift);
+    if (!fault.empty())
+      throw Diverged("The energy of the motion is not kept: before t = " + number(t) +
+                       " stepper '" + name() + "' has " + fault +
+                       ". The body deforms too much within a step of " + number(account.step()) +
+                       ": choose a 'Time step' of " + number(0.5 * account.step()) +
+                       " or less in section 'Time', or a smaller load.",
+                     "energy",
+                     found.drift,
+                     allowed_drift * found.exchanged,
+                     t);
   }
 
 
@@ -104,8 +112,12 @@ namespace PeriDeal
     if (!op.nonlinear())
       return;
     const Inversion found = op.inverted(u);
-    AssertThrow(found.n_nodes == 0,
-                UserError("Before t = " + number(t) + " " + inverted_text(found)));
+    if (found.n_nodes > 0)
+      throw Diverged("Before t = " + number(t) + " " + inverted_text(found),
+                     "inversion",
+                     found.n_nodes,
+                     0.,
+                     t);
   }
 
 
@@ -198,7 +210,7 @@ namespace PeriDeal
 
   void MotionStepper::look_after(const Vector &u, const Vector &v)
   {
-    constexpr unsigned int between_checks = 20, between_examinations = 50;
+    constexpr unsigned int between_checks = 5, between_examinations = 50;
     const bool             is_last = span.n_done == span.n_steps;
     // Of linear bodies there is nothing to be found: what their steps keep they keep to round-off.
     if (op.nonlinear() && spent.steps % between_examinations == 0)

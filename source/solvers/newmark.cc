@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/diverged.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/motion_stepper.h>
@@ -115,7 +116,8 @@ namespace PeriDeal
         std::ostringstream message;
         message << "Newton's iterations of the stepper 'newmark' did not converge at t = " << t
                 << ". Choose a smaller 'Time step' in section 'Time', or 'Stepper = verlet'.";
-        AssertThrow(round < most && std::isfinite(now), UserError(message.str()));
+        if (round >= most || !std::isfinite(now))
+          throw Diverged(message.str(), "solver", now / size, std::max(10. * tolerance, 1e-12), t);
         return false;
       }
 

@@ -303,7 +303,7 @@ namespace PeriDeal
           << "The run became unstable: stepper 'rkc2' produced values that are not finite near t = "
           << t
           << ". Check loads and boundary values in time, or choose 'Stepper = sdirk2' in section 'Time'.";
-        AssertThrow(false, UserError(message.str()));
+        throw not_finite(message.str(), t);
       }
 
       Operator           &op;

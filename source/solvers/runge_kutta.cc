@@ -91,7 +91,15 @@ namespace PeriDeal
         op.distribute(u, t);
         op.take_material_at(u);
         inverse = inverse_capacity(op);
-        restart(); // the bound of this step
+        try
+          {
+            restart(); // the bound of this step
+          }
+        catch (Diverged &diverged)
+          {
+            diverged.trip.time = t;
+            throw;
+          }
         const bool   lands = t + dt * (1. + 1e-10) >= span.end;
         const double size  = lands ? span.end - t : dt;
         if (conservative.needed())

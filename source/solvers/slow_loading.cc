@@ -3,12 +3,14 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/diverged.h>
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/slow_loading.h>
 #include <perideal/solvers/step_tools.h>
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -71,8 +73,14 @@ namespace PeriDeal
                 "Nothing may bear the loads any more: pull by 'Displacement' in section 'Boundary conditions' in place of 'Traction', or use 'Solver = dynamics' in section 'Elasticity'. " :
                 "Try a smaller 'Time step' in section 'Time', or another 'Solver' or 'Preconditioner' in section 'Elasticity'. ")
           << "What the solver said: " << failure.message();
-        u = last;
-        throw UserError(message.str());
+        u                          = last;
+        const auto *const diverged = dynamic_cast<const Diverged *>(&failure);
+        constexpr double  none     = std::numeric_limits<double>::quiet_NaN();
+        throw Diverged(message.str(),
+                       "solver",
+                       diverged ? diverged->trip.value : none,
+                       diverged ? diverged->trip.bound : none,
+                       t);
       }
     check_inversion(u, t);
     op.linearize(u);
@@ -90,7 +98,7 @@ namespace PeriDeal
     std::ostringstream message;
     message << "In the equilibrium that '" << solver->name() << "' has found at t = " << t << ' '
             << inverted_text(found);
-    throw UserError(message.str());
+    throw Diverged(message.str(), "inversion", found.n_nodes, 0., t);
   }
 
 

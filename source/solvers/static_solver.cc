@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/diverged.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/rigid_motions.h>
 #include <perideal/scene/scene.h>
@@ -145,7 +146,8 @@ namespace PeriDeal
         << "'Solver = " << solver << "' in section 'Elasticity': after " << n
         << " iterations the forces are not finite. Check the material and the loads; with 'Kinematics = full' the load may be more than the body "
            "bears: try a smaller one.";
-    AssertThrow(message.str().empty(), UserError(message.str()));
+    if (!message.str().empty())
+      throw Diverged(message.str(), "solver", now, tolerance * size);
     if (n == 0 && !(size > 0.))
       size = now;
     if (now <= tolerance * size)
@@ -156,7 +158,8 @@ namespace PeriDeal
         << " iterations at a relative residual of " << now / size
         << ", above 'Tolerance' = " << tolerance
         << " in section 'Solver'. Raise 'Tolerance' or 'Maximum iterations' there, or use 'linear' or 'conjugate gradients'.";
-    AssertThrow(message.str().empty(), UserError(message.str()));
+    if (!message.str().empty())
+      throw Diverged(message.str(), "solver", now / size, tolerance);
     return false;
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/base/user_error.h>
+#include <perideal/base/diverged.h>
 #include <perideal/solvers/step_limit.h>
 
 #include <algorithm>
@@ -59,7 +59,8 @@ namespace PeriDeal
                     " only: beside cracks that have grown the body is stiffer than at the start. ")
               << "Choose a smaller step, 'Time step = auto', which follows the deformation, or "
                  "'Stepper = newmark'.";
-    AssertThrow(message.str().empty(), UserError(message.str()));
+    if (!message.str().empty())
+      throw Diverged(message.str(), "time step", step, limit, t);
     if (may_change && (step > near * limit || relaxed))
       step = std::min(first, share * limit);
     return step;

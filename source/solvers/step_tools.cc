@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/base/user_error.h>
 #include <perideal/solvers/step_tools.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace PeriDeal
@@ -75,6 +75,13 @@ namespace PeriDeal
   }
 
 
+  Diverged not_finite(const std::string &message, const double t)
+  {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    return Diverged(message, "finite values", none, none, t);
+  }
+
+
   void check_finite(const Vector &u, const std::string &stepper, const double t)
   {
     if (std::isfinite(u.l1_norm()))
@@ -83,7 +90,7 @@ namespace PeriDeal
     message << "The run became unstable: stepper '" << stepper
             << "' produced values that are not finite before t = " << t
             << ". Choose a smaller 'Time step', or 'Stepper = auto', in section 'Time'.";
-    AssertThrow(false, UserError(message.str()));
+    throw not_finite(message.str(), t);
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/diverged.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/stepper.h>
 
@@ -87,7 +88,7 @@ namespace PeriDeal
       message << sharp << " are stable (largest eigenvalue, Lanczos), up to " << safe
               << " for sure (Gershgorin)";
     message << ". Choose a smaller step, 'Time step = auto', or 'Stepper = auto'.";
-    AssertThrow(false, UserError(message.str()));
+    throw Diverged(message.str(), "time step", dt, sharp);
   }
 
 

@@ -39,8 +39,8 @@ namespace PeriDeal
 
     void complete(const Json &summary);
 
-    /** The run ends early. @param status `diverged` or `stopped` */
-    void end(const std::string &status, const std::string &message);
+    /** The run ends early. @param status `diverged` or `stopped` @param more of why, behind both */
+    void end(const std::string &status, const std::string &message, const Json &more);
 
     /** What is known. When it is loaded the file says that the run goes on. Collective. */
     void exchange(Archive &archive);

@@ -5,6 +5,7 @@
 
 #include <perideal/analysis/comparison.h>
 #include <perideal/analysis/recovery.h>
+#include <perideal/problems/guards.h>
 #include <perideal/problems/heat_ledger.h>
 #include <perideal/problems/model.h>
 #include <perideal/problems/problem.h>
@@ -34,6 +35,9 @@ namespace PeriDeal
                                    const RunContext                        &context) override;
     void                   exchange(Archive &archive) override;
     double                 work_of(const double span) const override;
+    unsigned int           steps_between_looks() const override;
+    Trip                   watch(const double t) override;
+    void                   explain(Trip &trip) override;
     void                   add_totals(const double t, const RunContext &context) override;
     nlohmann::ordered_json describe_solving() const override;
     void describe_scene(nlohmann::ordered_json &summary, const bool at_the_end) const override;
@@ -118,6 +122,8 @@ namespace PeriDeal
   private:
     void make_stepper();
     void repeat_changes();
+
+    GrowthGuard growth;
   };
 
 

@@ -9,6 +9,7 @@
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/analysis/recovery.h>
 #include <perideal/base/archive.h>
+#include <perideal/base/diverged.h>
 #include <perideal/base/timing.h>
 #include <perideal/mesh/nodes.h>
 #include <perideal/operators/interface/operator.h>
@@ -105,6 +106,25 @@ namespace PeriDeal
 
     /** How much work it is to advance by a time span, to be compared with that of others. */
     virtual double work_of(const double span) const = 0;
+
+    /**
+     * So many steps may be between two looks of the guards for those to cost at most some percent.
+     * Not collective.
+     */
+    virtual unsigned int steps_between_looks() const
+    {
+      return 1;
+    }
+
+    /** What is wrong with the state at t, found by a look at it: at no more than one application. */
+    virtual Trip watch(const double t);
+
+    /**
+     * Add to what has been found, by watch() or by a solver that has thrown Diverged, a place where
+     * there is none, and the cause: of what is known to bring that about the first that holds here,
+     * with the numbers.
+     */
+    virtual void explain(Trip &trip);
 
     /** Before results of a time are written. Throws UserError where the state is no result. */
     virtual void examine(const double t);

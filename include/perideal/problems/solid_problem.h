@@ -54,16 +54,19 @@ namespace PeriDeal
     void                settle(const RunContext &context) override;
     std::vector<double> stops(const double from, const double to) const override;
     bool                tells_at_stops() const override;
-    std::string doing(const unsigned int k, const unsigned int n, const double t) const override;
-    void        advance(const double                             from,
-                        const double                             to,
-                        const std::function<void(const double)> &report,
-                        const RunContext                        &context) override;
-    void        exchange(Archive &archive) override;
-    double      work_of(const double span) const override;
-    void        examine(const double t) override;
-    void        add_totals(const double t, const RunContext &context) override;
-    void        note_end(const RunContext &context) const override;
+    std::string  doing(const unsigned int k, const unsigned int n, const double t) const override;
+    void         advance(const double                             from,
+                         const double                             to,
+                         const std::function<void(const double)> &report,
+                         const RunContext                        &context) override;
+    void         exchange(Archive &archive) override;
+    double       work_of(const double span) const override;
+    unsigned int steps_between_looks() const override;
+    Trip         watch(const double t) override;
+    void         explain(Trip &trip) override;
+    void         examine(const double t) override;
+    void         add_totals(const double t, const RunContext &context) override;
+    void         note_end(const RunContext &context) const override;
     nlohmann::ordered_json describe_solving() const override;
     void   describe_end(nlohmann::ordered_json &entry, ResultRecord &record) const override;
     void   describe_scene(nlohmann::ordered_json &summary, const bool at_the_end) const override;
@@ -115,6 +118,9 @@ namespace PeriDeal
                         const std::function<void(const double)> &report,
                         const RunContext                        &context);
 
+    double body_size(); // of its box, from corner to corner
+
+    double                              size_of_body = 0.; // of body_size(); 0: not asked for yet
     MotionParts                         moving;
     std::unique_ptr<DamageOfSolid<dim>> damage; // told to the heat
   };

@@ -97,8 +97,11 @@ namespace PeriDeal
     DeferredFormulaErrors(const DeferredFormulaErrors &)            = delete;
     DeferredFormulaErrors &operator=(const DeferredFormulaErrors &) = delete;
 
-    /** Throws the UserError on every process if a formula failed on any. Collective. */
+    /** Throws Diverged on every process if a formula failed on any: monitor `formulas`. Collective. */
     void throw_if_any(const MPI_Comm communicator) const;
+
+    /** The first of these messages; empty if there is none. The same everywhere. Collective. */
+    std::string first(const MPI_Comm communicator) const;
 
   private:
     friend class Expression;

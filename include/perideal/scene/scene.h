@@ -7,6 +7,7 @@
 #include <perideal/scene/body_parameters.h>
 #include <perideal/scene/checkpoint_control.h>
 #include <perideal/scene/control.h>
+#include <perideal/scene/guard_control.h>
 #include <perideal/scene/physics.h>
 
 #include <mpi.h>
@@ -83,6 +84,7 @@ namespace PeriDeal
     SolverControlParameters solver;
     OutputControl<dim>      output;
     CheckpointControl       checkpoint;
+    GuardControl            guards;
     AccuracyControl         accuracy;
     Reference               reference;
     Units                   units;

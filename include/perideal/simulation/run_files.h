@@ -54,10 +54,10 @@ namespace PeriDeal
     void complete(const Json &summary);
 
     /**
-     * The run ends with an error: if it has results, which is returned, summary.json says how. Not
-     * collective, since a process may have failed alone.
+     * The run ends with an error: if it has results, which is returned, summary.json says how, and @p
+     * more. Not collective, since a process may have failed alone.
      */
-    bool end_early(const std::string &message, const bool diverged);
+    bool end_early(const std::string &message, const bool diverged, const Json &more);
 
     /** The checkpoint to go on from, until has_resumed(); null in a run that begins. */
     CheckpointReader *checkpoint() const;

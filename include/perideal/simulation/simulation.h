@@ -24,6 +24,8 @@ namespace PeriDeal
 {
   class CheckpointClock;
   class RunFiles;
+  template <int dim>
+  class RunGuards;
   struct ResultRecord;
   template <int dim>
   class RunOutput;
@@ -107,6 +109,7 @@ namespace PeriDeal
     RunContext                        context();
     std::vector<const Problem<dim> *> reported() const;
     List                              companions() const; // advance before the problems
+    List                              all_problems() const;
     std::vector<double>               output_times() const;
 
     void build();
@@ -145,6 +148,9 @@ namespace PeriDeal
     void resume();
     void find_next_output();
 
+    /** After a step of the problem that is on its way: its guards, then offer_checkpoint(). */
+    void after_step(const double t);
+
     /** Where the state can be kept: keeps it if that is due, and stops if it has to. */
     void offer_checkpoint(const double t);
 
@@ -169,6 +175,7 @@ namespace PeriDeal
     std::unique_ptr<ExactSolution>              exact;
     std::unique_ptr<ResultRecord>               record;
     std::unique_ptr<RunOutput<dim>>             output;
+    std::unique_ptr<RunGuards<dim>>             guards;
     Adaptation                                  adaptation;
     Place                                       place;
     std::unique_ptr<CheckpointClock>            clock;                 // unless steady

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/diverged.h>
 #include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/solvers/work_of_forces.h>
 
@@ -88,10 +89,10 @@ namespace PeriDeal
     MotionEnergy energy(const Vector &u, const Vector &v, const Vector &forces) const;
 
     /**
-     * What has gone wrong, as it goes behind the name of a stepper: values that are not finite, or
-     * for some steps now much more energy than has come in. Empty: nothing.
+     * What has gone wrong: values that are not finite, or for some steps now much more energy than
+     * has come in, as it goes behind the name of a stepper.
      */
-    std::string fault(const Vector &v, const unsigned long long n_steps);
+    Trip fault(const Vector &v, const unsigned long long n_steps);
 
     /**
      * What the steps have made or lost, as it goes behind the name of a stepper, where that is more
@@ -108,7 +109,14 @@ namespace PeriDeal
     void exchange(Archive &archive, const NodeKeys &keys);
 
   private:
-    double kinetic_energy(const Vector &v, const bool supports_only) const;
+    enum class Nodes
+    {
+      all,
+      held,
+      free
+    };
+
+    double kinetic_energy(const Vector &v, const Nodes which) const;
     double kept_back(const double dt, const Vector &forces) const;
 
     ElasticOperator           &op;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/diverged.h>
 #include <perideal/operators/solid/elastic_operator.h>
 
 #include <initializer_list>
@@ -35,7 +36,10 @@ namespace PeriDeal
    */
   double local_tolerance(const double tolerance);
 
-  /** Throws a UserError that says what to change if u is not finite. Collective. */
+  /** The error of values that are none at t, with the message for the user. */
+  Diverged not_finite(const std::string &message, const double t);
+
+  /** Throws Diverged with what to change if u is not finite. Collective. */
   void check_finite(const Vector &u, const std::string &stepper, const double t);
 
   /**

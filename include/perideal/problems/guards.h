@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/base/diverged.h>
+#include <perideal/operators/interface/operator.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** The smallest and the largest number of a vector. */
+  struct Extent
+  {
+    double least = 0., most = 0.;
+    bool   finite = true; // all of them; else the others mean nothing
+
+    double width() const
+    {
+      return most - least;
+    }
+
+    /** The larger of both sizes. */
+    double size() const;
+  };
+
+  /** In one pass and one reduction. Collective. */
+  Extent extent_of(const Vector &u);
+
+  /** Coordinates of an owned node of this process. */
+  using PlaceOfNode = std::function<std::vector<double>(const unsigned int node)>;
+
+  /** `(0.5, 0.25)` */
+  std::string text_of_place(const std::vector<double> &place);
+
+  /**
+   * The entry for which @p size is largest, of all processes: its value and its place. Values that
+   * are not finite are larger than any. Collective.
+   * @param n_components of them stand at each node
+   */
+  struct Worst
+  {
+    double              value = 0., size = 0.; // 0: there is none
+    std::vector<double> place;
+  };
+  Worst find_worst(const Vector                                    &u,
+                   const unsigned int                               n_components,
+                   const PlaceOfNode                               &place_of,
+                   const std::function<double(const unsigned int)> &size);
+
+  /** The monitor `finite values`. @param name of the field. Collective. */
+  Trip values_not_finite(const Vector      &u,
+                         const unsigned int n_components,
+                         const PlaceOfNode &place_of,
+                         const std::string &name,
+                         const double       t);
+
+
+  /**
+   * Watches that what diffuses does not grow by the steps alone. That costs a pass over the values
+   * at each look. Where they have left the range that they had by as much again, an application
+   * tells why:
+   *
+   * - `maximum principle`: nothing enters but through given values, and these are constant, so that
+   *   no value may leave the range of the start;
+   * - `growth`: in several looks on end what is far out gets farther, and is on its way back each
+   *   time at a rate that only the fastest waves of the mesh have, |du/dt| > lambda/4 |u - m|, with
+   *   lambda the largest eigenvalue and m the middle of the range. By its own equation it cannot
+   *   have got there.
+   *
+   * Values that loads or sources have brought there make a new range.
+   */
+  class GrowthGuard
+  {
+  public:
+    /** The range is that of the next look: the state is a new one. */
+    void forget()
+    {
+      known        = false;
+      n_suspicious = 0;
+    }
+
+    /**
+     * @param u        at time t, distributed or not
+     * @param isolated nothing enters but through given values, which are constant, and no value may
+     *                 leave their range and that of the start
+     * Collective.
+     */
+    Trip look(const DiffusionOperator &op,
+              const Vector            &u,
+              const double             t,
+              const bool               isolated,
+              const PlaceOfNode       &place_of,
+              const std::string       &name);
+
+    /** What is seen now has to be looked at after the next step again. */
+    bool suspects() const
+    {
+      return n_suspicious > 0;
+    }
+
+  private:
+    bool returns_too_fast(const DiffusionOperator &op,
+                          const Vector            &u,
+                          const double             t,
+                          const PlaceOfNode       &place_of,
+                          Worst                   &worst) const;
+
+    bool         known = false;
+    Extent       range;
+    double       last_time    = 0.;
+    unsigned int n_suspicious = 0;  // looks on end
+    double       farthest     = 0.; // from the middle, at the last of them
+  };
+} // namespace PeriDeal

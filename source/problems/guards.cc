@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/problems/guards.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  double Extent::size() const
+  {
+    return std::max(std::abs(least), std::abs(most));
+  }
+
+
+  Extent extent_of(const Vector &u)
+  {
+    const double      *values = u.begin();
+    const unsigned int n      = u.locally_owned_size();
+    double             least = std::numeric_limits<double>::max(), most = -least, nothing = 0.;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        least = std::min(least, values[i]);
+        most  = std::max(most, values[i]);
+        nothing += 0. * values[i]; // unless that is not finite
+      }
+    double found[3] = {most, -least, nothing == 0. ? 0. : 1.};
+    Utilities::MPI::max(found, u.get_mpi_communicator(), found);
+    return {-found[1], found[0], found[2] == 0.};
+  }
+
+
+  std::string text_of_place(const std::vector<double> &place)
+  {
+    std::string text;
+    for (const double x : place)
+      text += (text.empty() ? "(" : ", ") + rounded_text(x);
+    return text + ")";
+  }
+
+
+  Worst find_worst(const Vector                                    &u,
+                   const unsigned int                               n_components,
+                   const PlaceOfNode                               &place_of,
+                   const std::function<double(const unsigned int)> &size)
+  {
+    Worst        worst;
+    unsigned int where = 0;
+    for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+      {
+        const double found = size(i);
+        const double here  = std::isfinite(found) ? found : std::numeric_limits<double>::infinity();
+        if (here > worst.size)
+          {
+            worst.size = here;
+            where      = i;
+          }
+      }
+    const MPI_Comm communicator = u.get_mpi_communicator();
+    const double   all          = Utilities::MPI::max(worst.size, communicator);
+    if (all == 0.)
+      return {};
+    const unsigned int n_processes = Utilities::MPI::n_mpi_processes(communicator),
+                       rank        = Utilities::MPI::this_mpi_process(communicator);
+    const unsigned int first =
+      Utilities::MPI::min(worst.size == all ? rank : n_processes, communicator);
+    if (first == rank)
+      {
+        worst.value = u.local_element(where);
+        worst.place = place_of(where / n_components);
+      }
+    worst.size  = all;
+    worst.value = Utilities::MPI::broadcast(communicator, worst.value, first);
+    worst.place = Utilities::MPI::broadcast(communicator, worst.place, first);
+    return worst;
+  }
+
+
+  Trip values_not_finite(const Vector      &u,
+                         const unsigned int n_components,
+                         const PlaceOfNode &place_of,
+                         const std::string &name,
+                         const double       t)
+  {
+    const Worst worst = find_worst(u, n_components, place_of, [&](const unsigned int i) {
+      return std::isfinite(u.local_element(i)) ? 0. : std::numeric_limits<double>::infinity();
+    });
+    Trip        trip;
+    trip.monitor = "finite values";
+    trip.found =
+      "the " + name + " at " + text_of_place(worst.place) + " is no finite number any more";
+    trip.value = worst.value;
+    trip.place = worst.place;
+    trip.time  = t;
+    return trip;
+  }
+
+
+  bool GrowthGuard::returns_too_fast(const DiffusionOperator &op,
+                                     const Vector            &u,
+                                     const double             t,
+                                     const PlaceOfNode       &place_of,
+                                     Worst                   &worst) const
+  {
+    constexpr double part = 0.25, far = 0.5; // of the eigenvalue, of the way to the farthest
+    Vector           at(u), rate;
+    op.initialize_vector(rate);
+    op.distribute(at, t);
+    op.residual(rate, at, t);
+    const Vector &capacity = op.lumped_capacity();
+    const double  middle   = 0.5 * (range.least + range.most);
+    const double  fast     = part * op.spectrum().sharp;
+    worst                  = find_worst(at, 1, place_of, [&](const unsigned int i) {
+      const double away    = at.local_element(i) - middle;
+      const double returns = -rate.local_element(i) / capacity.local_element(i) / away;
+      return rate.local_element(i) != 0. && returns > fast ? std::abs(away) : 0.;
+    });
+    return worst.size > far * farthest;
+  }
+
+
+  Trip GrowthGuard::look(const DiffusionOperator &op,
+                         const Vector            &u,
+                         const double             t,
+                         const bool               isolated,
+                         const PlaceOfNode       &place_of,
+                         const std::string       &name)
+  {
+    constexpr double       least_width = 1e-3; // of the values: differences of others may be noise
+    constexpr unsigned int enough      = 5;
+    const Extent           now         = extent_of(u);
+    if (!now.finite)
+      return values_not_finite(u, 1, place_of, name, t);
+    if (known && t == last_time) // the same state again
+      return {};
+    if (!known)
+      range = now;
+    known               = true;
+    last_time           = t;
+    const double width  = std::max(range.width(), least_width * range.size());
+    const double beyond = std::max(now.most - range.most, range.least - now.least);
+    if (beyond <= width)
+      {
+        n_suspicious = 0;
+        return {};
+      }
+    const double middle = 0.5 * (range.least + range.most);
+    const double before = farthest;
+    farthest            = std::max(now.most - middle, middle - now.least);
+    Worst worst;
+    if (isolated)
+      worst = find_worst(u, 1, place_of, [&](const unsigned int i) {
+        return std::abs(u.local_element(i) - middle);
+      });
+    else
+      {
+        const bool grows = n_suspicious == 0 || farthest > before;
+        if (!grows || !returns_too_fast(op, u, t, place_of, worst))
+          {
+            n_suspicious = 0;
+            range        = {std::min(range.least, now.least), std::max(range.most, now.most), true};
+            return {};
+          }
+        if (++n_suspicious < enough)
+          return {};
+      }
+    Trip trip;
+    trip.monitor = isolated ? "maximum principle" : "growth";
+    trip.value   = worst.value;
+    trip.bound   = worst.value > middle ? range.most + width : range.least - width;
+    trip.place   = worst.place;
+    trip.time    = t;
+    trip.found =
+      "the " + name + " at " + text_of_place(worst.place) + " is " + rounded_text(worst.value) +
+      ", outside of " + rounded_text(range.least) + " to " + rounded_text(range.most) +
+      (isolated ?
+         ", between which initial and given values lie and all others have to stay" :
+         ", and on its way back as fast as only noise of the mesh is: the steps make it grow, not the loads");
+    return trip;
+  }
+} // namespace PeriDeal

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "run_guards.h"
+
+#include <perideal/scene/lists.h>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    const std::string no_cause =
+      "None of the causes that are looked for was found: look at loads, given values and the material near that place and time";
+
+    unsigned long long steps_of(const nlohmann::ordered_json &solving)
+    {
+      return solving.value("steps", 0ULL);
+    }
+
+
+    std::string with_full_stop(const std::string &text)
+    {
+      return text.empty() || text.back() == '.' ? text : text + ".";
+    }
+
+
+    template <int dim>
+    std::string message_of(const Problem<dim> &problem, const Trip &trip)
+    {
+      return problem.name() + ", t = " + number_text(trip.time) + ", after " +
+             std::to_string(trip.n_steps) + (trip.n_steps == 1 ? " step" : " steps") + ": " +
+             with_full_stop(trip.found) +
+             (trip.cause.empty() ? "" : " Cause: " + with_full_stop(trip.cause));
+    }
+  } // namespace
+
+
+  template <int dim>
+  RunGuards<dim>::RunGuards(const GuardControl &control,
+                            const Progress     &progress,
+                            ResultRecord       &record,
+                            Timings            &timings)
+    : control(control)
+    , progress(progress)
+    , record(record)
+    , timings(timings)
+  {}
+
+
+  template <int dim>
+  bool RunGuards<dim>::are_on() const
+  {
+    return control.action != GuardAction::off;
+  }
+
+
+  template <int dim>
+  void RunGuards<dim>::after_step(Problem<dim> &problem, const double t)
+  {
+    if (++n_steps < problem.steps_between_looks())
+      return;
+    n_steps = 0;
+    look(problem, t);
+  }
+
+
+  template <int dim>
+  void RunGuards<dim>::look(Problem<dim> &problem, const double t)
+  {
+    if (!are_on())
+      return;
+    Timings::Scope scope(timings, "guards");
+    Trip           trip = problem.watch(t);
+    const bool     stop = control.action == GuardAction::stop;
+    if (!trip || (!stop && !told.insert({problem.name(), trip.monitor}).second))
+      return;
+    // What a run goes on with keeps its material.
+    if (stop)
+      throw Diverged(trip);
+    trip.n_steps           = steps_of(problem.describe_solving());
+    const std::string note = message_of(problem, trip) +
+                             " 'Action = stop' in section 'Guards' would have ended the run there.";
+    progress.note(note);
+    record.notes.push_back(note);
+  }
+
+
+  template <int dim>
+  void RunGuards<dim>::over(Problem<dim>                &problem,
+                            const double                 t,
+                            const std::function<void()> &action)
+  {
+    try
+      {
+        action();
+      }
+    catch (const Diverged &diverged)
+      {
+        Trip trip    = diverged.trip;
+        trip.n_steps = steps_of(problem.describe_solving());
+        trip.time    = trip.time >= 0. ? trip.time : t;
+        problem.explain(trip);
+        if (diverged.of_guard)
+          {
+            trip.cause = trip.cause.empty() ? no_cause : trip.cause;
+            throw Diverged("The run was stopped: " + message_of(problem, trip), trip);
+          }
+        const bool says_more = !trip.cause.empty() && trip.cause != trip.found &&
+                               trip.monitor != "time step";
+        throw Diverged(trip.found + (says_more ? " Cause: " + with_full_stop(trip.cause) : ""),
+                       trip);
+      }
+  }
+
+
+  nlohmann::ordered_json describe_trip(const Trip &trip, const std::string &checkpoint)
+  {
+    nlohmann::ordered_json entry{{"monitor", trip.monitor},
+                                 {"value", trip.value},
+                                 {"bound", trip.bound},
+                                 {"place", trip.place},
+                                 {"time", trip.time},
+                                 {"step", trip.n_steps},
+                                 {"cause", trip.cause}};
+    if (!checkpoint.empty())
+      entry["checkpoint"] = checkpoint;
+    return entry;
+  }
+
+
+  template class RunGuards<1>;
+  template class RunGuards<2>;
+  template class RunGuards<3>;
+} // namespace PeriDeal

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// What the guards of a run find, and how soon; and what they leave alone.
+
+#include <perideal/problems/guards.h>
+#include <perideal/scene/with_formulas.h>
+#include <perideal/solvers/motion_stepper.h>
+#include <perideal/solvers/stepper.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "elastic_test_tools.h"
+#include "scene_test_tools.h"
+
+namespace PeriDeal
+{
+  using namespace OperatorTests;
+  using namespace SceneTests;
+  using dealii::Point;
+  using dealii::Tensor;
+
+  namespace
+  {
+    constexpr unsigned int soon = 20; // steps after the first growth
+
+    const Settings plate{{"Domain/Cells", "12, 12"},
+                         {"Peridynamics/Boundary treatment", "fictitious mirror"},
+                         {"Boundary conditions/Dirichlet", "left: 0; right: 1"}};
+    const Settings heated =
+      plate + Settings{{"Initial and source/Source", "10*exp(-20*((x-0.5)^2 + (y-0.5)^2))"}};
+
+
+    template <int dim>
+    PlaceOfNode places(const OperatorTests::Problem<dim> &problem)
+    {
+      return [&](const unsigned int node) {
+        return std::vector<double>(problem.positions[node].begin_raw(),
+                                   problem.positions[node].end_raw());
+      };
+    }
+
+
+    struct Outcome
+    {
+      Trip                        trip;
+      std::optional<unsigned int> first_growth, stopped; // steps
+    };
+
+
+    /** Forward Euler with steps of a share of the stable one, and looks as a run has them. */
+    Outcome step_with_euler(const Settings &settings, const double share, const bool isolated)
+    {
+      constexpr unsigned int          n_steps = 3000, between = 10;
+      const OperatorTests::Problem<2> problem(settings);
+      StepperOptions                  options;
+      options.time_step    = share * stable_step("euler", problem.op().spectrum().sharp);
+      const auto   stepper = make_euler(problem.op(), options); // which refuses no step
+      const double dt      = options.time_step;
+      Vector       u       = problem.values([](const auto &) { return 0.; });
+      problem.op().distribute(u, 0.);
+      GrowthGuard guard;
+      const auto  look = [&](const double t) {
+        return guard.look(problem.op(), u, t, isolated, places(problem), "temperature");
+      };
+      EXPECT_FALSE(look(0.));
+      const Extent start = extent_of(u);
+      Outcome      run;
+      for (unsigned int k = 1, since = 0; k <= n_steps; ++k)
+        {
+          stepper->advance(u, (k - 1) * dt, k * dt);
+          const Extent now   = extent_of(u);
+          const double after = std::max(now.most - start.most, start.least - now.least);
+          if (!run.first_growth && after > start.width())
+            run.first_growth = k;
+          if (++since < (guard.suspects() ? 1 : between))
+            continue;
+          since    = 0;
+          run.trip = look(k * dt);
+          if (run.trip)
+            {
+              run.stopped = k;
+              break;
+            }
+        }
+      return run;
+    }
+  } // namespace
+
+
+  TEST(Guards, extents)
+  {
+    const OperatorTests::Problem<2> problem(plate);
+    Vector                          u = problem.values([](const auto &p) { return p[0] - 0.25; });
+    EXPECT_DOUBLE_EQ(extent_of(u).most, 0.75);
+    EXPECT_DOUBLE_EQ(extent_of(u).least, -0.25);
+    EXPECT_DOUBLE_EQ(extent_of(u).size(), 0.75);
+    for (const double none :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+      {
+        u = problem.values(
+          [&](const auto &p) { return p.distance(Point<2>(0.5, 0.75)) < 1e-9 ? none : 0.; });
+        EXPECT_FALSE(extent_of(u).finite);
+        const Trip trip = values_not_finite(u, 1, places(problem), "temperature", 0.3);
+        EXPECT_EQ(trip.monitor, "finite values");
+        ASSERT_EQ(trip.place.size(), 2u);
+        EXPECT_NEAR(trip.place[0], 0.5, 1e-12);
+        EXPECT_NEAR(trip.place[1], 0.75, 1e-12);
+        EXPECT_DOUBLE_EQ(trip.time, 0.3);
+        expect_parts(trip.found, {"temperature at (0.5, 0.75)"});
+      }
+  }
+
+
+  TEST(Guards, euler_above_its_limit)
+  {
+    const Outcome isolated = step_with_euler(plate, 1.03, true);
+    ASSERT_TRUE(isolated.stopped && isolated.first_growth);
+    EXPECT_EQ(isolated.trip.monitor, "maximum principle");
+    EXPECT_GE(*isolated.stopped, *isolated.first_growth);
+    EXPECT_LE(*isolated.stopped, *isolated.first_growth + soon);
+    EXPECT_GT(std::abs(isolated.trip.value - 0.5), 1.5); // from the middle, beyond twice the range
+
+    const Outcome loaded = step_with_euler(heated, 1.03, false);
+    ASSERT_TRUE(loaded.stopped && loaded.first_growth);
+    EXPECT_EQ(loaded.trip.monitor, "growth");
+    EXPECT_LE(*loaded.stopped, *loaded.first_growth + soon);
+    expect_parts(loaded.trip.found, {"the steps make it grow, not the loads"});
+  }
+
+
+  TEST(Guards, euler_below_its_limit)
+  {
+    EXPECT_FALSE(step_with_euler(plate, 0.99, true).trip);
+    EXPECT_FALSE(step_with_euler(heated, 0.99, false).trip);
+  }
+
+
+  TEST(Guards, loads_may_do_what_they_like)
+  {
+    // Pulses at one node, shorter than it takes to spread, each stronger than all before; a value
+    // that grows and falls at once.
+    const std::string spot = "if(abs(x - 0.5) + abs(y - 0.5) < 0.01, 1, 0)";
+    for (const std::string &source : {"1e4*" + spot + "*if(sin(3e3*t) > 0.9, 1, 0)*exp(100*t)",
+                                      spot + "*exp(300*t)",
+                                      "1e3*" + spot})
+      {
+        const Outcome run =
+          step_with_euler(plate + Settings{{"Initial and source/Source", source}}, 0.99, false);
+        EXPECT_FALSE(run.trip) << source << ": " << run.trip.found;
+      }
+    const Outcome driven = step_with_euler(
+      plate + Settings{{"Boundary conditions/Dirichlet", "left: exp(50*t)*sin(2e3*t); right: 1"}},
+      0.99,
+      false);
+    EXPECT_FALSE(driven.trip) << driven.trip.found;
+  }
+
+
+  TEST(Guards, verlet_above_its_limit)
+  {
+    const Settings moving{{"Elasticity/Solver", "dynamics"}, {"Domain/Cells", "16, 12"}};
+    for (const double share : {0.99, 1.03})
+      {
+        const Body<2>  body(box<2>() + moving, ModelKind::peridynamics);
+        StepperOptions options;
+        options.time_step  = share * stable_motion_step(body.op());
+        const auto stepper = make_verlet(body.op(), options); // which refuses no step
+        Vector     u       = body.values([](const Point<2> &p) {
+          return Tensor<1, 2>({1e-3 * p[0] * p[0], 0.});
+        });
+        Vector     v;
+        body.op().initialize_vector(v);
+        body.op().distribute(u, 0.);
+        const double                start = body.op().energy(u);
+        unsigned int                step  = 0;
+        std::optional<unsigned int> first_growth;
+        std::optional<Trip>         error;
+        for (; step < 2000 && !error; ++step)
+          {
+            try
+              {
+                stepper->advance(u, v, step * options.time_step, (step + 1) * options.time_step);
+              }
+            catch (const Diverged &diverged)
+              {
+                error = diverged.trip;
+              }
+            if (!first_growth && stepper->energy(u, v).kinetic > 30. * start)
+              first_growth = step;
+          }
+        EXPECT_EQ(error.has_value(), share > 1.);
+        if (share < 1.)
+          continue;
+        ASSERT_TRUE(error && first_growth);
+        EXPECT_EQ(error->monitor, "energy");
+        EXPECT_GT(error->value, error->bound);
+        EXPECT_LE(step, *first_growth + soon);
+      }
+  }
+
+
+  TEST(Guards, formulas_are_the_cause)
+  {
+    // A guard trips on what a formula has made: its error becomes the cause.
+    const Expression formula("sqrt(0.5 - t)", "'Source' in section 'Initial and source'");
+    Trip             trip;
+    trip.monitor = "finite values";
+    trip.found   = "the temperature is no finite number any more";
+    std::optional<Trip> error;
+    try
+      {
+        with_formulas(MPI_COMM_WORLD, [&] {
+          formula.value(Point<2>(0.25, 0.5), 0.75);
+          throw Diverged(trip);
+        });
+      }
+    catch (const Diverged &diverged)
+      {
+        error = diverged.trip;
+      }
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->monitor, "finite values");
+    expect_parts(error->cause, {"'Source'", "sqrt(0.5 - t)", "(0.25, 0.5), t = 0.75"});
+    try
+      {
+        with_formulas(MPI_COMM_WORLD, [&] { formula.value(Point<2>(0.25, 0.5), 0.75); });
+        FAIL();
+      }
+    catch (const Diverged &diverged)
+      {
+        EXPECT_EQ(diverged.trip.monitor, "formulas");
+      }
+  }
+
+
+  TEST(Guards, section)
+  {
+    EXPECT_EQ(fault("Guards", "Action = warn"), "");
+    expect_fault(fault("Guards", "Action = perhaps"), "Guards", "Action", {"stop"});
+  }
+} // namespace PeriDeal
