@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "guard_causes.h"
 
@@ -17,16 +19,29 @@ namespace PeriDeal
 
   namespace
   {
-    /** Nothing enters but through given values, which are constant. */
+    /** Of given values, where nothing enters but through them and they are constant numbers. */
     template <int dim>
-    bool is_isolated(const Scene<dim> &scene, const Operator &op)
+    std::optional<Extent> range_of_given(const Scene<dim> &scene, const Operator &op)
     {
       const Expression &source    = scene.initial_and_source.source;
       const auto       &transfers = scene.boundary_conditions.transfers;
-      return source.is_constant() && source.value(Point<dim>()) == 0. && !op.depends_on_time() &&
-             std::all_of(transfers.begin(), transfers.end(), [](const SurfaceTransfer &transfer) {
-               return transfer.insulates();
-             });
+      const auto       &given     = scene.boundary_conditions.dirichlet;
+      if (given.empty() || !source.is_constant() || source.value(Point<dim>()) != 0. ||
+          op.depends_on_time() ||
+          !std::all_of(transfers.begin(), transfers.end(), [](const SurfaceTransfer &transfer) {
+            return transfer.insulates();
+          }))
+        return {};
+      Extent range{std::numeric_limits<double>::max(), -std::numeric_limits<double>::max(), true};
+      for (const SideCondition &condition : given)
+        {
+          if (!condition.value.is_constant())
+            return {};
+          const double value = condition.value.value(Point<dim>());
+          range.least        = std::min(range.least, value);
+          range.most         = std::max(range.most, value);
+        }
+      return range;
     }
   } // namespace
 
@@ -50,10 +65,11 @@ namespace PeriDeal
                Trip() :
                values_not_finite(solution, 1, place_of, this->field_name(), t);
     const auto before = op().n_applications();
+    const auto given  = range_of_given(scene, op());
     const Trip trip   = growth.look(op(),
                                   solution,
                                   t,
-                                  is_isolated(scene, op()),
+                                  given ? &*given : nullptr,
                                   place_of,
                                   names_of(scene.general.physics).field);
     op().carry_over_applications(before - op().n_applications()); // a look is none of the run's

@@ -129,7 +129,7 @@ namespace PeriDeal
   Trip GrowthGuard::look(const DiffusionOperator &op,
                          const Vector            &u,
                          const double             t,
-                         const bool               isolated,
+                         const Extent            *given,
                          const PlaceOfNode       &place_of,
                          const std::string       &name)
   {
@@ -142,6 +142,8 @@ namespace PeriDeal
       return {};
     if (!known)
       range = now;
+    if (given)
+      range = {std::min(range.least, given->least), std::max(range.most, given->most), true};
     known               = true;
     last_time           = t;
     const double width  = std::max(range.width(), least_width * range.size());
@@ -155,7 +157,7 @@ namespace PeriDeal
     const double before = farthest;
     farthest            = std::max(now.most - middle, middle - now.least);
     Worst worst;
-    if (isolated)
+    if (given)
       worst = find_worst(u, 1, place_of, [&](const unsigned int i) {
         return std::abs(u.local_element(i) - middle);
       });
@@ -172,7 +174,7 @@ namespace PeriDeal
           return {};
       }
     Trip trip;
-    trip.monitor = isolated ? "maximum principle" : "growth";
+    trip.monitor = given ? "maximum principle" : "growth";
     trip.value   = worst.value;
     trip.bound   = worst.value > middle ? range.most + width : range.least - width;
     trip.place   = worst.place;
@@ -180,7 +182,7 @@ namespace PeriDeal
     trip.found =
       "the " + name + " at " + text_of_place(worst.place) + " is " + rounded_text(worst.value) +
       ", outside of " + rounded_text(range.least) + " to " + rounded_text(range.most) +
-      (isolated ?
+      (given ?
          ", between which initial and given values lie and all others have to stay" :
          ", and on its way back as fast as only noise of the mesh is: the steps make it grow, not the loads");
     return trip;

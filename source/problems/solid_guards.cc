@@ -19,7 +19,7 @@ namespace PeriDeal
 
   namespace
   {
-    /** A part that has broken off and is farther from where the others are than the body is wide. */
+    /** A part that has broken off and is many times as far from the rest as the body is wide. */
     Trip flown_off(const ElasticOperator &op,
                    const Vector          &u,
                    const unsigned int     dim,
@@ -56,17 +56,19 @@ namespace PeriDeal
           sum += std::pow(u.local_element(i / dim * dim + d) - rest[d], 2);
         return std::sqrt(sum);
       };
-      const Worst worst = find_worst(u, dim, place_of, distance);
-      Trip        trip;
-      if (!(worst.size > size + moved))
+      const Worst      worst = find_worst(u, dim, place_of, distance);
+      Trip             trip;
+      constexpr double far = 10.;
+      if (!(worst.size > far * (size + moved)))
         return trip;
       trip.monitor = "parts flying off";
       trip.value   = worst.size;
-      trip.bound   = size + moved;
+      trip.bound   = far * (size + moved);
       trip.place   = worst.place;
       trip.time    = t;
       trip.found   = "what was at " + text_of_place(worst.place) + " has flown off by " +
-                   rounded_text(worst.size) + " against the rest, farther than the body is wide (" +
+                   rounded_text(worst.size) +
+                   " against the rest, more than ten times the size of the body (" +
                    rounded_text(trip.bound) + ")";
       trip.cause =
         "The bonds that held it have broken. 'Kinematics = linear' in section 'Elasticity' is for small displacements, and lets what spins grow as it flies: "

@@ -5,6 +5,7 @@
 #include <perideal/mesh/node_keys.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/with_formulas.h>
 #include <perideal/solvers/static_solver.h>
 #include <perideal/solvers/step_tools.h>
 
@@ -281,10 +282,12 @@ namespace PeriDeal
     while (span.n_done < span.n_steps)
       {
         const double next = moving.next();
-        if (stepper->is_inside_span())
-          stepper->go_on(displacement, velocity, context.after_step);
-        else
-          stepper->advance(displacement, velocity, span.now, next, context.after_step);
+        with_formulas(this->dofs().get_communicator(), [&] {
+          if (stepper->is_inside_span())
+            stepper->go_on(displacement, velocity, context.after_step);
+          else
+            stepper->advance(displacement, velocity, span.now, next, context.after_step);
+        });
         span.now = next;
         ++span.n_done;
         if (op().brittle())

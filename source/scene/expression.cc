@@ -349,9 +349,22 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    Diverged formula_error(const std::string &message)
+    {
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      Diverged         error(message, "formulas", none, none);
+      error.trip.cause = message;
+      return error;
+    }
+  } // namespace
+
+
   void report_formula_error(const std::string &message)
   {
-    AssertThrow(collector != nullptr, UserError(message));
+    if (collector == nullptr)
+      throw formula_error(message);
     if (collector->message.empty())
       collector->message = message;
   }
@@ -372,12 +385,8 @@ namespace PeriDeal
   void DeferredFormulaErrors::throw_if_any(const MPI_Comm communicator) const
   {
     const std::string found = first(communicator);
-    constexpr double  none  = std::numeric_limits<double>::quiet_NaN();
-    if (found.empty())
-      return;
-    Diverged error(found, "formulas", none, none);
-    error.trip.cause = found;
-    throw error;
+    if (!found.empty())
+      throw formula_error(found);
   }
 
 

@@ -99,7 +99,8 @@ namespace PeriDeal
         Trip trip    = diverged.trip;
         trip.n_steps = steps_of(problem.describe_solving());
         trip.time    = trip.time >= 0. ? trip.time : t;
-        problem.explain(trip);
+        if (trip.monitor != "formulas") // which one process may have found alone
+          problem.explain(trip);
         if (diverged.of_guard)
           {
             trip.cause = trip.cause.empty() ? no_cause : trip.cause;

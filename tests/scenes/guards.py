@@ -108,10 +108,10 @@ subsection Elasticity
   set Kinematics = linear
 end
 subsection Time
-  set End time = 3
+  set End time = 15
 end
 subsection Output
-  set Write every = 0.2
+  set Write every = 1
 end
 """
 
@@ -138,3 +138,141 @@ subsection Output
   set Write every = 0.25
 end
 """
+
+# Half way the traction has no value any more.
+TRACTION_ENDS = BODY + """
+end
+subsection Domain
+  set Upper corner = 1, 0.25
+  set Cells        = 16, 4
+end
+subsection Boundary conditions
+  set Displacement = left: 0, 0
+  set Traction     = right: 0.1*sqrt(1 - t), 0
+end
+subsection Elasticity
+  set Solver = dynamics
+end
+subsection Time
+  set End time = 2
+end
+subsection Output
+  set Write every = 0.25
+end
+"""
+
+# A plate that holds less heat the warmer it is: at the same conductivity it becomes faster.
+LESS_CAPACITY = WARMING.replace("Conductivity = 1 + 10*T", "Heat capacity = 1 - 0.9*T").replace("Time step = 4e-4", "Time step = 1.1e-3")
+
+
+def step_of(run, model="peridynamics"):
+    """The mean length of the steps."""
+    guard = run.summary["guard"]
+    return guard["time"] / guard["step"]
+
+
+def formula_ends(t):
+    """The first step that ends after a time."""
+    return lambda run: math.ceil(t / step_of(run))
+
+
+def limit_is_passed(run):
+    """The run is refused the first step above its limit; that of a motion is looked for every 25 steps."""
+    guard = run.summary["guard"]
+    check(1 < guard["value"] / guard["bound"] < 1.1, f"a step that has just become too long: {guard}")
+    check(f"{guard['value']:g}" in guard["cause"], f"the cause has the step: {guard['cause']}")
+    return guard["step"]
+
+
+def has_flown_off(run):
+    """The step at which it was as far as the bound, by the speed with which it flies: about 2, that of its start."""
+    guard = run.summary["guard"]
+    check_less(guard["bound"], guard["value"], "how far it has flown")
+    check(1.0 < guard["place"][0] < 2.0, f"what flies is right of the middle: {guard['place']}")
+    return guard["step"] - math.ceil((guard["value"] - guard["bound"]) / (1.5 * step_of(run)))
+
+
+# Scene, monitor, words of the message, the step at which the growth begins.
+RUNS = {
+    "source without a value": (SOURCE_ENDS, "finite values", ["'Source'", "sqrt(0.05 - t)", "is not finite at ("], formula_ends(0.05)),
+    "traction without a value": (TRACTION_ENDS, "finite values", ["'Traction'", "sqrt(1 - t)", "is not finite at (1, "], formula_ends(1)),
+    "conductor that warms": (WARMING, "time step", ["'Time step'", "'euler'"], limit_is_passed),
+    "less and less capacity": (LESS_CAPACITY, "time step", ["'Time step'", "'euler'"], limit_is_passed),
+    "strip that is pulled": (PULLED.replace("STEP", "0.0092"), "time step", ["'Time step'", "'verlet'", "stiffer"], limit_is_passed),
+    "fragment that flies": (FLYING, "parts flying off", ["'Kinematics = linear'", "have broken"], has_flown_off),
+}
+
+
+def check_readable(run, name, until):
+    """Whole files of finite numbers, none of them later than that."""
+    files = glob.glob(os.path.join(run.folder, "fields", "*.h5"))
+    check(len(files) > 0, f"{name}: no fields are left")
+    for path in files:
+        with h5py.File(path) as file:
+            file.visititems(lambda key, item: check(not isinstance(item, h5py.Dataset) or numpy.all(numpy.isfinite(item[()])), f"{name}: {path} {key}"))
+    for path in glob.glob(os.path.join(run.folder, "*.xdmf")) + glob.glob(os.path.join(run.folder, "*.pvd")):
+        xml.parse(path)
+    times = [row["time"] for row in run.totals]
+    check(len(times) > 0 and max(times) < until, f"{name}: the last totals are of t = {max(times, default=None)}, the run was stopped at {until}")
+    check(all(math.isfinite(row["value"]) for row in run.totals), f"{name}: totals that are not finite")
+
+
+def stopped():
+    rows = []
+    for name, (scene, monitor, words, first_growth) in RUNS.items():
+        steps = []
+        for ranks in (1, 2):
+            run = run_scene(scene, {"Checkpoint/Every": "1 s"}, ranks, expect_error=True)
+            check(run.summary["status"] == "diverged", f"{name}: {run.summary['status']}")
+            if not check("guard" in run.summary, f"{name}: no guard has found it: {run.stderr}"):
+                continue
+            guard = run.summary["guard"]
+            check(guard["monitor"] == monitor, f"{name}: {guard}")
+            for word in words:
+                check(word in run.stderr, f"{name}: {word!r} is not in {run.stderr}")
+            check(run.summary["message"] in run.stderr, f"{name}: the summary's message is another one")
+            check_readable(run, name, guard["time"])
+            first = first_growth(run)
+            check(first <= guard["step"] <= first + SOON, f"{name}: stopped after {guard['step']} steps, growing from step {first} on")
+            steps.append(guard["step"])
+            if ranks == 1:
+                rows.append((name, guard["monitor"], guard["time"], guard["step"], guard["step"] - first))
+        check(len(set(steps)) == 1, f"{name}: on 1 and 2 processes after {steps} steps")
+    print_table("Stopped", ("run", "monitor", "at t", "step", "steps after the first growth"), rows)
+
+
+def actions():
+    # it flies on, and is told once
+    run = run_scene(FLYING, {"Guards/Action": "warn", "Output/Fields": "none"})
+    notes = [note for note in run.summary["notes"] if "flown off" in note]
+    check(run.summary["status"] == "complete" and len(notes) == 1 and "'Action = stop'" in notes[0], f"warn: {run.summary['notes']}")
+    silent = run_scene(FLYING, {"Guards/Action": "off", "Output/Fields": "none"})
+    check(not any("flown off" in note for note in silent.summary["notes"]), f"off: {silent.summary['notes']}")
+    check([row["value"] for row in run.totals] == [row["value"] for row in silent.totals], "guards change no result")
+    # what has no value is an error in any case
+    for action in ("warn", "off"):
+        run = run_scene(SOURCE_ENDS, {"Guards/Action": action}, expect_error=True)
+        check(run.summary["status"] == "diverged" and "sqrt(0.05 - t)" in run.stderr, f"{action}: {run.stderr}")
+
+
+def share():
+    """Of the wall time; printed, since timings are no tests. That the guards looked is one."""
+    rows = []
+    for name, scene, more in (("plate, euler", SOURCE_ENDS, {"Initial and source/Source": "10", "Domain/Cells": "100, 100", "Time/End time": "0.02"}),
+                              ("strip, verlet", TRACTION_ENDS, {"Boundary conditions/Traction": "right: 0.1, 0", "Domain/Cells": "160, 40", "Time/End time": "0.5"})):
+        run = run_scene(scene, {**more, "Output/Fields": "none", "Output/Write every": ""})
+        spent = run.summary["wall time"]["guards"]
+        whole = run.model("peridynamics")["wall time"]["time stepping"]
+        check(spent > 0, f"{name}: the guards have looked")
+        rows.append((name, run.model("peridynamics")["steps"], whole, spent, f"{100 * spent / whole:.2f} %"))
+    print_table("What guards take", ("run", "steps", "time stepping, s", "guards, s", "share"), rows)
+
+
+def main():
+    for part in sys.argv[1:] or ("stopped", "actions", "share"):
+        {"stopped": stopped, "actions": actions, "share": share}[part]()
+    finish()
+
+
+if __name__ == "__main__":
+    main()

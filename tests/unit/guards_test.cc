@@ -25,6 +25,8 @@ namespace PeriDeal
 
   namespace
   {
+    const Extent zero_to_one{0., 1., true};
+
     constexpr unsigned int soon = 20; // steps after the first growth
 
     const Settings plate{{"Domain/Cells", "12, 12"},
@@ -52,7 +54,9 @@ namespace PeriDeal
 
 
     /** Forward Euler with steps of a share of the stable one, and looks as a run has them. */
-    Outcome step_with_euler(const Settings &settings, const double share, const bool isolated)
+    Outcome step_with_euler(const Settings &settings,
+                            const double    share,
+                            const Extent   *given = nullptr)
     {
       constexpr unsigned int          n_steps = 3000, between = 10;
       const OperatorTests::Problem<2> problem(settings);
@@ -64,7 +68,7 @@ namespace PeriDeal
       problem.op().distribute(u, 0.);
       GrowthGuard guard;
       const auto  look = [&](const double t) {
-        return guard.look(problem.op(), u, t, isolated, places(problem), "temperature");
+        return guard.look(problem.op(), u, t, given, places(problem), "temperature");
       };
       EXPECT_FALSE(look(0.));
       const Extent start = extent_of(u);
@@ -117,14 +121,14 @@ namespace PeriDeal
 
   TEST(Guards, euler_above_its_limit)
   {
-    const Outcome isolated = step_with_euler(plate, 1.03, true);
+    const Outcome isolated = step_with_euler(plate, 1.03, &zero_to_one);
     ASSERT_TRUE(isolated.stopped && isolated.first_growth);
     EXPECT_EQ(isolated.trip.monitor, "maximum principle");
     EXPECT_GE(*isolated.stopped, *isolated.first_growth);
     EXPECT_LE(*isolated.stopped, *isolated.first_growth + soon);
     EXPECT_GT(std::abs(isolated.trip.value - 0.5), 1.5); // from the middle, beyond twice the range
 
-    const Outcome loaded = step_with_euler(heated, 1.03, false);
+    const Outcome loaded = step_with_euler(heated, 1.03);
     ASSERT_TRUE(loaded.stopped && loaded.first_growth);
     EXPECT_EQ(loaded.trip.monitor, "growth");
     EXPECT_LE(*loaded.stopped, *loaded.first_growth + soon);
@@ -134,8 +138,8 @@ namespace PeriDeal
 
   TEST(Guards, euler_below_its_limit)
   {
-    EXPECT_FALSE(step_with_euler(plate, 0.99, true).trip);
-    EXPECT_FALSE(step_with_euler(heated, 0.99, false).trip);
+    EXPECT_FALSE(step_with_euler(plate, 0.99, &zero_to_one).trip);
+    EXPECT_FALSE(step_with_euler(heated, 0.99).trip);
   }
 
 
@@ -149,13 +153,12 @@ namespace PeriDeal
                                       "1e3*" + spot})
       {
         const Outcome run =
-          step_with_euler(plate + Settings{{"Initial and source/Source", source}}, 0.99, false);
+          step_with_euler(plate + Settings{{"Initial and source/Source", source}}, 0.99);
         EXPECT_FALSE(run.trip) << source << ": " << run.trip.found;
       }
     const Outcome driven = step_with_euler(
       plate + Settings{{"Boundary conditions/Dirichlet", "left: exp(50*t)*sin(2e3*t); right: 1"}},
-      0.99,
-      false);
+      0.99);
     EXPECT_FALSE(driven.trip) << driven.trip.found;
   }
 

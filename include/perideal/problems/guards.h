@@ -84,15 +84,15 @@ namespace PeriDeal
     }
 
     /**
-     * @param u        at time t, distributed or not
-     * @param isolated nothing enters but through given values, which are constant, and no value may
-     *                 leave their range and that of the start
+     * @param u     at time t, distributed or not
+     * @param given where nothing enters but through given values, which are constant: the range of
+     *              these, which no value may leave together with that of the start; else null
      * Collective.
      */
     Trip look(const DiffusionOperator &op,
               const Vector            &u,
               const double             t,
-              const bool               isolated,
+              const Extent            *given,
               const PlaceOfNode       &place_of,
               const std::string       &name);
 
