@@ -149,7 +149,7 @@ namespace PeriDeal
     // that grows and falls at once.
     const std::string spot = "if(abs(x - 0.5) + abs(y - 0.5) < 0.01, 1, 0)";
     for (const std::string &source : {"1e4*" + spot + "*if(sin(3e3*t) > 0.9, 1, 0)*exp(100*t)",
-                                      spot + "*exp(300*t)",
+                                      spot + "*exp(100*t)",
                                       "1e3*" + spot})
       {
         const Outcome run =
