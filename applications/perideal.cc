@@ -13,8 +13,6 @@
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
 #include <perideal/study/model_choice.h>
-#include <perideal/study/study.h>
-#include <perideal/study/work_precision.h>
 
 #include <CLI/CLI.hpp>
 #include <unistd.h>
@@ -23,6 +21,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+
+#include "study_command.h"
 
 namespace
 {
@@ -98,137 +98,8 @@ namespace
     std::vector<std::string> overrides;
     bool                     quiet = false, estimate = false, resume = false, overwrite = false;
 
-    std::vector<std::string> files,
-      variations; // of a study: one study file, or scenes and what varies
-    std::string          output;
-    StudyOptions         study;
-    WorkPrecisionOptions work_precision;
+    StudyRequest study;
   };
-
-
-  bool is_study_file(const std::string &file)
-  {
-    const std::string ending = ".json";
-    return file.size() > ending.size() &&
-           file.compare(file.size() - ending.size(), ending.size(), ending) == 0;
-  }
-
-
-  const std::string work_precision = "work_precision"; // in place of a study file
-
-
-  /** `perideal study work_precision SCENE.prm`. */
-  void compute_work_precision(const Request &request)
-  {
-    AssertThrow(request.files.size() == 2 && !is_study_file(request.files[1]),
-                UserError("perideal study work_precision needs one scene (.prm), found " +
-                          (request.files.size() == 1 ?
-                             "none" :
-                             join_names(std::vector<std::string>(request.files.begin() + 1,
-                                                                 request.files.end()))) +
-                          "."));
-    AssertThrow(
-      request.variations.empty(),
-      UserError(
-        "--vary is not for work_precision, which varies methods and lattices; --cells names the lattices."));
-    WorkPrecisionOptions options = request.work_precision;
-    options.scene                = request.files[1];
-    options.overrides            = request.overrides;
-    options.output               = request.output;
-    options.study                = request.study;
-    options.study.quiet          = request.quiet;
-    run_work_precision(options, MPI_COMM_WORLD);
-  }
-
-
-  void compute_study(const Request &request)
-  {
-    if (request.files.front() == work_precision)
-      return compute_work_precision(request);
-    AssertThrow(
-      request.work_precision.cells.empty() && request.work_precision.reference.empty() &&
-        request.work_precision.budget == WorkPrecisionOptions().budget,
-      UserError(
-        "--cells, --reference and --budget are for `perideal study work_precision SCENE.prm`."));
-    const MPI_Comm communicator = MPI_COMM_WORLD;
-    Study          study;
-    if (std::any_of(request.files.begin(), request.files.end(), is_study_file))
-      {
-        AssertThrow(request.files.size() == 1,
-                    UserError("A study is one file (.json), or one or more scenes (.prm); found " +
-                              join_names(request.files) + "."));
-        AssertThrow(request.variations.empty(),
-                    UserError("--vary is for scenes; in the study file '" + request.files[0] +
-                              "' a row says \"vary\"."));
-        study = read_study(request.files[0], communicator);
-      }
-    else
-      {
-        std::vector<Variation> variations;
-        for (const std::string &text : request.variations)
-          variations.push_back(parse_variation(text));
-        study = sweep_of_scenes(request.files, variations, communicator);
-      }
-    override_rows(study, request.overrides);
-    if (!request.output.empty())
-      study.output = request.output;
-    StudyOptions options = request.study;
-    options.quiet        = request.quiet;
-    run_study(study, options, communicator);
-  }
-
-
-  void describe_study(CLI::App &app, Request &request)
-  {
-    CLI::App *study = app.add_subcommand(
-      "study",
-      "Compute many runs: the rows of a study file (.json), or all combinations of what --vary names; "
-      "finished rows are kept, so an interrupted study goes on where it was");
-    study
-      ->add_option(
-        "files",
-        request.files,
-        "study file (.json), or scenes (.prm), or: work_precision SCENE.prm, which charts accuracy "
-        "against cost over methods and lattices")
-      ->required();
-    study
-      ->add_option(
-        "--vary",
-        request.variations,
-        "vary an entry of the scenes: \"Section/Entry=value | value | value\"; may be given "
-        "several times, the first varies slowest")
-      ->allow_extra_args(false);
-    study
-      ->add_option(
-        "-s,--set",
-        request.overrides,
-        "override an entry in all rows: \"Section/Entry=value\"; may be given several times")
-      ->allow_extra_args(false);
-    study->add_option("--output", request.output, "directory of the results");
-    study->add_option("--only",
-                      request.study.only,
-                      "compute the rows or groups of these names only");
-    study->add_flag("--quick", request.study.quick, "compute the rows marked \"quick\" only");
-    study->add_flag("--redo", request.study.redo, "compute finished rows again");
-    study
-      ->add_option("--repeat",
-                   request.study.repeats,
-                   "run every row so often and keep the smallest times")
-      ->check(CLI::Range(1u, 1000u));
-    study->add_option(
-      "--cells",
-      request.work_precision.cells,
-      "work_precision: the lattices, from coarse to fine: \"21, 21 | 41, 41 | 81, 81\"");
-    study->add_option("--reference",
-                      request.work_precision.reference,
-                      "work_precision: the three lattices of the reference solution");
-    study
-      ->add_option("--budget",
-                   request.work_precision.budget,
-                   "work_precision: leave out peridynamics in the whole body with more bonds (2e6)")
-      ->check(CLI::PositiveNumber);
-    study->add_flag("-q,--quiet", request.quiet, "print nothing but errors");
-  }
 
 
   void describe_commands(CLI::App &app, Request &request)
@@ -243,6 +114,7 @@ namespace
       "  perideal study prm/studies/delta_convergence.json\n"
       "  perideal study prm/quick_start.prm --vary \"Domain/Cells=30, 30 | 60, 60\" --vary \"Peridynamics/Horizon ratio=2 | 3\"\n"
       "  perideal study work_precision prm/coupling/oblique_crack.prm\n"
+      "  perideal study stability prm/quick_start.prm --random 20\n"
       "  perideal parameters \"Horizon ratio\"\n"
       "  perideal parameters markdown\n"
       "Scenes to start from are in prm/; the format is explained in doc/scene_format.md, that of studies in doc/study.md.");
@@ -277,7 +149,7 @@ namespace
       "--estimate",
       request.estimate,
       "build two coarse lattices in place of the scene and estimate from them; scenes of more than some 500,000 unknowns are always estimated");
-    describe_study(app, request);
+    describe_study(app, request.study);
     CLI::App *parameters = app.add_subcommand(
       "parameters",
       "Print every entry of a scene file with type, default, unit and explanation, or explain one entry or section");
@@ -313,16 +185,10 @@ namespace
     if (app.got_subcommand("run"))
       options.insert(options.end(), {"--resume", "--overwrite"});
     if (app.got_subcommand("study"))
-      options.insert(options.end(),
-                     {"--vary",
-                      "--output",
-                      "--only",
-                      "--quick",
-                      "--redo",
-                      "--repeat",
-                      "--cells",
-                      "--reference",
-                      "--budget"});
+      {
+        const std::vector<std::string> own = names_of_study_options();
+        options.insert(options.end(), own.begin(), own.end());
+      }
     const std::vector<std::string> remaining = app.remaining(true);
     if (!remaining.empty() && remaining.front().compare(0, 2, "--") == 0)
       message +=
@@ -359,7 +225,7 @@ namespace
           std::cout << manual;
       }
     else if (app.got_subcommand("study"))
-      compute_study(request);
+      compute_study(request.study);
     else
       compute(request.scene,
               request.overrides,

@@ -5,6 +5,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/scene/scene.h>
 #include <perideal/solvers/motion_stepper.h>
+#include <perideal/solvers/step_bounds.h>
 #include <perideal/solvers/step_tools.h>
 
 #include <algorithm>
@@ -278,7 +279,7 @@ namespace PeriDeal
 
   double stable_motion_step(const Operator &op)
   {
-    return 2. / std::sqrt(op.spectrum().sharp);
+    return stability_limit("verlet") / std::sqrt(op.spectrum().sharp);
   }
 
 

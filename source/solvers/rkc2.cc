@@ -5,6 +5,7 @@
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/heat_steps.h>
+#include <perideal/solvers/step_bounds.h>
 #include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
 
@@ -12,51 +13,12 @@
 #include <cmath>
 #include <sstream>
 
+#include "rkc_coefficients.h"
+
 namespace PeriDeal
 {
   namespace
   {
-    /**
-     * Coefficients of the s-stage scheme of Sommeijer, Shampine and Verwer (J. Comput. Appl. Math.
-     * 88, 1998).
-     */
-    struct RKCCoefficients
-    {
-      explicit RKCCoefficients(const unsigned int s)
-        : a(s + 1)
-        , b(s + 1)
-        , c(s + 1)
-      {
-        constexpr double    damping = 2. / 13.;
-        std::vector<double> T(s + 1), dT(s + 1), ddT(s + 1);
-        w0    = 1. + damping / (static_cast<double>(s) * s);
-        T[0]  = 1.;
-        T[1]  = w0;
-        dT[1] = 1.;
-        for (unsigned int j = 2; j <= s; ++j)
-          {
-            T[j]   = 2. * w0 * T[j - 1] - T[j - 2];
-            dT[j]  = 2. * T[j - 1] + 2. * w0 * dT[j - 1] - dT[j - 2];
-            ddT[j] = 4. * dT[j - 1] + 2. * w0 * ddT[j - 1] - ddT[j - 2];
-          }
-        w1 = dT[s] / ddT[s];
-        for (unsigned int j = 2; j <= s; ++j)
-          {
-            b[j] = ddT[j] / (dT[j] * dT[j]);
-            c[j] = w1 * ddT[j] / dT[j];
-          }
-        b[0] = b[1] = b[2];
-        c[0]        = 0.;
-        c[1]        = c[2] / dT[2];
-        for (unsigned int j = 0; j <= s; ++j)
-          a[j] = 1. - b[j] * T[j];
-      }
-
-      double              w0, w1;
-      std::vector<double> a, b, c;
-    };
-
-
     /**
      * Second order stabilised explicit Runge-Kutta-Chebyshev method with adaptive steps and as many
      * stages as they need.
@@ -64,8 +26,10 @@ namespace PeriDeal
     class RKC2 : public Stepper
     {
     public:
-      RKC2(Operator &op, const StepperOptions &options)
+      /** @param n_stages of every step; 0: as many as it needs */
+      RKC2(Operator &op, const StepperOptions &options, const unsigned int n_stages)
         : op(op)
+        , given_stages(n_stages)
         , fixed(options.time_step > 0.)
         , dt(fixed ? options.time_step : 0.)
         , tolerance(local_tolerance(options.tolerance))
@@ -105,7 +69,7 @@ namespace PeriDeal
         if (!fixed || dt * op.spectrum().sharp <= resolved)
           return 0.;
         const unsigned int    s = n_stages(dt);
-        const RKCCoefficients k(s);
+        const RkcCoefficients k(s);
         return k.a[s] + k.b[s];
       }
 
@@ -164,9 +128,8 @@ namespace PeriDeal
 
       unsigned int n_stages(const double h) const
       {
-        return std::max(
-          2u,
-          1u + static_cast<unsigned int>(std::sqrt(1.54 * h * 1.02 * op.spectrum().sharp + 1.)));
+        constexpr double margin = 1.02; // of the bound of the spectrum
+        return given_stages > 0 ? given_stages : rkc2_stages(margin * h * op.spectrum().sharp);
       }
 
 
@@ -177,7 +140,7 @@ namespace PeriDeal
       double stages(const Vector &u, const double t, const double h, const double entering)
       {
         const unsigned int    s = n_stages(h), n = u.locally_owned_size();
-        const RKCCoefficients k(s);
+        const RkcCoefficients k(s);
         for (unsigned int i = 0; i < n; ++i)
           {
             before.local_element(i) = u.local_element(i);
@@ -307,6 +270,7 @@ namespace PeriDeal
       }
 
       Operator           &op;
+      const unsigned int  given_stages;
       const bool          fixed;
       double              dt;
       const double        tolerance;
@@ -322,6 +286,15 @@ namespace PeriDeal
 
   std::unique_ptr<Stepper> make_rkc2(Operator &op, const StepperOptions &options)
   {
-    return std::make_unique<RKC2>(op, options);
+    return std::make_unique<RKC2>(op, options, 0);
+  }
+
+
+  std::unique_ptr<Stepper> make_rkc2(Operator             &op,
+                                     const StepperOptions &options,
+                                     const unsigned int    n_stages)
+  {
+    Assert(n_stages >= 2, dealii::ExcMessage("The method has two stages at least."));
+    return std::make_unique<RKC2>(op, options, n_stages);
   }
 } // namespace PeriDeal

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/diverged.h>
+#include <perideal/solvers/motion_stepper.h>
 #include <perideal/solvers/step_limit.h>
 
 #include <algorithm>
@@ -24,7 +25,7 @@ namespace PeriDeal
   {
     const unsigned long long before = op.n_applications();
     op.linearize(u);
-    const double limit = 2. / std::sqrt(op.spectrum().sharp);
+    const double limit = stable_motion_step(op);
     spent += op.n_applications() - before + 1;
     return limit;
   }

@@ -3,6 +3,7 @@
 
 #include <perideal/base/diverged.h>
 #include <perideal/base/user_error.h>
+#include <perideal/solvers/step_bounds.h>
 #include <perideal/solvers/stepper.h>
 
 #include <functional>
@@ -23,13 +24,16 @@ namespace PeriDeal
 
     const std::vector<Method> &methods()
     {
-      static const std::vector<Method> list = {{"euler", make_euler, true},
-                                               {"rk4", make_rk4, true},
-                                               {"rkc2", make_rkc2, true},
-                                               {"chebyshev", make_chebyshev, true},
-                                               {"crank nicolson", make_crank_nicolson, false},
-                                               {"bdf2", make_bdf2, false},
-                                               {"sdirk2", make_sdirk2, false}};
+      static const std::vector<Method> list = {
+        {"euler", make_euler, true},
+        {"rk4", make_rk4, true},
+        {"rkc2",
+         [](Operator &op, const StepperOptions &options) { return make_rkc2(op, options); },
+         true},
+        {"chebyshev", make_chebyshev, true},
+        {"crank nicolson", make_crank_nicolson, false},
+        {"bdf2", make_bdf2, false},
+        {"sdirk2", make_sdirk2, false}};
       return list;
     }
   } // namespace
@@ -104,6 +108,16 @@ namespace PeriDeal
   }
 
 
+  std::vector<std::string> explicit_stepper_names()
+  {
+    std::vector<std::string> list;
+    for (const Method &method : methods())
+      if (method.is_explicit)
+        list.push_back(method.name);
+    return list;
+  }
+
+
   std::string choose_stepper(const Operator &op)
   {
     if (!op.capacity_is_diagonal())
@@ -115,12 +129,7 @@ namespace PeriDeal
 
   double stable_step(const std::string &name, const double largest_eigenvalue)
   {
-    if (name == "euler")
-      return 2. / largest_eigenvalue;
-    if (name == "rk4")
-      return 2.785293563405282 /
-             largest_eigenvalue; // where |1 + z + z^2/2 + z^3/6 + z^4/24| = 1 on the negative axis
-    return std::numeric_limits<double>::infinity();
+    return stability_limit(name) / largest_eigenvalue;
   }
 
 

@@ -154,6 +154,9 @@ namespace PeriDeal
   /** All names that a scene may give, `auto` first. */
   const std::vector<std::string> &stepper_names();
 
+  /** Those of them that do not solve systems, and need a diagonal C. */
+  std::vector<std::string> explicit_stepper_names();
+
   /**
    * `auto`: the Chebyshev expansion of the exponential where it applies (symmetric K, diagonal C,
    * material, loads and boundary values constant in time), adaptive RKC2 where C is diagonal, else
@@ -171,7 +174,7 @@ namespace PeriDeal
 
   /**
    * Largest stable step of an explicit method (`euler` 2/lambda, `rk4` 2.785/lambda); infinite for
-   * all others.
+   * all others: stability_limit() over the eigenvalue.
    */
   double stable_step(const std::string &name, const double largest_eigenvalue);
 
@@ -185,6 +188,10 @@ namespace PeriDeal
   std::unique_ptr<Stepper> make_euler(Operator &op, const StepperOptions &options);
   std::unique_ptr<Stepper> make_rk4(Operator &op, const StepperOptions &options);
   std::unique_ptr<Stepper> make_rkc2(Operator &op, const StepperOptions &options);
+  /** With so many stages in each step, two or more, whether that is stable or not. */
+  std::unique_ptr<Stepper> make_rkc2(Operator             &op,
+                                     const StepperOptions &options,
+                                     const unsigned int    n_stages);
   std::unique_ptr<Stepper> make_chebyshev(Operator &op, const StepperOptions &options);
   std::unique_ptr<Stepper> make_crank_nicolson(Operator &op, const StepperOptions &options);
   std::unique_ptr<Stepper> make_bdf2(Operator &op, const StepperOptions &options);

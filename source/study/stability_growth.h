@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/problems/problem.h>
+#include <perideal/solvers/motion_stepper.h>
+#include <perideal/solvers/stepper.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** An explicit method with fixed steps. */
+  struct ExplicitMethod
+  {
+    std::string  name;         // as in scenes
+    unsigned int n_stages = 0; // of rkc2; 0: as many as a step needs
+
+    std::string text() const;
+  };
+
+
+  /** What steps have made of a disturbance. */
+  struct Growth
+  {
+    double per_step = 1.; // factor of its size, at the end
+    bool   grows    = false;
+  };
+
+
+  /**
+   * A field of the free unknowns of size 1 in which what is fast prevails: noise by position, to
+   * which C^{-1} K has been applied some 60 times. Collective.
+   */
+  template <int dim>
+  Vector fast_field(const Problem<dim> &problem);
+
+  /**
+   * What some hundred steps of the program's own stepper make of a small disturbance of a start:
+   * the difference of two runs, one with it and one without, so that loads and values at sides do
+   * not count. Collective.
+   */
+  Growth growth_of_diffusion(Operator             &op,
+                             const Vector         &start,
+                             const Vector         &disturbance,
+                             const ExplicitMethod &method,
+                             const double          step);
+
+  /** The displacements of a run of `verlet` from rest, at some times; it ends where it fails. */
+  using Trajectory = std::vector<Vector>;
+
+  /** Collective. */
+  Trajectory run_verlet(ElasticOperator &op, const Vector &start, const double step);
+
+  /** As growth_of_diffusion(), of two runs. Collective. */
+  Growth growth_of_motion(const Trajectory &undisturbed, const Trajectory &disturbed);
+
+  /**
+   * The step at which growth begins, by bisection in logarithms around @p predicted, to 1/1000.
+   * Infinity if steps do not grow up to 1000 times that. Collective.
+   */
+  double observed_limit(const double                                    predicted,
+                        const std::function<Growth(const double step)> &run);
+} // namespace PeriDeal

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "stability_scene.h"
+
+#include <perideal/output/tables.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    /** So many cells that a map is computed in minutes. */
+    double most_cells(const std::size_t dim)
+    {
+      return dim == 1 ? 60. : dim == 2 ? 450. : 512.;
+    }
+
+
+    /** Cells of the same shape, as far as whole numbers allow; odd counts stay odd. */
+    CellCounts coarse_cells(const CellCounts &cells)
+    {
+      double product = 1.;
+      for (const unsigned int n : cells)
+        product *= n;
+      const double share =
+        std::min(1., std::pow(most_cells(cells.size()) / product, 1. / cells.size()));
+      CellCounts coarse = cells;
+      for (unsigned int &n : coarse)
+        {
+          const auto least = std::min(n, 4u + n % 2);
+          auto       fewer = static_cast<unsigned int>(share * n);
+          if (fewer % 2 != n % 2)
+            ++fewer;
+          n = std::clamp(fewer, least, n);
+        }
+      return coarse;
+    }
+
+
+    std::string name_of(const KernelShape kernel)
+    {
+      return kernel == KernelShape::constant ? "constant" :
+             kernel == KernelShape::conical  ? "conical" :
+                                               "gaussian";
+    }
+
+
+    template <int dim>
+    StabilityFacts facts_of_scene(const Scene<dim> &scene)
+    {
+      StabilityFacts facts;
+      facts.title               = scene.general.title;
+      facts.dim                 = dim;
+      facts.kernel              = name_of(scene.peridynamics.kernel);
+      facts.kernel_exponent     = scene.peridynamics.kernel_exponent;
+      facts.ratio               = scene.peridynamics.horizon_ratio;
+      facts.deforms             = scene.deforms;
+      facts.moves               = scene.deforms && !scene.elasticity.is_static();
+      facts.steady              = scene.time.steady;
+      facts.is_box              = scene.domain.is_box() && !scene.domain.has_extra_layers();
+      facts.breaks              = scene.material.fracture_energy || scene.material.critical_stretch;
+      facts.has_heat            = scene.heat != nullptr;
+      facts.depends_on_solution = scene.material.depends_on_temperature();
+      facts.lumped              = !scene.finite_elements.consistent_capacity;
+      facts.models              = scene.general.models;
+      if (!facts.is_box)
+        return facts;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          facts.cells.push_back(scene.domain.cells[d]);
+          facts.lower.push_back(scene.domain.lower[d]);
+          facts.upper.push_back(scene.domain.upper[d]);
+        }
+      facts.coarse = coarse_cells(facts.cells);
+      if (scene.peridynamics.horizon > 0.)
+        {
+          const auto h = scene.domain.spacing();
+          facts.ratio  = scene.horizon() / *std::min_element(h.begin_raw(), h.end_raw());
+        }
+      return facts;
+    }
+
+
+    StabilityFacts facts_of_file(const std::string              &file,
+                                 const std::vector<std::string> &overrides,
+                                 const MPI_Comm                  communicator)
+    {
+      StabilityFacts facts;
+      with_scene(read_scene(file, overrides, communicator),
+                 [&](const auto &scene) { facts = facts_of_scene(scene); });
+      return facts;
+    }
+  } // namespace
+
+
+  bool StabilityFacts::runs(const ModelKind model) const
+  {
+    return std::find(models.begin(), models.end(), model) != models.end();
+  }
+
+
+  StabilityScene::StabilityScene(const std::string              &file,
+                                 const std::vector<std::string> &overrides,
+                                 const MPI_Comm                  communicator)
+    : facts(facts_of_file(file, overrides, communicator))
+    , communicator(communicator)
+    , file(file)
+    , overrides(overrides)
+  {}
+
+
+  SceneText StabilityScene::text_with(const ModelKind             model,
+                                      const std::vector<Setting> &settings) const
+  {
+    std::vector<std::string> all = overrides;
+    const auto               add = [&](const Setting &setting) {
+      all.push_back(setting.first + "=" + setting.second);
+    };
+    for (const char *const entry : {"Write at", "Write every", "Probes", "Line", "Grid"})
+      add({std::string("Output/") + entry, ""});
+    if (facts.is_box)
+      {
+        add({"Domain/Node spacing", ""});
+        add({"Domain/Cells", to_text(facts.coarse)});
+        add({"Cracks/Nodes on cracks", "left"}); // these very cells
+        if (model != ModelKind::finite_elements)
+          {
+            add({"Peridynamics/Horizon", ""});
+            add({"Peridynamics/Horizon ratio", full_precision(facts.ratio)});
+          }
+      }
+    add({"Models", to_string(model)});
+    for (const Setting &setting : settings)
+      add(setting);
+    return read_scene(file, all, communicator);
+  }
+} // namespace PeriDeal

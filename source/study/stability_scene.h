@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/mesh/mesh_builder.h>
+#include <perideal/problems/problem_factory.h>
+#include <perideal/scene/scene.h>
+#include <perideal/study/lattice_ladder.h>
+#include <perideal/study/naming.h>
+
+#include <string>
+#include <vector>
+
+#include "checked_row.h"
+
+namespace PeriDeal
+{
+  /** What maps have to know of a scene. */
+  struct StabilityFacts
+  {
+    std::string            title, kernel;
+    unsigned int           dim = 0, kernel_exponent = 0;
+    double                 ratio   = 0.; // m
+    bool                   deforms = false, moves = false, steady = false, is_box = false;
+    bool                   breaks = false, has_heat = false, depends_on_solution = false;
+    bool                   lumped = true;
+    std::vector<ModelKind> models;
+    CellCounts             cells; // of the scene, and those with which maps are computed
+    CellCounts             coarse;
+    std::vector<double>    lower, upper; // corners of a box
+
+    bool runs(const ModelKind model) const;
+  };
+
+
+  /** A scene of which maps are made, on a coarse lattice with the same m. */
+  class StabilityScene
+  {
+  public:
+    /** Throws UserError for a scene that is wrong. Collective. */
+    StabilityScene(const std::string              &file,
+                   const std::vector<std::string> &overrides,
+                   const MPI_Comm                  communicator);
+
+    const StabilityFacts facts;
+    const MPI_Comm       communicator;
+
+    /**
+     * Build a model of the scene with these settings, which are stronger than those of the coarse
+     * lattice, and call action(problem, scene). Throws UserError for settings that the scene cannot
+     * have. Collective. Not within itself: one scene lives at a time.
+     */
+    template <typename Action>
+    void with_problem(const ModelKind             model,
+                      const std::vector<Setting> &settings,
+                      const Action               &action) const
+    {
+      with_scene(text_with(model, settings),
+                 [&](const auto &scene) { build(model, scene, action); });
+    }
+
+  private:
+    SceneText text_with(const ModelKind model, const std::vector<Setting> &settings) const;
+
+    template <int dim, typename Action>
+    void build(const ModelKind model, const Scene<dim> &scene, const Action &action) const
+    {
+      std::vector<std::string> notes;
+      const auto               mesh = build_mesh(scene, communicator, notes);
+      Model<dim>               body(model, *mesh);
+      body.problem = problem_factory(scene).make_problem(body, scene);
+      action(*body.problem, scene);
+    }
+
+    const std::string              file;
+    const std::vector<std::string> overrides;
+  };
+} // namespace PeriDeal
