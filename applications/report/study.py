@@ -6,7 +6,7 @@
     python3 study.py DIRECTORY
 
 Each figure is DIRECTORY/NAME.png and stands in the page, too. A study that names no figures gets the error, or
-without a reference what the runs have found and the wall time, over the first entry that varies; one of `work_precision` gets charts of accuracy against cost. A fault of the file is told in one line, with
+without a reference what the runs have found and the wall time, over the first entry that varies; one of `work_precision` gets charts of accuracy against cost, one of `stability` its maps. A fault of the file is told in one line, with
 exit status 1.
 """
 
@@ -18,6 +18,7 @@ from html import escape
 from pathlib import Path
 
 try:
+    import stability
     import tables
     import work_precision
     from page import Page, paragraphs, write_page
@@ -186,7 +187,8 @@ def main(arguments=None):
     parser.add_argument("directory", metavar="DIRECTORY")
     options = parser.parse_args(arguments)
     try:
-        html = page_of(read_study(options.directory), options.directory)
+        maps = stability.read(options.directory)
+        html = stability.page_of(maps, options.directory) if maps else page_of(read_study(options.directory), options.directory)
         target = Path(options.directory) / "index.html"
         write_page(target, html)
     except (StudyError, OSError) as fault:

@@ -6,6 +6,7 @@
 
 #include <perideal/analysis/heat_flux.h>
 #include <perideal/operators/diffusion/bond_operator.h>
+#include <perideal/problems/diffusion_bounds.h>
 #include <perideal/scene/beyond_sides.h>
 
 #include <algorithm>
@@ -199,7 +200,7 @@ namespace PeriDeal
         const Peridynamics      &p = scene.peridynamics;
         std::vector<std::string> list;
         const double effective = bonds->diffusion_bonds().weights().effective_conductivity();
-        if (std::abs(effective - 1.) > 5e-3)
+        if (std::abs(effective - 1.) > tolerable_conductivity_error)
           list.push_back(
             "complete families conduct " + to_text(effective) +
             " times 'Conductivity' (section 'Material'), because of '" +

@@ -11,6 +11,7 @@
 #include <perideal/base/place_text.h>
 #include <perideal/laws/crack_conductance.h>
 #include <perideal/laws/lattice_family.h>
+#include <perideal/problems/diffusion_bounds.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/with_formulas.h>
 
@@ -62,42 +63,38 @@ namespace PeriDeal
         }
       return cut;
     }
-
-
-    /**
-     * The width beside a side normal to an axis that conducts nothing of a linear field along the
-     * side, in spacings: rows of nodes have less than a whole family.
-     */
-    template <int dim>
-    double missing_width(const std::vector<FamilyMember<dim>> &family,
-                         const unsigned int                    axis,
-                         const double                          first_row)
-    {
-      const unsigned int along = (axis + 1) % dim;
-      const auto         part  = [&](const FamilyMember<dim> &member) {
-        const double step = member.offset[along];
-        return member.weight * step * step;
-      };
-      double whole   = 0.;
-      int    reaches = 0;
-      for (const FamilyMember<dim> &member : family)
-        {
-          whole += part(member);
-          reaches = std::max(reaches, member.offset[axis]);
-        }
-      double     missing = 0.;
-      const auto volume  = [&](const int row) { return row == 0 ? first_row : 1.; };
-      for (int row = 0; row < reaches; ++row)
-        {
-          double there = 0.;
-          for (const FamilyMember<dim> &member : family)
-            if (row + member.offset[axis] >= 0)
-              there += volume(row + member.offset[axis]) * part(member);
-          missing += volume(row) * (1. - there / whole);
-        }
-      return missing;
-    }
   } // namespace
+
+
+  template <int dim>
+  double missing_width(const std::vector<FamilyMember<dim>> &family,
+                       const unsigned int                    axis,
+                       const double                          first_row)
+  {
+    const unsigned int along = (axis + 1) % dim;
+    const auto         part  = [&](const FamilyMember<dim> &member) {
+      const double step = member.offset[along];
+      return member.weight * step * step;
+    };
+    double whole   = 0.;
+    int    reaches = 0;
+    for (const FamilyMember<dim> &member : family)
+      {
+        whole += part(member);
+        reaches = std::max(reaches, member.offset[axis]);
+      }
+    double     missing = 0.;
+    const auto volume  = [&](const int row) { return row == 0 ? first_row : 1.; };
+    for (int row = 0; row < reaches; ++row)
+      {
+        double there = 0.;
+        for (const FamilyMember<dim> &member : family)
+          if (row + member.offset[axis] >= 0)
+            there += volume(row + member.offset[axis]) * part(member);
+        missing += volume(row) * (1. - there / whole);
+      }
+    return missing;
+  }
 
 
   template <int dim>
@@ -270,8 +267,7 @@ namespace PeriDeal
   template <int dim>
   std::string note_on_cut_families(const Scene<dim> &scene, const KernelWeights<dim> &weights)
   {
-    constexpr double    tolerable = 5e-3;
-    const Peridynamics &p         = scene.peridynamics;
+    const Peridynamics &p = scene.peridynamics;
     if (dim == 1 || scene.domain.shape != Shape::box || weights.members().empty() ||
         p.surface_correction == SurfaceCorrection::energy)
       return {};
@@ -292,7 +288,7 @@ namespace PeriDeal
               axis  = d;
             }
         }
-    if (most < tolerable)
+    if (most < tolerable_missing_share)
       return {};
     std::vector<std::string> names;
     for (unsigned int side = 2 * axis; side < 2 * axis + 2; ++side)
@@ -353,11 +349,14 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                            \
-  template void note_unseen_source(const Scene<dim> &,                                       \
-                                   const Triangulation<dim> &,                               \
-                                   std::vector<std::string> &);                              \
-  template void note_transmission(const Scene<dim> &, std::vector<std::string> &);           \
-  template void note_smooth_field(const Scene<dim> &, std::vector<std::string> &);           \
+  template double missing_width<dim>(const std::vector<FamilyMember<dim>> &,                 \
+                                     const unsigned int,                                     \
+                                     const double);                                          \
+  template void   note_unseen_source(const Scene<dim> &,                                     \
+                                     const Triangulation<dim> &,                             \
+                                     std::vector<std::string> &);                            \
+  template void   note_transmission(const Scene<dim> &, std::vector<std::string> &);         \
+  template void   note_smooth_field(const Scene<dim> &, std::vector<std::string> &);         \
   template std::vector<std::string> notes_on_cells(const DoFHandler<dim> &,                  \
                                                    const Scene<dim> &,                       \
                                                    const std::vector<bool> &);               \

@@ -147,7 +147,9 @@ namespace PeriDeal
   const std::vector<StabilityMapKind> &stability_maps()
   {
     static const std::vector<StabilityMapKind> list = {{"step limit", make_step_limit_map},
-                                                       {"growth", make_growth_map}};
+                                                       {"growth", make_growth_map},
+                                                       {"error", make_conduction_map},
+                                                       {"surface error", make_surface_map}};
     return list;
   }
 

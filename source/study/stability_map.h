@@ -79,6 +79,11 @@ namespace PeriDeal
   // One maker per map; the scene has to live on.
   std::unique_ptr<StabilityMap> make_step_limit_map(const StabilityScene &scene);
   std::unique_ptr<StabilityMap> make_growth_map(const StabilityScene &scene);
+  std::unique_ptr<StabilityMap> make_conduction_map(const StabilityScene &scene);
+  std::unique_ptr<StabilityMap> make_surface_map(const StabilityScene &scene);
+  std::unique_ptr<StabilityMap> make_eigenvalue_map(const StabilityScene &scene);
+  std::unique_ptr<StabilityMap> make_iterations_map(const StabilityScene &scene);
+  std::unique_ptr<StabilityMap> make_heat_map(const StabilityScene &scene);
 
   /** The same on all processes, and with any standard library. Not collective. */
   inline double uniform(std::mt19937 &random, const double from, const double to)

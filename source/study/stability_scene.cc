@@ -4,6 +4,7 @@
 #include "stability_scene.h"
 
 #include <perideal/output/tables.h>
+#include <perideal/scene/scene_lines.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,17 +53,23 @@ namespace PeriDeal
     StabilityFacts facts_of_scene(const Scene<dim> &scene)
     {
       StabilityFacts facts;
-      facts.title               = scene.general.title;
-      facts.dim                 = dim;
-      facts.kernel              = name_of(scene.peridynamics.kernel);
-      facts.kernel_exponent     = scene.peridynamics.kernel_exponent;
-      facts.ratio               = scene.peridynamics.horizon_ratio;
-      facts.deforms             = scene.deforms;
-      facts.moves               = scene.deforms && !scene.elasticity.is_static();
-      facts.steady              = scene.time.steady;
-      facts.is_box              = scene.domain.is_box() && !scene.domain.has_extra_layers();
-      facts.breaks              = scene.material.fracture_energy || scene.material.critical_stretch;
-      facts.has_heat            = scene.heat != nullptr;
+      facts.title           = scene.general.title;
+      facts.dim             = dim;
+      facts.kernel          = name_of(scene.peridynamics.kernel);
+      facts.fraction        = scene.peridynamics.volume_fraction == VolumeFraction::none ? "none" :
+                              scene.peridynamics.volume_fraction == VolumeFraction::linear ? "linear" :
+                                                                                             "exact";
+      facts.calibration     = scene.peridynamics.calibration == Calibration::discrete ? "discrete" :
+                                                                                        "analytic";
+      facts.nodes           = scene.domain.has_nodes_at_centers() ? "cell centers" : "vertices";
+      facts.kernel_exponent = scene.peridynamics.kernel_exponent;
+      facts.ratio           = scene.peridynamics.horizon_ratio;
+      facts.deforms         = scene.deforms;
+      facts.moves           = scene.deforms && !scene.elasticity.is_static();
+      facts.steady          = scene.time.steady;
+      facts.is_box          = scene.domain.is_box() && !scene.domain.has_extra_layers();
+      facts.breaks          = scene.material.fracture_energy || scene.material.critical_stretch;
+      facts.has_heat        = scene.heat != nullptr;
       facts.depends_on_solution = scene.material.depends_on_temperature();
       facts.lumped              = !scene.finite_elements.consistent_capacity;
       facts.models              = scene.general.models;
@@ -110,6 +117,36 @@ namespace PeriDeal
     , file(file)
     , overrides(overrides)
   {}
+
+
+  std::string StabilityScene::no_diffusion_with_bonds() const
+  {
+    if (facts.deforms)
+      return "it is of what diffuses, and the body of this scene deforms";
+    if (!facts.runs(ModelKind::peridynamics))
+      return "'Models' has no peridynamics";
+    return {};
+  }
+
+
+  SceneText StabilityScene::text_of_body(const ModelKind             model,
+                                         const std::vector<Setting> &settings) const
+  {
+    std::vector<std::string> all = {
+      "Dimension=" + std::to_string(facts.dim),
+      std::string("Physics=") + (facts.deforms ? "elasticity" : "heat"),
+      "Models=" + to_string(model),
+      "Domain/Nodes=" + (model == ModelKind::peridynamics ? facts.nodes : "vertices")};
+    if (model != ModelKind::finite_elements)
+      for (const Setting &setting :
+           std::vector<Setting>{{"Kernel", facts.kernel},
+                                {"Kernel exponent", std::to_string(facts.kernel_exponent)},
+                                {"Horizon ratio", full_precision(facts.ratio)}})
+        all.push_back("Peridynamics/" + setting.first + "=" + setting.second);
+    for (const auto &[entry, value] : settings)
+      all.push_back(entry + "=" + value);
+    return {"stability", apply_overrides("", "stability", all), communicator};
+  }
 
 
   SceneText StabilityScene::text_with(const ModelKind             model,

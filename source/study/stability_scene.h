@@ -10,6 +10,7 @@
 #include <perideal/study/naming.h>
 
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "checked_row.h"
@@ -19,7 +20,7 @@ namespace PeriDeal
   /** What maps have to know of a scene. */
   struct StabilityFacts
   {
-    std::string            title, kernel;
+    std::string            title, kernel, fraction, calibration, nodes;
     unsigned int           dim = 0, kernel_exponent = 0;
     double                 ratio   = 0.; // m
     bool                   deforms = false, moves = false, steady = false, is_box = false;
@@ -60,7 +61,24 @@ namespace PeriDeal
                  [&](const auto &scene) { build(model, scene, action); });
     }
 
+    /**
+     * The same of a scene that these settings alone describe, of the dimension, and with the kernel
+     * and the nodes, of this one: a body for a question, in which nothing else differs from theory.
+     */
+    template <typename Action>
+    void with_body(const ModelKind             model,
+                   const std::vector<Setting> &settings,
+                   const Action               &action) const
+    {
+      with_scene(text_of_body(model, settings),
+                 [&](const auto &scene) { build(model, scene, action); });
+    }
+
+    /** Why what diffuses, in one of the models with bonds alone, does not occur here; or empty. */
+    std::string no_diffusion_with_bonds() const;
+
   private:
+    SceneText text_of_body(const ModelKind model, const std::vector<Setting> &settings) const;
     SceneText text_with(const ModelKind model, const std::vector<Setting> &settings) const;
 
     template <int dim, typename Action>
@@ -76,4 +94,19 @@ namespace PeriDeal
     const std::string              file;
     const std::vector<std::string> overrides;
   };
+
+  /** Call action(std::integral_constant<int, dim>()). */
+  template <typename Action>
+  void with_dimension(const unsigned int dim, const Action &action)
+  {
+    switch (dim)
+      {
+        case 1:
+          return action(std::integral_constant<int, 1>());
+        case 2:
+          return action(std::integral_constant<int, 2>());
+        default:
+          return action(std::integral_constant<int, 3>());
+      }
+  }
 } // namespace PeriDeal
