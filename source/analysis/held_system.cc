@@ -78,7 +78,13 @@ namespace PeriDeal
         if (symmetric)
           SolverCG<Vector>(control).solve(inner, x, b, preconditioner);
         else
-          SolverGMRES<Vector>(control).solve(inner, x, b, preconditioner);
+          {
+            // Preconditioned from the right: from the left it would be the preconditioned residual,
+            // of another unit than b, that is compared with the size of b.
+            SolverGMRES<Vector>::AdditionalData data;
+            data.right_preconditioning = true;
+            SolverGMRES<Vector>(control, data).solve(inner, x, b, preconditioner);
+          }
       }
     catch (const SolverControl::NoConvergence &)
       {} // as good as it gets: what is indefinite shows in the eigenvalue

@@ -100,6 +100,22 @@ namespace PeriDeal
     }
 
 
+    /** Collective. */
+    void make_folder(const std::string &folder, const MPI_Comm communicator)
+    {
+      std::string message;
+      if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+        {
+          std::error_code error;
+          std::filesystem::create_directories(folder, error);
+          if (error)
+            message = "--output: cannot use '" + folder + "': " + error.message() +
+                      ". Choose a directory that you may write to.";
+        }
+      throw_on_all_if_any(communicator, message);
+    }
+
+
     /** On rank 0; an error becomes everybody's. Collective. */
     void write_results(const std::string                  &folder,
                        const std::string                  &scene,
@@ -112,14 +128,8 @@ namespace PeriDeal
       if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
         try
           {
-            std::filesystem::create_directories(folder);
             write_file(folder + "/stability.csv", stability_csv(results));
             write_file(folder + "/stability.json", stability_json(scene, facts, options, results));
-          }
-        catch (const std::filesystem::filesystem_error &error)
-          {
-            message = "--output: cannot use '" + folder + "': " + error.code().message() +
-                      ". Choose a directory that you may write to.";
           }
         catch (const UserError &error)
           {
@@ -149,7 +159,8 @@ namespace PeriDeal
     static const std::vector<StabilityMapKind> list = {{"step limit", make_step_limit_map},
                                                        {"growth", make_growth_map},
                                                        {"error", make_conduction_map},
-                                                       {"surface error", make_surface_map}};
+                                                       {"surface error", make_surface_map},
+                                                       {"lowest eigenvalue", make_eigenvalue_map}};
     return list;
   }
 
@@ -161,7 +172,7 @@ namespace PeriDeal
     const std::string    file   = study.rows.front().scene;
     const std::string    folder = options.output.empty() ? study.output + "_stability" :
                                                            options.output;
-    const StabilityScene scene(file, options.overrides, communicator);
+    const StabilityScene scene(file, options.overrides, folder, communicator);
     const auto           say = [&](const std::string &text) {
       print_line(communicator, options.quiet, text);
     };
@@ -169,6 +180,7 @@ namespace PeriDeal
         (scene.facts.coarse == scene.facts.cells ?
            std::string() :
            ", on a lattice of " + lattice_name(scene.facts.coarse) + " cells"));
+    make_folder(folder, communicator);
     std::vector<StabilityResult> results;
     for (const StabilityMapKind &kind : wanted)
       {

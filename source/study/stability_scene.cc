@@ -111,9 +111,11 @@ namespace PeriDeal
 
   StabilityScene::StabilityScene(const std::string              &file,
                                  const std::vector<std::string> &overrides,
+                                 const std::string              &folder,
                                  const MPI_Comm                  communicator)
     : facts(facts_of_file(file, overrides, communicator))
     , communicator(communicator)
+    , folder(folder)
     , file(file)
     , overrides(overrides)
   {}

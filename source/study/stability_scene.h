@@ -42,10 +42,12 @@ namespace PeriDeal
     /** Throws UserError for a scene that is wrong. Collective. */
     StabilityScene(const std::string              &file,
                    const std::vector<std::string> &overrides,
+                   const std::string              &folder,
                    const MPI_Comm                  communicator);
 
     const StabilityFacts facts;
     const MPI_Comm       communicator;
+    const std::string    folder; // exists, for files that are needed in between
 
     /**
      * Build a model of the scene with these settings, which are stronger than those of the coarse
