@@ -7,7 +7,7 @@ import math
 from html import escape
 from pathlib import Path
 
-from matplotlib.colors import TwoSlopeNorm
+from matplotlib.colors import Normalize, TwoSlopeNorm
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
 import style
@@ -23,13 +23,27 @@ LINES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"]
 
 # How each map is drawn: "curves" of the observed numbers over x, one panel for each combination of
 # `panels` and one line for each of `lines`; or the "plane" of x and y, coloured by what was observed.
-# `safe`: on which side of the predicted numbers a point is safe.
+# `only` leaves points out. Shaded is what lies below the predicted numbers (`safe`), or within the
+# `band`, or in a plane what lies before the limit. Numbers below the `floor` are drawn on it.
 DRAWINGS = {
-    "step limit": {"kind": "curves", "x": "m", "panels": ("method", "stages"), "lines": ("model", "bonds", "kernel"), "log": "y",
-                   "label": "step", "safe": "below"},
-    "growth": {"kind": "plane", "x": "step", "y": "m", "panels": ("model", "method", "stages", "bonds"), "log": "x",
-               "label": "growth in a step", "limit": "step over limit"},
+    "step limit": [{"kind": "curves", "x": "m", "panels": ("method", "stages"), "lines": ("model", "bonds", "kernel"), "log": "y",
+                    "label": "step", "safe": "below"}],
+    "growth": [{"kind": "plane", "x": "step", "y": "m", "panels": ("model", "method", "stages", "bonds"), "log": "x",
+                "label": "growth in a step", "limit": "step over limit"}],
+    "error": [{"kind": "curves", "x": "m", "panels": ("volume fraction", "calibration"), "lines": ("kernel",), "log": "", "only": "kernel exponent",
+               "label": "error of the conductivity", "band": (-5e-3, 5e-3)}],
+    "surface error": [{"kind": "curves", "x": "cells across", "panels": ("treatment",), "lines": ("m",), "log": "xy", "floor": 1e-6,
+                       "label": "share of the heat missing", "band": (1e-9, 5e-3)}],
+    "lowest eigenvalue": [{"kind": "curves", "x": "contrast", "panels": ("scheme",), "lines": ("zone",), "log": "x", "only": "distortion",
+                           "label": "lowest eigenvalue", "band": (0, 1e9), "no line": True},
+                          {"kind": "plane", "x": "contrast", "y": "distortion", "panels": ("scheme", "zone"), "log": "x", "where": ("scheme", "exchange"),
+                           "label": "lowest eigenvalue"}],
+    "iterations": [{"kind": "curves", "x": ("contrast", "Poisson ratio"), "panels": ("model", "cracks"), "lines": ("aspect ratio",), "log": "y",
+                    "label": "iterations", "safe": "below"}],
+    "heat lost by splice": [{"kind": "curves", "x": "time", "panels": ("scheme",), "lines": ("m",), "log": "y", "floor": 1e-16,
+                             "label": "share of the heat gained or lost", "band": (1e-17, 1e-10)}],
 }
+UNITS = {"stages": "{} stages", "m": "m = {}", "cracks": "{} cracks", "aspect ratio": "cells 1 : {}"}
 
 
 def read(directory):
@@ -52,9 +66,15 @@ def number(value):
     return math.inf if value == "infinite" else math.nan if value is None else float(value)
 
 
+def text_of(point, name):
+    """A parameter as panels and lines name it."""
+    value = point[name]
+    return UNITS.get(name, "{}").format(style.plain(value, 3) if isinstance(value, (int, float)) else value)
+
+
 def group_of(point, names):
     """The values of some parameters, of those that the point has."""
-    return tuple(str(point[n]) if n != "stages" else f"{point[n]} stages" for n in names if point.get(n) not in (None, ""))
+    return tuple(text_of(point, n) for n in names if point.get(n) not in (None, ""))
 
 
 def groups(points, names):
@@ -93,56 +113,94 @@ def few_ticks(axes, which, values):
     axis.set_minor_formatter(NullFormatter())
 
 
+def chosen(points, how):
+    """Those that a figure shows: of one entry alone the one most common."""
+    if "where" in how:
+        points = [p for p in points if p.get(how["where"][0]) == how["where"][1]]
+    if "only" in how and points:
+        values = [p.get(how["only"]) for p in points]
+        points = [p for p in points if p.get(how["only"]) == max(set(values), key=values.count)]
+    return points
+
+
+def axis_of(points, how):
+    """The parameter along x: the first of several that these points have."""
+    names = (how["x"],) if isinstance(how["x"], str) else how["x"]
+    return next((n for n in names if any(p.get(n) is not None for p in points)), names[0])
+
+
+def shade(axes, here, how, x, span):
+    """The safe region of a panel."""
+    if "band" in how:
+        axes.axhspan(*how["band"], color=SAFE, zorder=0, linewidth=0)
+    elif how.get("safe"):
+        least = {}
+        for p in here:
+            for place in [p[x]] if p.get(x) is not None else span:
+                least[place] = min(least.get(place, math.inf), number(p["predicted"]))
+        places = sorted(least)
+        axes.fill_between(places, [least[q] for q in places], 1e-300, color=SAFE, zorder=0, linewidth=0)
+
+
+def limits_of(here, how):
+    """From where to where the numbers of a panel go."""
+    values = [v for p in here for v in (number(p["observed"]), number(p["predicted"])) if math.isfinite(v)]
+    if "y" not in how["log"]:
+        reach = max(map(abs, values), default=1) * 1.15 or 1
+        return (-reach if min(values, default=0) < 0 else 0), reach
+    values = [max(v, how.get("floor", 0)) for v in values]
+    values = [v for v in values if v > 0] or [1]
+    return min(values) / 1.6, max(values) * 1.6
+
+
+def draw_line(axes, own, how, x, span, limits, color, label):
+    """Predicted numbers as a line, observed ones as markers."""
+    own = sorted(own, key=lambda p: p.get(x) or 0)
+    has_x = own[0].get(x) is not None
+    places = [p[x] for p in own] if has_x else list(span)
+    predicted = [number(p["predicted"]) for p in own] if has_x else [number(own[0]["predicted"])] * 2
+    observed = [min(max(number(p["observed"]), how.get("floor", -math.inf)), limits[1] / 1.1) for p in own]
+    if how.get("no line") or not all(v > 0 or "y" not in how["log"] for v in predicted):
+        axes.plot(places, observed if has_x else observed[:1] * 2, color=color, linewidth=0.8, alpha=0.5, zorder=2, label=label)
+    else:
+        axes.plot(places, predicted, color=color, linewidth=1.3, zorder=2, label=label)
+    for place, value, p in zip(places if has_x else [max(span)], observed, own):
+        axes.plot(place, value, MARKER[p["verdict"]], color=color, markersize=5, markerfacecolor="white", markeredgewidth=1.2, zorder=3)
+
+
 def draw_curves(entry, how):
-    """Observed numbers as markers, predicted ones as lines, the safe side of the first of these shaded."""
-    points = [p for p in entry["points"] if math.isfinite(number(p["observed"]))]
+    """One panel for each combination of some parameters."""
+    points = [p for p in chosen(entry["points"], how) if math.isfinite(number(p["observed"])) or (p["verdict"] == "fails")]
     panels = groups(points, how["panels"])
     if not panels:
         return None
     figure, all_axes = panels_of(len(panels))
     every_line = list(groups(points, how["lines"]))
+    x = axis_of(points, how)
     for axes, (name, here) in zip(all_axes, panels.items()):
-        values = [v for p in here for v in (number(p["observed"]), number(p["predicted"])) if math.isfinite(v) and (v > 0 or "y" not in how["log"])]
-        xs = [p[how["x"]] for p in here if p.get(how["x"]) is not None] or [0, 1]
-        if "x" in how["log"]:
+        xs = [p[x] for p in here if p.get(x) is not None] or [0, 1]
+        span = (min(xs), max(xs))
+        if "x" in how["log"] or span[1] > 1e3 * span[0] > 0:
             axes.set_xscale("log")
+            few_ticks(axes, "x", xs)
         if "y" in how["log"]:
             axes.set_yscale("log")
-        low, high = (min(values) / 1.6, max(values) * 1.6) if "y" in how["log"] else (min(values + [0]), max(values) * 1.1 or 1)
-        shaded = False
+        limits = limits_of(here, how)
+        shade(axes, here, how, x, span)
         for line, own in groups(here, how["lines"]).items():
-            color = LINES[every_line.index(line) % len(LINES)]
-            own = sorted(own, key=lambda p: p.get(how["x"]) or 0)
-            has_x = own[0].get(how["x"]) is not None
-            x = [p[how["x"]] for p in own] if has_x else [min(xs), max(xs)]
-            predicted = [number(p["predicted"]) for p in own] if has_x else [number(own[0]["predicted"])] * 2
-            if not shaded and how.get("safe") and (has_x or len(panels[name]) == 1) and all(map(math.isfinite, predicted)):
-                edge = low if how["safe"] == "below" else high
-                axes.fill_between(x, predicted, edge, color=SAFE, zorder=0, linewidth=0)
-                shaded = True
-            axes.plot(x, predicted, color=color, linewidth=1.3, zorder=2, label=title_of(line))
-            for p in own if has_x else []:
-                axes.plot(p[how["x"]], number(p["observed"]), MARKER[p["verdict"]], color=color, markersize=5, markerfacecolor="white",
-                          markeredgewidth=1.2, zorder=3)
-            if not has_x:
-                axes.plot(max(xs), number(own[0]["observed"]), MARKER[own[0]["verdict"]], color=color, markersize=5,
-                          markerfacecolor="white", markeredgewidth=1.2, zorder=3)
-        axes.set_ylim(low, high)
+            draw_line(axes, own, how, x, span, limits, LINES[every_line.index(line) % len(LINES)], title_of(line))
+        axes.set_ylim(*limits)
         if "y" in how["log"]:
-            few_ticks(axes, "y", [low, high])
-        if "x" in how["log"]:
-            few_ticks(axes, "x", xs)
+            few_ticks(axes, "y", limits)
         axes.set_title(title_of(name), loc="left")
-        axes.set_xlabel(how["x"])
+        axes.set_xlabel(x)
         axes.set_ylabel(how["label"])
         style.tidy(axes)
+    handles = {label: handle for axes in all_axes for handle, label in zip(*axes.get_legend_handles_labels())}
     if len(every_line) > 1:
-        handles = {}
-        for axes in all_axes:
-            for handle, label in zip(*axes.get_legend_handles_labels()):
-                handles.setdefault(label, handle)
-        figure.legend(handles.values(), handles.keys(), loc="lower center", ncols=min(3, len(handles)))
-        figure.tight_layout(rect=(0, 0.06 + 0.04 * ((len(handles) - 1) // 3), 1, 1))
+        rows = -(-len(handles) // 4)
+        figure.legend(handles.values(), handles.keys(), loc="lower center", ncols=4)
+        figure.tight_layout(rect=(0, (0.1 + 0.2 * rows) / figure.get_figheight(), 1, 1))
     else:
         figure.tight_layout()
     return figure
@@ -154,34 +212,50 @@ def limit_line(here, how):
     return sorted(line.items())
 
 
+def shade_plane(axes, here, how, left):
+    """What lies before the predicted limit, or below the first point that is not safe."""
+    if "limit" not in how:
+        bad = [p[how["y"]] for p in here if p["verdict"] != "safe"]
+        good = [p[how["y"]] for p in here if p["verdict"] == "safe" and p[how["y"]] < min(bad, default=math.inf)]
+        if good:
+            axes.axhspan(min(good), max(good), color=SAFE, zorder=0, linewidth=0)
+        return
+    limit = limit_line(here, how) or [(0, here[0][how["x"]] / here[0][how["limit"]])]
+    if len(limit) == 1:
+        limit = [(limit[0][0] - 0.5, limit[0][1]), (limit[0][0] + 0.5, limit[0][1])]
+    axes.fill_betweenx([y for y, _ in limit], left, [x for _, x in limit], color=SAFE, zorder=0, linewidth=0)
+    axes.plot([x for _, x in limit], [y for y, _ in limit], color=style.INK, linewidth=1.3, zorder=2)
+
+
+def norm_of(points, how):
+    """White is neither growth nor decay; or else all values."""
+    finite = [number(p["observed"]) for p in points if math.isfinite(number(p["observed"]))] or [0, 1]
+    if "limit" in how:
+        return TwoSlopeNorm(1.0, min(0.5, min(finite)), 2.0)
+    return Normalize(0, max(finite))
+
+
 def draw_plane(entry, how):
     """Points coloured by what was observed; crosses are those that fail; the safe region shaded."""
-    points = entry["points"]
+    points = chosen(entry["points"], how)
     panels = groups(points, how["panels"])
     if not panels:
         return None
     figure, all_axes = panels_of(len(panels))
-    finite = [number(p["observed"]) for p in points if math.isfinite(number(p["observed"]))]
-    norm = TwoSlopeNorm(1.0, min(0.5, min(finite)), min(2.0, max(max(finite), 1.01)))
-    shown = None
+    norm, shown = norm_of(points, how), None
+    colors = style.DIFFERENCE if "limit" in how else style.FLUX
     for axes, (name, here) in zip(all_axes, panels.items()):
         has_y = here[0].get(how["y"]) is not None
-        ys = [p[how["y"]] if has_y else 0 for p in here]
         xs = [p[how["x"]] for p in here]
         axes.set_xscale("log")
         left, right = min(xs) / 1.15, max(xs) * 1.15
-        limit = limit_line(here, how) if has_y else [(0, here[0][how["x"]] / here[0][how["limit"]])]
-        span = [y for y, _ in limit]
-        if len(span) == 1:
-            limit = [(span[0] - 0.5, limit[0][1]), (span[0] + 0.5, limit[0][1])]
-        axes.fill_betweenx([y for y, _ in limit], left, [x for _, x in limit], color=SAFE, zorder=0, linewidth=0)
-        axes.plot([x for _, x in limit], [y for y, _ in limit], color=style.INK, linewidth=1.3, zorder=2)
+        shade_plane(axes, here, how, left)
         for verdict, marker in MARKER.items():
-            own = [k for k, p in enumerate(here) if p["verdict"] == verdict]
+            own = [p for p in here if p["verdict"] == verdict]
             if own:
-                colors = [min(2.0, number(here[k]["observed"])) for k in own]
-                shown = axes.scatter([xs[k] for k in own], [ys[k] for k in own], c=colors, cmap=style.DIFFERENCE, norm=norm, marker=marker,
-                                     s=34, edgecolors=style.INK, linewidths=0.6, zorder=3)
+                values = [min(norm.vmax, number(p["observed"])) if math.isfinite(number(p["observed"])) else norm.vmax for p in own]
+                shown = axes.scatter([p[how["x"]] for p in own], [p[how["y"]] if has_y else 0 for p in own], c=values, cmap=colors, norm=norm,
+                                     marker=marker, s=34, edgecolors=style.INK if verdict == "safe" else FAILS, linewidths=0.6, zorder=3)
         axes.set_xlim(left, right)
         few_ticks(axes, "x", [left, right])
         axes.set_title(title_of(name), loc="left")
@@ -192,27 +266,28 @@ def draw_plane(entry, how):
             axes.set_yticks([])
             axes.set_ylim(-1, 1)
         style.tidy(axes)
-    figure.tight_layout(rect=(0, 0, 0.9, 1))
+    figure.tight_layout(rect=(0, 0, 0.88, 1))
     box = all_axes[0].get_position()
-    bar = figure.colorbar(shown, cax=figure.add_axes([0.915, box.y0, 0.015, box.height]), extend="max")
+    bar = figure.colorbar(shown, cax=figure.add_axes([0.9, box.y0, 0.015, box.height]), extend="max" if "limit" in how else "neither")
     bar.set_label(how["label"])
     return figure
 
 
-def draw(entry):
-    """The figure of a map, or None if it has no point that can be drawn."""
-    how = DRAWINGS.get(entry["name"])
-    if how is None or not entry["points"]:
-        return None
+def draw(entry, how):
+    """A figure of a map, or None if it has no point that can be drawn."""
     return (draw_curves if how["kind"] == "curves" else draw_plane)(entry, how)
 
 
-def caption(entry):
+def caption(entry, how):
     """What is to be seen."""
-    how = DRAWINGS[entry["name"]]
+    marks = "circles are safe, crosses fail, triangles are warned of, squares refused"
     if how["kind"] == "curves":
-        return f"Lines: {entry['predicted']}. Circles: {entry['observed']}; crosses where a point fails, triangles where the program warns. Shaded: safe."
-    return f"Colours: {entry['observed']}. Circles are safe, crosses fail. Line: the predicted limit; shaded: safe."
+        only = ""
+        if "only" in how:
+            only = f" Of all points those with {how['only']} {style.plain(chosen(entry['points'], how)[0][how['only']])}."
+        line = "" if how.get("no line") else f"Lines: {entry['predicted']}. "
+        return f"{line}Markers: {entry['observed']}; {marks}. Shaded: safe.{only}"
+    return f"Colours: {entry['observed']}; {marks}.{' Line: the predicted limit.' if 'limit' in how else ''} Shaded: safe."
 
 
 def confirmed(entry):
@@ -227,7 +302,7 @@ def confirmed(entry):
 def ratio_table(entry):
     """Least and largest ratio of what is observed to what is predicted, by method."""
     lines = []
-    for name, own in groups(entry["points"], DRAWINGS[entry["name"]]["panels"]).items():
+    for name, own in groups(entry["points"], DRAWINGS[entry["name"]][0]["panels"]).items():
         both = [(number(p["observed"]), number(p["predicted"])) for p in own]
         ratios = [o / p for o, p in both if math.isfinite(o) and math.isfinite(p) and p > 0]
         if ratios:
@@ -260,9 +335,11 @@ def page_of(data, directory):
     for entry in data["maps"]:
         page.section(entry["name"].capitalize(), entry["name"].replace(" ", "_"))
         page.add(f"<p>{escape(entry['bound'])}. {escape(confirmed(entry))}</p>")
-        figure = draw(entry)
-        if figure:
-            page.figure(figure, entry["name"].replace(" ", "_"), caption(entry), True, entry["name"].capitalize())
+        for k, how in enumerate(DRAWINGS.get(entry["name"], []) if entry["points"] else []):
+            figure = draw(entry, how)
+            if figure:
+                file = entry["name"].replace(" ", "_") + (f"_{k + 1}" if k else "")
+                page.figure(figure, file, caption(entry, how), True, entry["name"].capitalize())
         if entry["name"] == "step limit":
             page.add(ratio_table(entry))
         if entry["left out"]:

@@ -56,12 +56,10 @@ namespace PeriDeal
           {
             std::optional<StabilityPoint> point;
             // What a scene cannot have, for instance a horizon wider than the body, is no point.
-            for (unsigned int n_trials = 0; n_trials < 5 && !point; ++n_trials)
+            for (unsigned int n_trials = 0; n_trials < 20 && !point; ++n_trials)
               try
                 {
                   point = map.random_point(inside, random);
-                  if (!point)
-                    return;
                 }
               catch (const UserError &error)
                 {
@@ -160,7 +158,9 @@ namespace PeriDeal
                                                        {"growth", make_growth_map},
                                                        {"error", make_conduction_map},
                                                        {"surface error", make_surface_map},
-                                                       {"lowest eigenvalue", make_eigenvalue_map}};
+                                                       {"lowest eigenvalue", make_eigenvalue_map},
+                                                       {"iterations", make_iterations_map},
+                                                       {"heat lost by splice", make_heat_map}};
     return list;
   }
 
