@@ -25,23 +25,24 @@ LINES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"]
 # `panels` and one line for each of `lines`; or the "plane" of x and y, coloured by what was observed.
 # `only` leaves points out. Shaded is what lies below the predicted numbers (`safe`), or within the
 # `band`, or in a plane what lies before the limit. Numbers below the `floor` are drawn on it.
+# `same`: all panels have the same scale; `signed`: it is symmetric.
 DRAWINGS = {
     "step limit": [{"kind": "curves", "x": "m", "panels": ("method", "stages"), "lines": ("model", "bonds", "kernel"), "log": "y",
                     "label": "step", "safe": "below"}],
     "growth": [{"kind": "plane", "x": "step", "y": "m", "panels": ("model", "method", "stages", "bonds"), "log": "x",
                 "label": "growth in a step", "limit": "step over limit"}],
     "error": [{"kind": "curves", "x": "m", "panels": ("volume fraction", "calibration"), "lines": ("kernel",), "log": "", "only": "kernel exponent",
-               "label": "error of the conductivity", "band": (-5e-3, 5e-3)}],
+               "label": "error of the conductivity", "band": (-5e-3, 5e-3), "signed": True}],
     "surface error": [{"kind": "curves", "x": "cells across", "panels": ("treatment",), "lines": ("m",), "log": "xy", "floor": 1e-6,
-                       "label": "share of the heat missing", "band": (1e-9, 5e-3)}],
+                       "label": "share of the heat missing", "band": (1e-9, 5e-3), "same": True}],
     "lowest eigenvalue": [{"kind": "curves", "x": "contrast", "panels": ("scheme",), "lines": ("zone",), "log": "x", "only": "distortion",
-                           "label": "lowest eigenvalue", "band": (0, 1e9), "no line": True},
+                           "label": "lowest eigenvalue", "band": (0, 1e9), "no line": True, "same": True},
                           {"kind": "plane", "x": "contrast", "y": "distortion", "panels": ("scheme", "zone"), "log": "x", "where": ("scheme", "exchange"),
                            "label": "lowest eigenvalue"}],
     "iterations": [{"kind": "curves", "x": ("contrast", "Poisson ratio"), "panels": ("model", "cracks"), "lines": ("aspect ratio",), "log": "y",
                     "label": "iterations", "safe": "below"}],
     "heat lost by splice": [{"kind": "curves", "x": "time", "panels": ("scheme",), "lines": ("m",), "log": "y", "floor": 1e-16,
-                             "label": "share of the heat gained or lost", "band": (1e-17, 1e-10)}],
+                             "label": "share of the heat gained or lost", "band": (1e-17, 1e-10), "same": True}],
 }
 UNITS = {"stages": "{} stages", "m": "m = {}", "cracks": "{} cracks", "aspect ratio": "cells 1 : {}"}
 
@@ -102,14 +103,19 @@ def panels_of(n, height=3.2):
 
 
 def few_ticks(axes, which, values):
-    """Ticks at 1, 2, 5 of a logarithmic axis that spans little."""
+    """Ticks at 1, 2, 5 of a logarithmic axis that spans little, else at some powers of ten."""
     low, high = min(values), max(values)
     axis = axes.xaxis if which == "x" else axes.yaxis
-    places = [m * 10.0 ** e for e in range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 1) for m in (1, 2, 5)]
-    if high > 1e3 * low:
-        places = [p for p in places if f"{p:e}".startswith("1.0")]
-    axis.set_major_locator(FixedLocator([p for p in places if low / 2 <= p <= high * 2]))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: style.plain(value, 2)))
+    first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
+    if last - first > 3:
+        step = -(-(last - first) // 5)
+        axis.set_major_locator(FixedLocator([10.0 ** e for e in range(first, last + 1, step)]))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"$10^{{{round(math.log10(value))}}}$"))
+    else:
+        places = [m * 10.0 ** e for e in range(first - 1, last + 1) for m in (1, 2, 5)]
+        axis.set_major_locator(FixedLocator([p for p in places if low / 2 <= p <= high * 2]))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: style.plain(value, 2)))
+    axis.set_minor_locator(FixedLocator([]))
     axis.set_minor_formatter(NullFormatter())
 
 
@@ -144,10 +150,11 @@ def shade(axes, here, how, x, span):
 
 def limits_of(here, how):
     """From where to where the numbers of a panel go."""
-    values = [v for p in here for v in (number(p["observed"]), number(p["predicted"])) if math.isfinite(v)]
+    values = [number(p["observed"]) for p in here] + ([] if how.get("no line") else [number(p["predicted"]) for p in here])
+    values = [v for v in values if math.isfinite(v)]
     if "y" not in how["log"]:
-        reach = max(map(abs, values), default=1) * 1.15 or 1
-        return (-reach if min(values, default=0) < 0 else 0), reach
+        reach = max([abs(v) for v in values] + [2 * how["band"][1] if how.get("signed") else 1e-300]) * 1.15
+        return (-reach if how.get("signed") else 0), reach
     values = [max(v, how.get("floor", 0)) for v in values]
     values = [v for v in values if v > 0] or [1]
     return min(values) / 1.6, max(values) * 1.6
@@ -161,7 +168,7 @@ def draw_line(axes, own, how, x, span, limits, color, label):
     predicted = [number(p["predicted"]) for p in own] if has_x else [number(own[0]["predicted"])] * 2
     observed = [min(max(number(p["observed"]), how.get("floor", -math.inf)), limits[1] / 1.1) for p in own]
     if how.get("no line") or not all(v > 0 or "y" not in how["log"] for v in predicted):
-        axes.plot(places, observed if has_x else observed[:1] * 2, color=color, linewidth=0.8, alpha=0.5, zorder=2, label=label)
+        axes.plot(places, observed if has_x else observed[:1] * 2, color=color, linewidth=1, alpha=0.7, zorder=2, label=label)
     else:
         axes.plot(places, predicted, color=color, linewidth=1.3, zorder=2, label=label)
     for place, value, p in zip(places if has_x else [max(span)], observed, own):
@@ -185,7 +192,7 @@ def draw_curves(entry, how):
             few_ticks(axes, "x", xs)
         if "y" in how["log"]:
             axes.set_yscale("log")
-        limits = limits_of(here, how)
+        limits = limits_of(points if how.get("same") else here, how)
         shade(axes, here, how, x, span)
         for line, own in groups(here, how["lines"]).items():
             draw_line(axes, own, how, x, span, limits, LINES[every_line.index(line) % len(LINES)], title_of(line))
@@ -248,7 +255,8 @@ def draw_plane(entry, how):
         has_y = here[0].get(how["y"]) is not None
         xs = [p[how["x"]] for p in here]
         axes.set_xscale("log")
-        left, right = min(xs) / 1.15, max(xs) * 1.15
+        margin = max(1.15, (max(xs) / min(xs)) ** 0.05)
+        left, right = min(xs) / margin, max(xs) * margin
         shade_plane(axes, here, how, left)
         for verdict, marker in MARKER.items():
             own = [p for p in here if p["verdict"] == verdict]

@@ -35,8 +35,8 @@ namespace PeriDeal
 
 
     /**
-     * The unit square of n x n cells as a file of Gmsh; every other vertex is moved up by a share of
-     * an edge, the others down.
+     * The unit square of n x n cells as a file of Gmsh; every other vertex is moved up by a share
+     * of an edge, the others down.
      */
     std::string mesh_text(const unsigned int n, const double share)
     {
@@ -144,7 +144,7 @@ namespace PeriDeal
         return scene.folder + "/.stability_mesh.msh";
       }
 
-      /** On a lattice bonds are calibrated: only what is distorted comes from a file. Collective. */
+      /** Only distorted cells come from a file: bonds of a lattice are calibrated. Collective. */
       std::vector<Setting> settings_of(const CoupledSquare &square) const
       {
         constexpr unsigned int n     = 16;

@@ -64,7 +64,7 @@ namespace PeriDeal
 
       std::string obstacle() const override
       {
-        return scene.facts.dim == 1 ? "a bar is solved directly" : "";
+        return scene.facts.dim == 1 ? "it is of bodies in two and three dimensions" : "";
       }
 
       std::vector<StabilityPoint> points(const bool quick) override
@@ -96,10 +96,11 @@ namespace PeriDeal
           }
         if (inside)
           return point(body);
-        if (!can_fail)
+        if (!can_fail || scene.facts.dim == 3) // 10 cells in a direction are few
           return {};
+        body.contrast = std::max(body.contrast, 100.);
         if (body.model == ModelKind::finite_elements)
-          body.aspect = flat * uniform(random, scene.facts.deforms ? 1. : 10., 20.);
+          body.aspect = flat * uniform(random, scene.facts.deforms ? 1. : 20., 40.);
         else
           body.poisson = 0.5 - 1e-5 * uniform(random, 1., 10.);
         return point(body);
