@@ -206,8 +206,11 @@ namespace PeriDeal
           }
         catch (const UserError &error)
           {
+            const bool begun = point.predicted > 0.;
+            if (!begun) // the coupling is refused, for instance
+              point.predicted = std::numeric_limits<double>::quiet_NaN();
             point.observed = std::numeric_limits<double>::infinity();
-            point.verdict  = "fails";
+            point.verdict  = begun ? "fails" : "refused";
             point.parameters.emplace_back("fault", mistake_in_overrides(error));
           }
         return point;

@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""perideal study stability: limits that are observed beside those predicted, maps confirmed by random points, mistakes, two processes.
+
+    python3 stability.py [limits | motion | maps | solids | certificate | mistakes | ranks] ...     (all without arguments)
+"""
+
+import csv
+import json
+import math
+import os
+import sys
+import tempfile
+
+from scene_test import SOURCE_DIR, check, check_close, finish, run_perideal, run_scene
+
+PLATE = """
+set Title = Plate with a crack
+set Dimension = 2
+set Models = finite elements, peridynamics, coupled
+subsection Domain
+  set Lower corner = -1, -1
+  set Upper corner = 1, 1
+  set Cells = 49, 49
+end
+subsection Boundary conditions
+  set Dirichlet = top: 1; bottom: -1
+end
+subsection Cracks
+  set Segments = -0.5,0 ; 0.5,0
+end
+"""
+
+BAR = """
+set Title = Bar
+set Dimension = 1
+set Models = finite elements, peridynamics
+subsection Domain
+  set Cells = 200
+end
+subsection Boundary conditions
+  set Dirichlet = left: 0; right: 1
+end
+"""
+
+CUBE = """
+set Title = Cube
+set Dimension = 3
+set Models = peridynamics
+subsection Domain
+  set Cells = 16, 16, 16
+end
+subsection Boundary conditions
+  set Dirichlet = left: 0; right: 1
+end
+"""
+
+SPLICE = """
+set Title = Splice
+set Dimension = 2
+set Models = coupled
+subsection Domain
+  set Cells = 16, 16
+end
+subsection Boundary conditions
+  set Dirichlet = left: 1; right: 0
+end
+subsection Coupling
+  set Scheme = splice
+  set Zone = 0.5 - x
+end
+subsection Time
+  set Steady = true
+end
+subsection Output
+  set Fields = none
+end
+"""
+
+FOLDER = tempfile.mkdtemp(prefix="perideal_stability_")
+
+
+def write(name, text):
+    path = os.path.join(FOLDER, name)
+    with open(path, "w") as file:
+        file.write(text)
+    return path
+
+
+def study(scene, *options, output="results", ranks=1, expect=0):
+    """Compute; returns (stdout, stderr, stability.json, lines of stability.csv)."""
+    directory = os.path.join(FOLDER, output)
+    status, stdout, stderr = run_perideal(["study", "stability", scene, "--output", directory, *options], ranks, 600, cwd=SOURCE_DIR)
+    check(status == expect, f"stability {options}: exit status {status} where {expect} was expected\n{stdout[-2000:]}{stderr[-2000:]}")
+    if status != 0:
+        return stdout, stderr, None, None
+    with open(os.path.join(directory, "stability.json")) as file:
+        data = json.load(file)
+    with open(os.path.join(directory, "stability.csv"), newline="") as file:
+        lines = list(csv.DictReader(file))
+    return stdout, stderr, data, lines
+
+
+def map_of(data, name):
+    """A map of stability.json."""
+    found = [entry for entry in data["maps"] if entry["name"] == name]
+    check(len(found) == 1, f"map {name}: {[entry['name'] for entry in data['maps']]}")
+    return found[0]
+
+
+def check_limits(data, at_least):
+    """Steps are stable up to the predicted limit, and no farther than 3 % beyond it."""
+    points = map_of(data, "step limit")["points"]
+    ratios = [p["observed"] / p["predicted"] for p in points if p["predicted"] != "infinite"]
+    check(len(ratios) >= at_least, f"{len(ratios)} limits")
+    for point in points:
+        check(point["verdict"] == "safe", f"limit: {point}")
+        if point["predicted"] == "infinite":
+            check(point["observed"] == "infinite", f"no limit: {point}")
+    check(0.999 <= min(ratios) and max(ratios) <= 1.03, f"observed over predicted: {min(ratios)} to {max(ratios)}")
+
+
+def check_confirmed(data, name, n, sides=("inside", "outside")):
+    """All random points of a map are as its bound says."""
+    entry = map_of(data, name)
+    for side in sides:
+        check(entry[side] == {"points": n, "confirmed": n}, f"{name}, {side}: {entry[side]}")
+
+
+def limits():
+    """Every explicit stepper of heat in 1, 2 and 3 dimensions."""
+    for text, at_least, methods, more in ((PLATE, 60, 7, []), (BAR, 60, 7, []), (CUBE, 6, 4, ["--quick"])):
+        scene = write("body.prm", text)
+        _, _, data, lines = study(scene, "--maps", "step limit", "-s", "Models=peridynamics", *more)
+        check_limits(data, at_least)
+        found = {(line["method"], line["stages"]) for line in lines}
+        check(len(found) == methods and {name for name, _ in found} == {"euler", "rk4", "rkc2", "chebyshev"}, f"methods: {found}")
+    _, _, data, lines = study(write("plate.prm", PLATE), "--maps", "step limit, growth", "--quick", "--random", "20")
+    check_limits(data, 15)
+    check_confirmed(data, "growth", 20)
+    check(list(lines[0])[:2] == ["map", "sample"] and list(lines[0])[-3:] == ["predicted", "observed", "verdict"], f"columns: {list(lines[0])}")
+    check(data["cells"] == [21, 21] and data["cells of the scene"] == [49, 49], f"lattice: {data['cells']}")
+    for point in map_of(data, "growth")["points"]:
+        grows = point["step over limit"] > 1
+        check(grows == (point["verdict"] == "fails") == (point["observed"] > 1), f"growth: {point}")
+        if grows:  # of a field near the fastest one
+            check_close(math.log(point["observed"]), math.log(point["predicted"]), relative=0.25, what=f"growth: {point}")
+
+
+def motion():
+    """Verlet, with bonds that never break, that may, and some of which have."""
+    _, _, data, lines = study("prm/fracture/branching_crack.prm", "--maps", "step limit, growth", "--quick", "--random", "10")
+    check_limits(data, 6)
+    check_confirmed(data, "growth", 10)
+    check({line["bonds"] for line in lines} == {"never break", "may break", "some broken"}, "fates of bonds")
+    check({line["method"] for line in lines} == {"verlet"}, "methods of motion")
+
+
+def maps():
+    """All maps of a coupled plate."""
+    stdout, _, data, lines = study(write("plate.prm", PLATE), "--quick", "--random", "20")
+    names = [entry["name"] for entry in data["maps"]]
+    check(names == ["step limit", "growth", "error", "surface error", "lowest eigenvalue", "iterations", "heat lost by splice"], f"maps: {names}")
+    check(not data["left out"] and stdout.count("20 of 20 random points") == 12, f"confirmed:\n{stdout}")
+    for name in names[1:]:
+        check_confirmed(data, name, 20)
+    for line in lines:
+        if line["map"] == "error":  # the note of a run says what the strip shows
+            check_close(float(line["observed"]), float(line["predicted"]), absolute=1e-10, what=f"error: {line}")
+        if line["map"] == "surface error" and line["treatment"] == "fictitious mirror":
+            check_close(float(line["observed"]), float(line["predicted"]), relative=1e-6, what=f"surface error: {line}")
+        if line["map"] == "lowest eigenvalue" and line["verdict"] == "safe":
+            check(float(line["observed"]) > 0, f"eigenvalue: {line}")
+        if line["map"] == "heat lost by splice":
+            check((line["scheme"] == "splice") == (float(line["observed"]) > 1e-4), f"heat: {line}")
+
+
+def solids():
+    """Equilibria have the map of iterations alone: slender cells and nearly incompressible bodies do not converge."""
+    _, _, data, lines = study("prm/elasticity/coupled_crack.prm", "--quick", "--random", "5")
+    check([entry["name"] for entry in data["maps"]] == ["iterations"] and len(data["left out"]) == 6, f"left out: {data['left out']}")
+    check_confirmed(data, "iterations", 5)
+    for line in lines:
+        check((line["verdict"] == "safe") == math.isfinite(float(line["observed"])), f"iterations: {line}")
+        if line["verdict"] != "refused":  # by the certificate of the coupling
+            check(float(line["predicted"]) == 1000, f"allowed: {line}")
+
+
+def certificate():
+    """What the certificate of a splice says does not depend on the unit of the conductivity."""
+    scene = write("splice.prm", SPLICE)
+    faults = []
+    for conductivity in ("1", "1e8"):
+        run = run_scene(scene, {"Material/Conductivity": conductivity})
+        faults.append([note for note in run.summary["notes"] if "a linear field comes out wrong" in note])
+    check(len(faults[0]) == 1 and faults[0] == faults[1], f"notes: {faults}")
+
+
+def mistakes():
+    """One message, and nothing is computed."""
+    plate = write("plate.prm", PLATE)
+    for what, scene, options, words in (
+            ("no such map", plate, ["--maps", "step limit, groth"], ["'groth'", "'growth'", "surface error"]),
+            ("no maps", plate, ["--maps", ","], ["--maps"]),
+            ("no map for the scene", "prm/elasticity/bar_1d.prm", ["--maps", "growth"], ["none of the maps", "growth: "]),
+            ("a wrong scene", write("wrong.prm", PLATE.replace("Cells", "Celsl")), [], ["Celsl"]),
+            ("--vary", plate, ["--vary", "Domain/Cells=9, 9"], ["--vary", "--maps"]),
+            ("--only", plate, ["--only", "growth"], ["--only", "--maps"]),
+            ("--budget", plate, ["--budget", "9"], ["work_precision"]),
+            ("a negative number", plate, ["--random", "-3"], ["--random"])):
+        stdout, stderr, _, _ = study(scene, *options, output="mistakes", expect=1)
+        check(stderr.count("perideal: error") == 1, f"{what}: one message, found\n{stdout}{stderr}")
+        for word in words:
+            check(word in stderr, f"{what}: the message does not say {word!r}:\n{stderr}")
+    for arguments in (["stability"], ["stability", plate, plate], [plate, "--random", "3"], ["work_precision", plate, "--maps", "growth"]):
+        status, _, stderr = run_perideal(["study", *arguments])
+        check(status == 1 and "stability" in stderr, f"study {arguments}: {stderr}")
+
+
+def ranks():
+    """Two processes give the numbers of one."""
+    scene = write("bar.prm", BAR)
+    options = ["--maps", "step limit, growth", "--quick", "--random", "2"]
+    one, two = study(scene, *options, output="one")[3], study(scene, *options, output="two", ranks=2)[3]
+    check(len(one) == len(two) > 20, f"{len(one)} and {len(two)} lines")
+    for a, b in zip(one, two):
+        for key in a:
+            if key not in ("observed", "predicted", "step"):
+                check(a[key] == b[key], f"{key}: {a} and {b}")
+        check_close(float(b["predicted"]), float(a["predicted"]), relative=1e-9, what=f"predicted: {a}")
+        if float(a["observed"]) > 0.5:  # what is damped quickly ends in round-off
+            check_close(float(b["observed"]), float(a["observed"]), relative=5e-3, what=f"observed: {a}")
+
+
+def main():
+    parts = {part.__name__: part for part in (limits, motion, maps, solids, certificate, mistakes, ranks)}
+    for name in sys.argv[1:] or parts:
+        parts[name]()
+    finish(FOLDER)
+
+
+if __name__ == "__main__":
+    main()
