@@ -9,6 +9,7 @@ import csv
 import json
 import math
 import os
+import subprocess
 import sys
 import tempfile
 
@@ -173,6 +174,21 @@ def maps():
             check(float(line["observed"]) > 0, f"eigenvalue: {line}")
         if line["map"] == "heat lost by splice":
             check((line["scheme"] == "splice") == (float(line["observed"]) > 1e-4), f"heat: {line}")
+    page, pictures = draw()
+    for name in names:
+        check(name.replace(" ", "_") + ".png" in pictures and f"<section id=\"{name.replace(' ', '_')}\"" in page, f"{name} in the page: {pictures}")
+    check("20 of 20 random points inside the safe region are healthy" in page, "the page tells what random points say")
+
+
+def draw(output="results"):
+    """The figures of a study and its page."""
+    directory = os.path.join(FOLDER, output)
+    script = os.path.join(SOURCE_DIR, "applications", "report", "study.py")
+    done = subprocess.run([os.environ.get("PERIDEAL_PYTHON", sys.executable), script, directory], capture_output=True, text=True, timeout=300,
+                          env=dict(os.environ, PERIDEAL_DOTS_PER_INCH="60"))
+    check(done.returncode == 0, f"figures: {done.stdout}{done.stderr}")
+    with open(os.path.join(directory, "index.html"), encoding="utf-8") as file:
+        return file.read(), {name for name in os.listdir(directory) if name.endswith(".png")}
 
 
 def solids():
@@ -184,6 +200,8 @@ def solids():
         check((line["verdict"] == "safe") == math.isfinite(float(line["observed"])), f"iterations: {line}")
         if line["verdict"] != "refused":  # by the certificate of the coupling
             check(float(line["predicted"]) == 1000, f"allowed: {line}")
+    page, pictures = draw()
+    check("iterations.png" in pictures and "there are no steps" in page, f"figures of equilibria: {pictures}")
 
 
 def certificate():
