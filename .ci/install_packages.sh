@@ -28,7 +28,8 @@ libbenchmark-dev: Google Benchmark, speed measurements
 python3: draws the report and runs the tests of scenes
 python3-numpy: arrays in Python
 python3-matplotlib: pictures of the report
-python3-h5py: HDF5 files in Python"
+python3-h5py: HDF5 files in Python
+libjs-chart.js: charts in the page of a study whose points tell their names"
 
 if [ "${1:-}" = --list ]; then
     echo "$packages"

@@ -44,7 +44,8 @@ namespace PeriDeal
     {
       const WorkPrecisionOptions &options = request.work_precision;
       return !options.cells.empty() || !options.reference.empty() ||
-             options.budget != WorkPrecisionOptions().budget;
+             options.budget != WorkPrecisionOptions().budget || !options.picks ||
+             options.measure != WorkPrecisionOptions().measure;
     }
 
 
@@ -69,7 +70,7 @@ namespace PeriDeal
       AssertThrow(
         !has_options_of_work_precision(request),
         UserError(
-          "--cells, --reference and --budget are for `perideal study work_precision SCENE.prm`."));
+          "--cells, --reference, --budget, --measure and --no-auto are for `perideal study work_precision SCENE.prm`."));
     }
 
 
@@ -202,6 +203,14 @@ namespace PeriDeal
                    "work_precision: leave out peridynamics in the whole body with more bonds (2e6)")
       ->check(CLI::PositiveNumber);
     study->add_option(
+      "--measure",
+      request.work_precision.measure,
+      "work_precision: the error of the field, of the opening of cracks, or of stress "
+      "intensity (field)");
+    study->add_flag("!--no-auto",
+                    request.work_precision.picks,
+                    "work_precision: leave out what `Models = auto` chooses");
+    study->add_option(
       "--maps",
       request.stability.maps,
       "stability: the maps wanted, with commas between them: \"step limit, growth\"");
@@ -226,6 +235,8 @@ namespace PeriDeal
             "--cells",
             "--reference",
             "--budget",
+            "--measure",
+            "--no-auto",
             "--maps",
             "--random",
             "--seed"};

@@ -12,7 +12,7 @@ figure is kept in full width too, as doc/figures/quick_start_wide.png. A picture
 than its scene is left as it is, unless --all is given. The tables name every scene below prm/ (six of them in the README) with
 its title and the first sentence of its comment, up to a colon or bracket; --table writes the tables only.
 --work-precision makes the charts of accuracy against cost of doc/coupling.md instead, and prints what
-`perideal study work_precision` says.
+`perideal study work_precision` says. --charts makes those of doc/charts.md.
 """
 
 import argparse
@@ -29,12 +29,26 @@ ROOT = Path(__file__).resolve().parent.parent
 FIGURES = ROOT / "doc" / "figures"
 THUMBNAIL_HEIGHT, WIDE_WIDTH = 200, 1300
 CHART_WIDTH = 1400
+PAGE_CHART_WIDTH = 1100
 LADDER = "21, 21 | 41, 41 | 81, 81 | 161, 161 | 321, 321"
 # Scene, options of `perideal study work_precision`, and the charts that are kept.
 CHARTS = (("prm/coupling/insulated_crack.prm",
            ["-s", "Time/Steady=true", "--cells", LADDER, "--reference", "240, 240 | 480, 480 | 960, 960"],
            {"error_over_work": "work_precision_insulated_crack", "error_over_wall_time": "work_precision_insulated_crack_time"}),
           ("prm/coupling/oblique_crack.prm", ["--cells", LADDER], {"error_over_work": "work_precision_oblique_crack"}))
+# Of doc/charts.md: name, scene, options, charts.
+TIMES, BOTH = ("error_over_wall_time",), ("error_over_wall_time", "error_in_time_over_work")
+OF_CRACKS = ["--cells", "21, 21 | 41, 41 | 81, 81 | 161, 161", "--budget", "4e5"]
+CHARTS_OF_PAGE = (
+    ("smooth", "prm/heat/smooth_source.prm", ["--cells", "8, 8 | 16, 16 | 32, 32 | 64, 64"], TIMES),
+    ("layer", "prm/heat/narrow_layer.prm", ["--cells", "20, 20 | 40, 40 | 80, 80 | 160, 160"], TIMES),
+    ("insulated_crack", "prm/coupling/insulated_crack.prm", ["-s", "Time/Steady=true", *OF_CRACKS], TIMES),
+    ("oblique_crack", "prm/coupling/oblique_crack.prm", OF_CRACKS, TIMES),
+    ("graded_material_crack", "prm/coupling/graded_material_crack.prm", OF_CRACKS, TIMES),
+    ("crack_3d", "prm/heat/block_with_crack.prm", ["-s", "Time/Steady=true", "--cells", "9, 9, 9 | 17, 17, 17 | 33, 33, 33", "--budget", "4e5"], TIMES),
+    ("transient_crack", "prm/coupling/insulated_crack.prm", ["--cells", "21, 21 | 41, 41 | 81, 81", "--budget", "2e5"], BOTH),
+    ("elastic_crack", "prm/elasticity/coupled_crack.prm", ["--cells", "11, 11 | 21, 21 | 41, 41 | 81, 81", "--budget", "2e5"], TIMES),
+    ("wave", "prm/elasticity/wave_in_bar.prm", ["--cells", "100 | 200 | 400 | 800"], TIMES))
 OF_README = ("quick_start.prm", "coupling/growing_cracks.prm", "elasticity/coupled_crack.prm", "elasticity/thermal_stress.prm",
              "fracture/branching_crack.prm", "papers/le_2014/longitudinal.prm")
 BEGIN, END = "<!-- scenes: written by doc/make_figures.py -->\n", "<!-- end of scenes -->\n"
@@ -148,6 +162,22 @@ def make_charts(program):
                 save(cropped(Image.open(Path(folder) / f"{figure}.png")), name, width=CHART_WIDTH)
 
 
+def make_charts_of_page(program, names, keep):
+    """Those of doc/charts.md, with what `Models = auto` picks; all that the study says goes to output/charts."""
+    for name, scene, options, charts in CHARTS_OF_PAGE:
+        if names and name not in names:
+            continue
+        folder = ROOT / "output" / "charts" / name
+        command = ["study", "work_precision", scene, "--output", str(folder), *options]
+        print("perideal", " ".join(f'"{word}"' if " " in word else word for word in command), flush=True)
+        if not keep:
+            done = subprocess.run([program, *command], check=True, cwd=ROOT, capture_output=True, text=True)
+            (folder / "said.txt").write_text(done.stdout, encoding="utf-8")
+        subprocess.run([sys.executable, str(ROOT / "applications" / "report" / "study.py"), str(folder)], check=True, stdout=subprocess.DEVNULL)
+        for chart in charts:
+            save(cropped(Image.open(folder / f"{chart}.png")), f"chart_{name}" + ("_in_time" if "in_time" in chart else ""), width=PAGE_CHART_WIDTH)
+
+
 def main():
     """Command line."""
     parser = argparse.ArgumentParser(description="Make doc/figures from runs of the scenes.")
@@ -156,7 +186,12 @@ def main():
     parser.add_argument("--all", action="store_true", help="also those that are up to date")
     parser.add_argument("--table", action="store_true", help="only the tables of scenes")
     parser.add_argument("--work-precision", action="store_true", help="only the charts of accuracy against cost")
+    parser.add_argument("--charts", nargs="*", metavar="NAME", help="only the charts of doc/charts.md, or those named")
+    parser.add_argument("--drawn-again", action="store_true", help="with --charts: from what was computed before")
     options = parser.parse_args()
+    if options.charts is not None:
+        make_charts_of_page(options.program, options.charts, options.drawn_again)
+        return 0
     if options.work_precision:
         make_charts(options.program)
         return 0

@@ -174,7 +174,7 @@ def page_of(study, directory):
                  "memory that of the whole program with all models of a row and what earlier rows have left.</p>")
         page.add(f'<div class="wide">{table}</div>')
     page.section("Files", "files")
-    items = "".join(f'<li><a href="{file}">{file}</a></li>' for file in ("study.csv", "study.json", "work_precision.csv", "work_precision.json")
+    items = "".join(f'<li><a href="{file}">{file}</a></li>' for file in ("study.csv", "study.json", "work_precision.csv", "work_precision.json", "work_precision_in_time.csv")
                     if (Path(directory) / file).is_file())
     page.add(f'<ul class="files">{items}</ul><p>The files of each row are in its folder in rows/.</p>')
     page.add(f"<footer>Written by {escape(study.get('program', 'PeriDeal'))}.</footer>")

@@ -13,12 +13,15 @@
 #include <numeric>
 #include <sstream>
 
+#include "work_numbers.h"
+
 namespace PeriDeal
 {
   namespace
   {
     using Json   = RowResult::Json;
     using Status = RowResult::Status;
+    using Role   = WorkPlan::Role;
 
     std::vector<std::string> cells_of(const std::string &line)
     {
@@ -112,20 +115,25 @@ namespace PeriDeal
     }
 
 
+    void require_reference(const WorkPlan::Row &planned, const RowResult &result)
+    {
+      AssertThrow(
+        result.status == Status::finished,
+        UserError("work_precision: the row '" + planned.name +
+                  "' is not there, and without the reference nothing is known of errors" +
+                  (result.message.empty() ? ". Compute it, too: --only has to name 'reference'." :
+                                            ": " + result.message)));
+    }
+
+
     LatticeValues extrapolate(const WorkPlan      &plan,
                               const ComputedStudy &computed,
                               WorkReference       &reference)
     {
       std::vector<std::vector<double>> solutions;
-      for (std::size_t k = 0; k < plan.rows.size() && plan.rows[k].family == nullptr; ++k)
+      for (std::size_t k = 0; k < plan.rows.size() && plan.rows[k].role == Role::reference; ++k)
         {
-          AssertThrow(
-            computed.results[k].status == Status::finished,
-            UserError("work_precision: the row '" + plan.rows[k].name +
-                      "' is not there, and without the reference nothing is known of errors" +
-                      (computed.results[k].message.empty() ?
-                         ". Compute it, too: --only has to name 'reference'." :
-                         ": " + computed.results[k].message)));
+          require_reference(plan.rows[k], computed.results[k]);
           solutions.push_back(read_grid(computed.rows[k], "finite elements"));
         }
       const std::vector<CellCounts> lattices = lattices_of(plan);
@@ -144,10 +152,12 @@ namespace PeriDeal
           worst = std::max(worst, nodal_error(u.at(cells), v.at(cells), cells));
         return worst;
       };
-      reference.exact          = false;
-      reference.observed_order = order_of_differences(difference(solutions[0], solutions[1]),
-                                                      difference(solutions[1], solutions[2]));
-      reference.order          = likely_order(reference.observed_order);
+      constexpr double round_off = 1e-8; // of solvers: no order is seen in it
+      const double     coarse    = difference(solutions[0], solutions[1]),
+                   fine          = difference(solutions[1], solutions[2]);
+      reference.exact            = false;
+      reference.observed_order   = order_of_differences(coarse, fine);
+      reference.order            = fine < round_off ? 2. : likely_order(reference.observed_order);
       AssertThrow(
         reference.order > 0.2,
         UserError(
@@ -185,7 +195,7 @@ namespace PeriDeal
       row.unknowns     = model["unknowns"].get<unsigned long long>();
       row.bonds        = model.value("bonds", 0ull);
       row.nonzeros     = model["nonzeros"].get<unsigned long long>();
-      row.iterations   = model["iterations"].get<unsigned long long>();
+      row.iterations   = model.value("iterations", 0ull);
       row.applications = model["operator applications"].get<unsigned long long>();
       row.applied      = applied_nonzeros(row);
       row.work         = static_cast<double>(row.applied) *
@@ -238,7 +248,7 @@ namespace PeriDeal
   {
     std::vector<CellCounts> lattices;
     for (const WorkPlan::Row &row : plan.rows)
-      if (row.family != nullptr &&
+      if ((row.role == Role::method || row.role == Role::pick) &&
           std::find(lattices.begin(), lattices.end(), row.cells) == lattices.end())
         lattices.push_back(row.cells);
     std::sort(lattices.begin(), lattices.end());
@@ -246,33 +256,204 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** The error of one row's values at the vertices of its lattice. */
+    double error_of(const WorkPlan::Row &planned,
+                    const CheckedRow    &row,
+                    const std::string   &model,
+                    const LatticeValues &limit)
+    {
+      const bool                exact    = limit.empty();
+      const std::vector<double> values   = read_grid(row, model);
+      const std::vector<double> expected = exact ? read_grid(row, "exact") :
+                                                   limit.at(planned.cells);
+      AssertThrow(values.size() % n_vertices(planned.cells) == 0 &&
+                    expected.size() == values.size(),
+                  UserError("work_precision: '" + row.folder +
+                            "/grid.csv' is not whole. Compute the row again with --redo."));
+      return nodal_error(values, expected, planned.cells, exact);
+    }
+
+
+    /** The limit of such numbers. */
+    std::vector<double> extrapolate_numbers(const WorkPlan      &plan,
+                                            const ComputedStudy &computed,
+                                            WorkReference       &reference)
+    {
+      std::vector<std::vector<double>> solutions;
+      for (std::size_t k = 0; k < plan.rows.size() && plan.rows[k].role == Role::reference; ++k)
+        {
+          require_reference(plan.rows[k], computed.results[k]);
+          solutions.push_back(numbers_of(computed.results[k], "finite elements", plan.measure));
+          AssertThrow(!solutions.back().empty(),
+                      UserError("work_precision: the reference has no stress "
+                                "intensities: there is no "
+                                "room around the ends of the cracks."));
+        }
+      reference.exact = false;
+      reference.observed_order =
+        order_of_differences(relative_difference(solutions[0], solutions[1]),
+                             relative_difference(solutions[1], solutions[2]));
+      // Where the error is small the numbers do not settle on one order.
+      reference.order =
+        std::isfinite(reference.observed_order) ? std::clamp(reference.observed_order, 1., 2.) : 1.;
+      const auto rough    = richardson(solutions[0], solutions[1], reference.order);
+      const auto limit    = richardson(solutions[1], solutions[2], reference.order);
+      reference.own_error = relative_difference(rough, limit);
+      return limit;
+    }
+
+
+    /** What the error of a row is found from. */
+    struct Limit
+    {
+      LatticeValues       values;
+      std::vector<double> numbers;
+    };
+
+
+    /** In the measure of the plan; not a number where a row does not have it. */
+    double measured_error(const WorkPlan      &plan,
+                          const ComputedStudy &computed,
+                          const std::size_t    k,
+                          const std::string   &model,
+                          const Limit         &limit)
+    {
+      if (plan.measure == WorkMeasure::field)
+        return error_of(plan.rows[k], computed.rows[k], model, limit.values);
+      const auto found = numbers_of(computed.results[k], model, plan.measure);
+      if (found.empty())
+        return std::numeric_limits<double>::quiet_NaN();
+      return relative_difference(found,
+                                 limit.numbers.empty() ?
+                                   numbers_of(computed.results[k], "exact", plan.measure) :
+                                   limit.numbers);
+    }
+
+
+    /** "Cells = 16, 16; Degree = 2": what the model takes, but for what is switched off. */
+    std::string text_of_settings(const Json &settings, const std::string &model)
+    {
+      std::vector<std::string> told = {"Domain/Cells",
+                                       "Domain/Coarsening",
+                                       "Domain/Fine where",
+                                       "Cracks/Mesh",
+                                       "Peridynamics/Surface correction",
+                                       "Time/Tolerance"};
+      if (model != "peridynamics")
+        told.push_back("Finite elements/Degree");
+      if (model != "finite elements")
+        told.insert(told.end(), {"Peridynamics/Horizon ratio", "Peridynamics/Boundary treatment"});
+      if (model == "coupled")
+        told.push_back("Coupling/Zone");
+      std::string text;
+      for (const std::string &entry : told)
+        {
+          const std::string value = settings.value(entry, std::string());
+          if (!value.empty() && value != "0" && value != "auto" && value != "none")
+            text += (text.empty() ? "" : "; ") + entry.substr(entry.find('/') + 1) + " = " + value;
+        }
+      return text;
+    }
+
+
+    WorkPick pick_of(const WorkPlan::Row &planned, const RowResult &result, const double error)
+    {
+      const Json &accuracy = result.results["accuracy"];
+      WorkPick    pick;
+      pick.name      = planned.name;
+      pick.tolerance = planned.tolerance;
+      pick.error     = error;
+      pick.estimate  = accuracy.value("estimate", -1.);
+      pick.met       = accuracy.value("met", false);
+      pick.wall_time = result.record.value("wall time", 0.);
+      pick.tries     = accuracy.contains("steps") ? accuracy["steps"].size() : 0;
+      pick.model     = accuracy.value("model", std::string());
+      pick.settings  = text_of_settings(accuracy.value("settings", Json::object()), pick.model);
+      return pick;
+    }
+
+
+    bool is_finished(const ComputedStudy &computed, const std::size_t k)
+    {
+      return computed.results[k].status == Status::finished;
+    }
+
+
+    /** Rows in which only the stepper differs, against one that has hardly an error in time. */
+    void compare_in_time(const WorkPlan &plan, const ComputedStudy &computed, WorkResults &results)
+    {
+      std::vector<double> exact;
+      for (std::size_t k = 0; k < plan.rows.size(); ++k)
+        {
+          const WorkPlan::Row &planned = plan.rows[k];
+          if (!is_finished(computed, k))
+            continue;
+          if (planned.role == Role::exact_in_time)
+            {
+              exact                  = read_grid(computed.rows[k], planned.family->model);
+              results.method_in_time = planned.family->name + ", " + lattice_name(planned.cells);
+              for (const WorkRow &row : results.rows)
+                if (row.family == planned.family && row.cells == planned.cells)
+                  results.error_in_space = row.error;
+            }
+          if (planned.role != Role::in_time || exact.empty())
+            continue;
+          const WorkRow cost = costs_of(planned, computed.results[k], false);
+          TimeRow       row;
+          row.name      = planned.name;
+          row.stepper   = planned.stepper;
+          row.tolerance = planned.tolerance;
+          row.steps =
+            computed.results[k].results["models"][planned.family->model].value("steps", 0ull);
+          row.iterations   = cost.iterations;
+          row.applications = cost.applications;
+          row.work         = cost.work;
+          row.wall_time    = cost.wall_time;
+          row.error =
+            nodal_error(read_grid(computed.rows[k], planned.family->model), exact, planned.cells);
+          results.in_time.push_back(row);
+        }
+    }
+  } // namespace
+
+
   WorkResults evaluate_work(const CrackedBox    &box,
                             const WorkPlan      &plan,
                             const ComputedStudy &computed)
   {
-    WorkResults   results;
-    LatticeValues limit;
-    if (!plan.reference.empty())
-      limit = extrapolate(plan, computed, results.reference);
+    WorkResults results;
+    Limit       limit;
+    results.reference.cracked = !box.cracks.empty();
+    if (!plan.reference.empty() && plan.measure == WorkMeasure::field)
+      limit.values = extrapolate(plan, computed, results.reference);
+    else if (!plan.reference.empty())
+      limit.numbers = extrapolate_numbers(plan, computed, results.reference);
     for (std::size_t k = 0; k < plan.rows.size(); ++k)
       {
         const WorkPlan::Row &planned = plan.rows[k];
-        if (planned.family == nullptr || computed.results[k].status != Status::finished)
+        if (!is_finished(computed, k))
           continue;
-        results.steady                   = computed.results[k].results["steady"].get<bool>();
-        WorkRow                   row    = costs_of(planned, computed.results[k], results.steady);
-        const std::vector<double> values = read_grid(computed.rows[k], planned.family->model);
-        const std::vector<double> expected =
-          plan.reference.empty() ? read_grid(computed.rows[k], "exact") : limit.at(planned.cells);
-        AssertThrow(values.size() % n_vertices(planned.cells) == 0 &&
-                      expected.size() == values.size(),
-                    UserError("work_precision: '" + computed.rows[k].folder +
-                              "/grid.csv' is not whole. Compute the row again with --redo."));
-        row.error = nodal_error(values, expected, planned.cells, plan.reference.empty());
+        if (planned.role == Role::pick)
+          results.picks.push_back(pick_of(planned,
+                                          computed.results[k],
+                                          measured_error(plan, computed, k, "auto", limit)));
+        if (planned.role != Role::method)
+          continue;
+        results.steady = computed.results[k].results["steady"].get<bool>();
+        WorkRow row    = costs_of(planned, computed.results[k], results.steady);
+        row.error      = measured_error(plan, computed, k, planned.family->model, limit);
+        if (!std::isfinite(row.error))
+          {
+            results.without.push_back(planned.name);
+            continue;
+          }
         for (unsigned int d = 0; d < box.dim(); ++d)
           row.spacing = std::max(row.spacing, (box.upper[d] - box.lower[d]) / planned.cells[d]);
         results.rows.push_back(row);
       }
+    compare_in_time(plan, computed, results);
     results.dominated_by      = dominating_points(results.points(false));
     results.dominated_in_time = dominating_points(results.points(true));
     return results;

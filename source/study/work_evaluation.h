@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "study_rows.h"
-#include "work_families.h"
+#include "work_plan.h"
 
 namespace PeriDeal
 {
@@ -31,16 +31,44 @@ namespace PeriDeal
   struct WorkReference
   {
     bool   exact          = true;
+    bool   cracked        = true; // the cracks lie on cell faces; else of degree 2
     double observed_order = std::numeric_limits<double>::quiet_NaN(), order = 0.;
     double own_error = 0.; // of the extrapolated solution, relative like all errors
+  };
+
+  /** What `Models = auto` has chosen, what it has cost, and how wrong it really is. */
+  struct WorkPick
+  {
+    std::string name;
+    double      tolerance = 0., error = 0., estimate = 0.;
+    double      wall_time = 0.; // of the whole run, with all tries
+    bool        met       = false;
+    std::size_t tries     = 0;
+    std::string model;
+    std::string settings; // "Cells = 16, 16; Degree = 2"
+  };
+
+  /** A stepper with its tolerance on one lattice, against the same with hardly an error in time. */
+  struct TimeRow
+  {
+    std::string        name, stepper;
+    double             tolerance = 0.; // 0: fixed steps, the largest that are stable
+    unsigned long long steps = 0, iterations = 0, applications = 0;
+    double             work = 0., error = 0., wall_time = 0.;
   };
 
   struct WorkResults
   {
     WorkReference            reference;
     std::vector<WorkRow>     rows; // those that finished, without the reference
-    std::vector<std::size_t> dominated_by, dominated_in_time; // no_point on the front
+    std::vector<std::size_t> dominated_by,
+      dominated_in_time; // no_point on the front
     bool                     steady = true;
+    std::vector<WorkPick>    picks;
+    std::vector<TimeRow>     in_time;
+    std::string              method_in_time; // the method and the lattice of in_time
+    std::vector<std::string> without;        // rows that do not have what is measured
+    double                   error_in_space = std::numeric_limits<double>::quiet_NaN(); // of these
 
     /** Positions of the front by rising cost; @p in_time: wall time in place of work. */
     std::vector<std::size_t> front(const bool in_time) const;

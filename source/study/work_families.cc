@@ -3,12 +3,7 @@
 
 #include "work_families.h"
 
-#include <perideal/base/progress.h>
-#include <perideal/base/user_error.h>
-#include <perideal/scene/lists.h>
-
-#include <algorithm>
-#include <cmath>
+#include <string>
 
 namespace PeriDeal
 {
@@ -157,7 +152,7 @@ namespace PeriDeal
           all.push_back(graded(uniform, k));
       for (WorkFamily &one : all)
         {
-          one.deforms = true;
+          one.comparison = Comparison::solid_cracks;
           if (!one.on_faces)
             set_entry(one, "Cracks/Mesh", "removed");
         }
@@ -165,87 +160,99 @@ namespace PeriDeal
     }
 
 
-    /**
-     * The lattices of the reference: three, each twice as fine as the one before, with the cracks
-     * on faces.
-     */
-    std::vector<CellCounts> reference_lattices(const CrackedBox              &box,
-                                               const std::vector<CellCounts> &ladder,
-                                               const std::string             &given)
+    /** Without cracks: what there is to be said of a whole body. */
+    WorkFamily plain(const std::string &name,
+                     const std::string &model,
+                     const std::string &treatment  = "auto",
+                     const std::string &correction = "none")
     {
-      if (!given.empty())
-        {
-          const auto lattices = parse_ladder(given, "--reference", box.dim(), 3);
-          bool       fits     = lattices.size() == 3;
-          for (std::size_t k = 0; k < lattices.size(); ++k)
-            {
-              const auto on_faces = nearest_fitting(box, lattices[k], true, 1);
-              fits                = fits && on_faces && *on_faces == lattices[k];
-              for (unsigned int d = 0; d < box.dim() && k > 0; ++d)
-                fits = fits && lattices[k][d] == 2 * lattices[k - 1][d];
-            }
-          AssertThrow(
-            fits,
-            UserError(
-              "command line: --reference '" + given +
-              "': needs three lattices, each with twice the cells of the one before, on whose cell "
-              "faces all cracks lie."));
-          return lattices;
-        }
-      // The finest is six times as fine as the finest of the study, in 3D twice.
-      const double factor = box.dim() == 2 ? 1.5 : 0.5;
-      const auto   finest = nearest_fitting(box, ladder.back(), true, 1);
-      CellCounts   coarsest;
-      for (const unsigned int n : finest.value_or(ladder.back()))
-        coarsest.push_back(std::max(2u, static_cast<unsigned int>(std::lround(factor * n))));
-      const auto fitting = nearest_fitting(box, coarsest, true, 1);
-      if (!fitting)
-        return {};
-      std::vector<CellCounts> lattices(3, *fitting);
-      for (std::size_t k = 1; k < 3; ++k)
-        for (unsigned int d = 0; d < box.dim(); ++d)
-          lattices[k][d] = 2 * lattices[k - 1][d];
-      return lattices;
+      WorkFamily result;
+      result.name     = name;
+      result.model    = model;
+      result.settings = {{"Models", model},
+                         {"Finite elements/Degree", "1"},
+                         {"Peridynamics/Surface correction", correction},
+                         {"Peridynamics/Boundary treatment", treatment},
+                         {"Peridynamics/Horizon", ""},
+                         {"Domain/Coarsening", "0"},
+                         {"Domain/Fine where", "auto"}};
+      return result;
     }
 
 
-    void add_rows(WorkPlan         &plan,
-                  const CrackedBox &box,
-                  const WorkFamily &family,
-                  const bool        moving_cracks,
-                  const double      budget)
+    WorkFamily of_degree(const std::string &degree)
     {
-      const std::string why =
-        ": no similar lattice" +
-        (family.multiple > 1 ? " divisible by " + std::to_string(family.multiple) : std::string()) +
-        (!family.on_faces     ? "." :
-         family.multiple == 1 ? " has all cracks on cell faces." :
-                                " has all cracks on faces of the largest cells.");
-      const CellCounts *last = nullptr;
-      for (const CellCounts &rung : plan.ladder)
+      WorkFamily result = plain("FEM, degree " + degree, elements);
+      set_entry(result, "Finite elements/Degree", degree);
+      return result;
+    }
+
+
+    WorkFamily plain_bonds(const std::string &kind,
+                           const std::string &ratio,
+                           const std::string &treatment,
+                           const std::string &correction)
+    {
+      WorkFamily result = plain("PD " + kind + ", m = " + ratio, bonds, treatment, correction);
+      set_entry(result, "Peridynamics/Horizon ratio", ratio);
+      result.ratio = std::stod(ratio);
+      return result;
+    }
+
+
+    WorkFamily given_zone(const std::string &ratio)
+    {
+      WorkFamily result = plain("coupled, m = " + ratio + ", zone of the scene", coupled);
+      set_entry(result, "Peridynamics/Horizon ratio", ratio);
+      result.given_zone = true;
+      return result;
+    }
+
+
+    std::vector<WorkFamily> families_without_cracks(const Comparison comparison)
+    {
+      std::vector<WorkFamily> all = {of_degree("1"), of_degree("2")};
+      for (const char *const m : {"2", "3", "4"})
+        if (comparison == Comparison::field)
+          {
+            all.push_back(plain_bonds("raw", m, "none", "none"));
+            all.push_back(plain_bonds("energy-corrected", m, "none", "energy"));
+            all.push_back(plain_bonds("exchange", m, "exchange", "none"));
+            all.push_back(plain_bonds("mirror", m, "fictitious mirror", "none"));
+          }
+        else
+          {
+            all.push_back(plain_bonds("cut at sides", m, "none", "none"));
+            all.push_back(plain_bonds("energy-corrected", m, "none", "energy"));
+            all.push_back(plain_bonds("completed", m, "auto", "auto"));
+          }
+      for (const char *const m : {"2", "3"})
+        all.push_back(given_zone(m));
+      for (WorkFamily &one : all)
+        one.comparison = comparison;
+      return all;
+    }
+
+
+    /** Explicit steps of three lengths. */
+    std::vector<WorkFamily> families_of_motion()
+    {
+      std::vector<WorkFamily> all;
+      for (const char *const courant : {"0.8", "0.4", "0.2"})
         {
-          const auto cells = nearest_fitting(box, rung, family.on_faces, family.multiple);
-          if (!cells || (family.on_faces && moving_cracks))
+          all.push_back(plain("FEM", elements));
+          for (const char *const m : {"2", "3", "4"})
+            all.push_back(plain_bonds("completed", m, "auto", "auto"));
+          for (std::size_t k = all.size() - 4; k < all.size(); ++k)
             {
-              plan.left_out.push_back(
-                family.name + ", near " + lattice_name(rung) +
-                (moving_cracks && family.on_faces ? ": the cracks grow." : why));
-              continue;
+              all[k].name += std::string(", steps of ") + courant + " cells";
+              all[k].courant    = std::stod(courant);
+              all[k].comparison = Comparison::motion;
+              set_entry(all[k], "Time/Stepper", "verlet");
+              set_entry(all[k], "Time/Time step", "auto");
             }
-          if (last != nullptr && *cells == *last)
-            continue;
-          const double n_bonds = family.ratio > 0. ? estimated_bonds(box, *cells, family.ratio) :
-                                                     0.;
-          if (n_bonds > budget)
-            {
-              plan.left_out.push_back(family.name + ", " + lattice_name(*cells) + ": about " +
-                                      readable_count(static_cast<unsigned long long>(n_bonds)) +
-                                      " bonds, more than --budget " + number_text(budget) + ".");
-              continue;
-            }
-          plan.rows.push_back({family.name + ", " + lattice_name(*cells), &family, *cells});
-          last = &plan.rows.back().cells;
         }
+      return all;
     }
   } // namespace
 
@@ -253,57 +260,14 @@ namespace PeriDeal
   const std::vector<WorkFamily> &work_families()
   {
     static const std::vector<WorkFamily> families = [] {
-      std::vector<WorkFamily> all = make_families(), of_bodies = families_of_bodies();
-      all.insert(all.end(), of_bodies.begin(), of_bodies.end());
+      std::vector<WorkFamily> all = make_families();
+      for (const auto &more : {families_of_bodies(),
+                               families_without_cracks(Comparison::field),
+                               families_without_cracks(Comparison::solid),
+                               families_of_motion()})
+        all.insert(all.end(), more.begin(), more.end());
       return all;
     }();
     return families;
-  }
-
-
-  WorkPlan plan_work(const CrackedBox  &box,
-                     const bool         deforms,
-                     const bool         exact,
-                     const bool         moving_cracks,
-                     const std::string &cells,
-                     const std::string &reference,
-                     const double       budget)
-  {
-    constexpr unsigned int n_rungs = 4;
-    WorkPlan               plan;
-    plan.ladder = cells.empty() ? default_ladder(box.cells, n_rungs) :
-                                  parse_ladder(cells, "--cells", box.dim(), 2);
-    AssertThrow(
-      plan.ladder.size() >= 2,
-      UserError("work_precision needs at least two lattices, but 'Cells' in section 'Domain', " +
-                to_text(box.cells) +
-                ", is too coarse to be halved. Give more cells, or name lattices with --cells."));
-    AssertThrow(
-      !exact || reference.empty(),
-      UserError("command line: --reference: the scene has a 'Solution' in section 'Reference', "
-                "with which it is compared."));
-    if (!exact)
-      {
-        if (!moving_cracks)
-          plan.reference = reference_lattices(box, plan.ladder, reference);
-        AssertThrow(
-          !plan.reference.empty(),
-          UserError(
-            std::string(
-              "work_precision has nothing to compare with: 'Solution' in section 'Reference' is empty, and "
-              "no reference can be computed by finite elements with the cracks on cell faces, because ") +
-            (moving_cracks ?
-               "the cracks grow" :
-             !along_axes(box) ?
-               "not all cracks run along the axes" :
-               "no lattice of similar cells has the ends of all cracks on its vertices") +
-            ". Give the exact solution."));
-        for (const CellCounts &lattice : plan.reference)
-          plan.rows.push_back({"reference, " + lattice_name(lattice), nullptr, lattice});
-      }
-    for (const WorkFamily &one : work_families())
-      if (one.deforms == deforms)
-        add_rows(plan, box, one, moving_cracks, budget);
-    return plan;
   }
 } // namespace PeriDeal

@@ -5,40 +5,28 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/output/result_folder.h>
-#include <perideal/problems/problem_factory.h>
+#include <perideal/output/tables.h>
 #include <perideal/study/work_precision.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
+#include "attempts.h"
 #include "work_tables.h"
 
 namespace PeriDeal
 {
   namespace
   {
-    /** What the study has to know of a scene. */
-    struct SceneFacts
-    {
-      CrackedBox  box;
-      bool        deforms = false, exact = false, moving_cracks = false;
-      std::string title;
-    };
-
+    using Role = WorkPlan::Role;
 
     template <int dim>
-    SceneFacts facts_of(const Scene<dim> &scene)
+    void require_comparable(const Scene<dim> &scene)
     {
       const std::string who = "work_precision: ";
-      AssertThrow(dim > 1,
-                  UserError(who + "'Dimension' is 1, where a crack has no ends; it needs 2 or 3."));
-      AssertThrow(
-        !scene.cracks.cracks.empty(),
-        UserError(
-          who +
-          "the scene has no crack ('Segments' or 'Polygons' in section 'Cracks'), with which the "
-          "methods that it compares have to deal."));
       AssertThrow(
         scene.domain.shape == Shape::box,
         UserError(
@@ -56,13 +44,54 @@ namespace PeriDeal
           who +
           "the cracks conduct ('Contact conductance' in section 'Cracks'), and cannot be cut into the mesh of the reference then. Give "
           "'Solution' in section 'Reference'."));
-      SceneFacts facts;
+    }
+
+
+    template <int dim>
+    Comparison comparison_of(const Scene<dim> &scene)
+    {
+      if (!scene.cracks.cracks.empty())
+        return scene.deforms ? Comparison::solid_cracks : Comparison::cracks;
+      return !scene.deforms                                     ? Comparison::field :
+             scene.elasticity.solver == ElasticSolver::dynamics ? Comparison::motion :
+                                                                  Comparison::solid;
+    }
+
+
+    template <int dim>
+    WorkScene facts_of(const Scene<dim> &scene)
+    {
+      require_comparable(scene);
+      WorkScene facts;
       facts.title         = scene.general.title;
-      facts.deforms       = problem_factory(scene).n_components() > 1;
+      facts.box           = cracked_box(scene);
+      facts.comparison    = comparison_of(scene);
       facts.exact         = !scene.reference.solution.empty();
       facts.moving_cracks = scene.cracks.change();
-      facts.box           = cracked_box(scene);
+      facts.steady        = scene.time.steady;
+      facts.given_zone    = scene.coupling.zone == ZoneKind::formula;
+      if (facts.comparison == Comparison::motion)
+        {
+          const dealii::Point<dim> middle = 0.5 * (scene.domain.lower + scene.domain.upper);
+          facts.wave_speed =
+            std::sqrt(scene.material.moduli(middle).young() / scene.material.density.value(middle));
+        }
       return facts;
+    }
+
+
+    /** What keeps `Models = auto` from choosing for a scene, or nothing. */
+    std::string no_choice_for(const SceneText &text)
+    {
+      try
+        {
+          with_scene(text, [](const auto &scene) { require_choice(scene); });
+        }
+      catch (const UserError &error)
+        {
+          return mistake_in_overrides(error);
+        }
+      return "";
     }
 
 
@@ -72,17 +101,11 @@ namespace PeriDeal
      */
     constexpr unsigned int most_direct = 100, most_direct_of_few = 10;
 
-
     /** What is the same in all rows, stronger than the scene. */
-    std::vector<Setting> common_settings()
+    std::vector<Setting> settings_of_output()
     {
       return {{"Domain/Node spacing", ""},
-              {"Domain/Nodes", "vertices"},
-              {"Cracks/Nodes on cracks", "left"}, // these very cells
-              {"Peridynamics/Flux treatment", "natural"},
-              {"Finite elements/Degree", "1"},
               {"Coupling/Certificate", "false"},
-              {"Solver/Direct solver up to", std::to_string(most_direct)},
               {"Output/Fields", "none"},
               {"Output/Write at", ""},
               {"Output/Write every", ""},
@@ -91,32 +114,33 @@ namespace PeriDeal
     }
 
 
-    /** The entries that no override may touch. */
-    std::set<std::string> decided_entries()
+    /** What is the same in all rows but those in which the program chooses. */
+    std::vector<Setting> common_settings(const Comparison comparison)
     {
-      std::set<std::string> entries = {"Domain/Cells", "Output/Grid"};
-      for (const Setting &setting : common_settings())
-        entries.insert(setting.first);
-      for (const WorkFamily &family : work_families())
-        for (const Setting &setting : family.settings)
-          entries.insert(setting.first);
-      return entries;
+      std::vector<Setting> settings = settings_of_output();
+      settings.insert(settings.end(),
+                      {{"Domain/Nodes", "vertices"},
+                       {"Peridynamics/Flux treatment", "natural"},
+                       {"Solver/Direct solver up to", std::to_string(most_direct)}});
+      if (comparison == Comparison::cracks || comparison == Comparison::solid_cracks)
+        settings.insert(settings.end(),
+                        {{"Cracks/Nodes on cracks", "left"}, // these very cells
+                         {"Finite elements/Degree", "1"}});
+      return settings;
     }
 
 
-    /**
-     * Of the reference: as the finite elements it is compared with, but with the error in time out
-     * of sight.
-     */
-    std::vector<Setting> reference_settings(const WorkPlan &plan)
+    /** The entries that no override may touch. */
+    std::set<std::string> decided_entries(const Comparison comparison)
     {
-      std::string grid;
-      for (const CellCounts &cells : lattices_of(plan))
-        grid += (grid.empty() ? "" : " ; ") + to_text(cells);
-      std::vector<Setting> settings = work_families().front().settings;
-      settings.emplace_back("Time/Tolerance", "1e-7");
-      settings.emplace_back("Output/Grid", grid);
-      return settings;
+      std::set<std::string> entries = {"Domain/Cells", "Output/Grid"};
+      for (const Setting &setting : common_settings(comparison))
+        entries.insert(setting.first);
+      for (const WorkFamily &family : work_families())
+        if (family.comparison == comparison)
+          for (const Setting &setting : family.settings)
+            entries.insert(setting.first);
+      return entries;
     }
 
 
@@ -132,7 +156,7 @@ namespace PeriDeal
       std::map<const WorkFamily *, std::string> faults;
       for (const WorkPlan::Row &row : plan.rows)
         {
-          if (row.family == nullptr || faults.count(row.family) > 0)
+          if (row.role != Role::method || faults.count(row.family) > 0)
             continue;
           std::vector<std::string> all = overrides;
           all.push_back("Domain/Cells=" + to_text(row.cells));
@@ -158,43 +182,133 @@ namespace PeriDeal
     }
 
 
-    void add_to(Study &study, const WorkPlan &plan, const std::string &scene)
+    /** In which the program chooses the model and the mesh. */
+    bool is_chosen(const WorkPlan::Row &row)
+    {
+      return row.role == Role::pick;
+    }
+
+
+    /** A step in which a wave passes so many cells. */
+    std::string step_of(const WorkScene &scene, const WorkPlan::Row &row)
+    {
+      double spacing = std::numeric_limits<double>::infinity();
+      for (unsigned int d = 0; d < scene.box.dim(); ++d)
+        spacing = std::min(spacing, (scene.box.upper[d] - scene.box.lower[d]) / row.cells[d]);
+      return full_precision(row.family->courant * spacing / scene.wave_speed);
+    }
+
+
+    /** Of this row alone, stronger than what all have. */
+    std::vector<Setting> own_settings(const WorkScene     &scene,
+                                      const WorkPlan      &plan,
+                                      const WorkPlan::Row &row)
+    {
+      std::vector<Setting> settings = row.settings;
+      if (row.role != Role::reference)
+        settings.emplace_back("Output/Grid", to_text(row.cells));
+      if (!is_chosen(row))
+        {
+          settings.emplace_back("Domain/Cells", to_text(row.cells));
+          double n_nodes = 1.;
+          for (const unsigned int n : row.cells)
+            n_nodes *= n + 1.;
+          if (n_nodes <= most_direct)
+            settings.emplace_back("Solver/Direct solver up to", std::to_string(most_direct_of_few));
+        }
+      if (row.role == Role::reference)
+        {
+          std::string grid;
+          for (const CellCounts &cells : lattices_of(plan))
+            grid += (grid.empty() ? "" : " ; ") + to_text(cells);
+          settings.emplace_back("Output/Grid", grid);
+          settings.emplace_back("Time/Tolerance",
+                                "1e-7"); // the error in time out of sight
+        }
+      if (!plan.probes.empty())
+        settings.emplace_back("Output/Probes", plan.probes);
+      if (row.family != nullptr && row.family->courant > 0.)
+        settings.emplace_back("Time/Time step", step_of(scene, row));
+      return settings;
+    }
+
+
+    /** Each entry once: the new value in place of an older one. */
+    std::vector<Setting> merged(std::vector<Setting> settings, const Setting &one)
+    {
+      const auto same = std::find_if(settings.begin(), settings.end(), [&](const Setting &other) {
+        return other.first == one.first;
+      });
+      if (same == settings.end())
+        settings.push_back(one);
+      else
+        same->second = one.second;
+      return settings;
+    }
+
+
+    std::string sweep_of(const WorkPlan::Row &row)
+    {
+      switch (row.role)
+        {
+          case Role::reference:
+            return "reference";
+          case Role::pick:
+            return "auto";
+          case Role::method:
+            return row.family->name;
+          default:
+            return "in time";
+        }
+    }
+
+
+    void add_to(Study &study, const WorkScene &scene, const WorkPlan &plan, const std::string &file)
     {
       for (const WorkPlan::Row &planned : plan.rows)
         {
           StudyRow row;
           row.name     = planned.name;
-          row.scene    = scene;
-          row.sweep    = planned.family == nullptr ? "reference" : planned.family->name;
-          row.group    = planned.family == nullptr ? "reference" : planned.family->model;
-          row.settings = common_settings();
-          row.settings.emplace_back("Domain/Cells", to_text(planned.cells));
-          double n_nodes = 1.;
-          for (const unsigned int n : planned.cells)
-            n_nodes *= n + 1.;
-          if (n_nodes <= most_direct)
-            for (Setting &setting : row.settings)
-              if (setting.first == "Solver/Direct solver up to")
-                setting.second = std::to_string(most_direct_of_few);
-          auto own = planned.family == nullptr ? reference_settings(plan) :
-                                                 planned.family->settings;
-          if (planned.family != nullptr)
-            own.emplace_back("Output/Grid", to_text(planned.cells));
-          row.settings.insert(row.settings.end(), own.begin(), own.end());
+          row.scene    = file;
+          row.sweep    = sweep_of(planned);
+          row.group    = planned.role == Role::method ? planned.family->model : row.sweep;
+          row.settings = is_chosen(planned) ? settings_of_output() :
+                                              common_settings(scene.comparison);
+          for (const Setting &own : own_settings(scene, plan, planned))
+            row.settings = merged(std::move(row.settings), own);
           study.rows.push_back(row);
         }
       study.columns = {"Domain/Cells",
-                       "Cracks/Mesh",
                        "Peridynamics/Horizon ratio",
                        "Peridynamics/Boundary treatment",
-                       "Peridynamics/Surface correction",
-                       "Coupling/Zone"};
+                       "Peridynamics/Surface correction"};
+      if (!scene.box.cracks.empty())
+        study.columns.insert(study.columns.end(), {"Cracks/Mesh", "Coupling/Zone"});
+    }
+
+
+    /**
+     * What may turn out to be impossible only as it is computed, a choice of the program or a step
+     * that is not stable, is left out then.
+     */
+    void leave_out_failures(WorkPlan &plan, ComputedStudy &computed)
+    {
+      for (std::size_t k = 0; k < plan.rows.size(); ++k)
+        {
+          const WorkPlan::Row &row       = plan.rows[k];
+          const bool           uncertain = row.role == Role::pick || row.role == Role::in_time ||
+                                 (row.family != nullptr && row.family->courant > 0.);
+          if (!uncertain || computed.results[k].status != RowResult::Status::failed)
+            continue;
+          computed.selected[k] = false;
+          plan.left_out.push_back(row.name + ": " + computed.results[k].message);
+        }
     }
 
 
     /** On rank 0; a user's error becomes everybody's. Returns the report. */
     std::string write_results(const Study         &study,
-                              const CrackedBox    &box,
+                              const WorkScene     &scene,
                               const WorkPlan      &plan,
                               const ComputedStudy &computed,
                               const MPI_Comm       communicator)
@@ -203,9 +317,11 @@ namespace PeriDeal
       if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
         try
           {
-            const WorkResults results = evaluate_work(box, plan, computed);
+            const WorkResults results = evaluate_work(scene.box, plan, computed);
             write_file(study.output + "/work_precision.csv", work_csv(results));
             write_file(study.output + "/work_precision.json", work_json(study, plan, results));
+            if (!results.in_time.empty())
+              write_file(study.output + "/work_precision_in_time.csv", in_time_csv(results));
             report = work_report(plan, results);
           }
         catch (const UserError &error)
@@ -220,37 +336,56 @@ namespace PeriDeal
 
   void run_work_precision(const WorkPrecisionOptions &options, const MPI_Comm communicator)
   {
-    Study             study = sweep_of_scenes({options.scene}, {}, communicator);
-    const std::string scene = study.rows.front().scene;
-    study.varied            = decided_entries();
-    override_rows(study, options.overrides); // for its errors
+    Study                    study     = sweep_of_scenes({options.scene}, {}, communicator);
+    const std::string        scene     = study.rows.front().scene;
     std::vector<std::string> overrides = options.overrides;
-    for (const auto &[entry, value] : common_settings())
-      overrides.push_back(entry + "=" + value);
     overrides.push_back("Models=finite elements"); // those of the rows may be others
     overrides.push_back("Peridynamics/Surface correction=none");
-    SceneFacts facts;
+    for (const Setting &setting : settings_of_output())
+      overrides.push_back(setting.first + "=" + setting.second);
+    WorkScene facts;
     with_scene(read_scene(scene, overrides, communicator),
                [&](const auto &parsed) { facts = facts_of(parsed); });
-    WorkPlan plan = plan_work(facts.box,
-                              facts.deforms,
-                              facts.exact,
-                              facts.moving_cracks,
-                              options.cells,
-                              options.reference,
-                              options.budget);
+    study.varied = decided_entries(facts.comparison);
+    override_rows(study, options.overrides); // for its errors
+    for (const Setting &setting : common_settings(facts.comparison))
+      overrides.push_back(setting.first + "=" + setting.second);
+    if (options.picks)
+      {
+        std::vector<std::string> choosing = options.overrides;
+        choosing.insert(choosing.end(), {"Models=auto", "Peridynamics/Horizon="});
+        for (const Setting &setting : settings_of_output())
+          choosing.push_back(setting.first + "=" + setting.second);
+        facts.no_choice = no_choice_for(read_scene(scene, choosing, communicator));
+      }
+    WorkPlan plan = plan_work(facts,
+                              {options.cells,
+                               options.reference,
+                               options.budget,
+                               options.picks,
+                               parse_measure(options.measure)});
     leave_out_impossible(plan, scene, overrides, communicator);
     study.rows.clear();
     study.title  = facts.title + ": work and precision";
-    study.output = options.output.empty() ? study.output + "_work_precision" : options.output;
-    add_to(study, plan, scene);
+    study.output = options.output.empty() ?
+                     study.output + "_work_precision" +
+                       (plan.measure == WorkMeasure::opening          ? "_opening" :
+                        plan.measure == WorkMeasure::stress_intensity ? "_intensity" :
+                                                                        "") :
+                     options.output;
+    add_to(study, facts, plan, scene);
     override_rows(study, options.overrides);
+    for (std::size_t k = 0; k < plan.rows.size(); ++k)
+      if (plan.rows[k].role != Role::method) // a tolerance in time is that of the methods
+        for (const Setting &own : own_settings(facts, plan, plan.rows[k]))
+          study.rows[k].settings = merged(std::move(study.rows[k].settings), own);
     print_line(communicator,
                options.study.quiet,
                study.title + ": " + std::to_string(plan.rows.size()) + " rows, " +
                  std::to_string(plan.left_out.size()) + " left out");
-    const ComputedStudy computed = compute_study(study, options.study, communicator);
-    const std::string   report   = write_results(study, facts.box, plan, computed, communicator);
+    ComputedStudy computed = compute_study(study, options.study, communicator);
+    leave_out_failures(plan, computed);
+    const std::string report = write_results(study, facts, plan, computed, communicator);
     print_line(communicator, options.study.quiet, report);
     print_line(communicator, options.study.quiet, "Results: " + study.output);
     throw_if_wrong(study, computed);

@@ -55,6 +55,7 @@ namespace PeriDeal
                                                      "wall time",
                                                      "memory",
                                                      "peak memory",
+                                                     "tolerance",
                                                      "front",
                                                      "dominated by",
                                                      "front in wall time",
@@ -142,7 +143,10 @@ namespace PeriDeal
     {
       if (reference.exact)
         return {{"kind", "exact solution"}};
-      Json entry = {{"kind", "finite elements with the cracks on cell faces, extrapolated"}};
+      Json entry = {{"kind",
+                     reference.cracked ?
+                       "finite elements with the cracks on cell faces, extrapolated" :
+                       "finite elements of degree 2, extrapolated"}};
       for (const CellCounts &cells : plan.reference)
         entry["cells"].push_back(to_text(cells));
       entry["observed order"] = number(reference.observed_order);
@@ -168,8 +172,9 @@ namespace PeriDeal
       std::string lattices;
       for (const CellCounts &cells : plan.reference)
         lattices += (lattices.empty() ? "" : ", ") + lattice_name(cells);
-      return "Errors against finite elements with the cracks on cell faces, " + lattices +
-             " cells, extrapolated" +
+      return (reference.cracked ? "Errors against finite elements with the cracks on cell faces, " :
+                                  "Errors against finite elements of degree 2, ") +
+             lattices + " cells, extrapolated" +
              formatted(" with order %.3g (observed: %.2f); own error %.1e.",
                        reference.order,
                        reference.observed_order,
@@ -235,42 +240,151 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /** Lines as objects with these keys; what a line does not have stays empty. */
+    std::string csv_of(const std::vector<std::string> &header, const std::vector<Json> &lines)
+    {
+      std::string text;
+      for (std::size_t c = 0; c < header.size(); ++c)
+        text += (c > 0 ? "," : "") + header[c];
+      for (const Json &line : lines)
+        {
+          text += "\n";
+          for (std::size_t c = 0; c < header.size(); ++c)
+            {
+              const Json value = line.value(header[c], Json());
+              text += std::string(c > 0 ? "," : "") +
+                      (value.is_null()         ? "" :
+                       value.is_string()       ? "\"" + value.get<std::string>() + "\"" :
+                       value.is_number_float() ? full_precision(value.get<double>()) :
+                                                 value.dump());
+            }
+        }
+      return text + "\n";
+    }
+
+
+    Json pick_entry(const WorkPick &pick)
+    {
+      return {{"name", pick.name},
+              {"tolerance", pick.tolerance},
+              {"error", number(pick.error)},
+              {"estimate", pick.estimate},
+              {"met", pick.met},
+              {"wall time", pick.wall_time},
+              {"tries", pick.tries},
+              {"model", pick.model},
+              {"settings", pick.settings}};
+    }
+
+
+    Json entry_in_time(const TimeRow &row)
+    {
+      return {{"name", row.name},
+              {"stepper", row.stepper},
+              {"tolerance", row.tolerance > 0. ? Json(row.tolerance) : Json()},
+              {"steps", row.steps},
+              {"iterations", row.iterations},
+              {"operator applications", row.applications},
+              {"work", row.work},
+              {"error", number(row.error)},
+              {"wall time", row.wall_time}};
+    }
+
+
+    std::string report_picks(const WorkPlan &plan, const WorkResults &results)
+    {
+      if (!plan.no_picks.empty())
+        return "\nModels = auto: no choice. " + plan.no_picks + "\n";
+      if (results.picks.empty())
+        return "";
+      std::string text = "\nModels = auto\n  asked for     error  estimate  wall "
+                         "time  tries  choice\n";
+      for (const WorkPick &pick : results.picks)
+        text += formatted("  %9.0e %9.2e %9.2e %8.3g s %6zu  %s: %s\n",
+                          pick.tolerance,
+                          pick.error,
+                          pick.estimate,
+                          pick.wall_time,
+                          pick.tries,
+                          pick.model.c_str(),
+                          pick.settings.substr(0, 200).c_str());
+      return text;
+    }
+
+
+    std::string report_in_time(const WorkResults &results)
+    {
+      if (results.in_time.empty())
+        return "";
+      std::string text = "\nError in time alone, " + results.method_in_time +
+                         formatted(" (error in space: %.2e)\n", results.error_in_space) +
+                         "      work     error  wall time   steps  stepper\n";
+      for (const TimeRow &row : results.in_time)
+        text += formatted("  %8.3g %9.2e %7.3g s %8llu  %s\n",
+                          row.work,
+                          row.error,
+                          row.wall_time,
+                          row.steps,
+                          row.name.c_str());
+      return text;
+    }
+  } // namespace
+
+
   std::string work_csv(const WorkResults &results)
   {
-    std::string text;
-    for (std::size_t c = 0; c < columns().size(); ++c)
-      text += (c > 0 ? "," : "") + columns()[c];
+    std::vector<Json> lines;
     for (std::size_t k = 0; k < results.rows.size(); ++k)
-      {
-        const Json line = line_of(results, k);
-        text += "\n";
-        for (std::size_t c = 0; c < columns().size(); ++c)
-          {
-            const Json &value = line[columns()[c]];
-            text += std::string(c > 0 ? "," : "") +
-                    (value.is_string()       ? "\"" + value.get<std::string>() + "\"" :
-                     value.is_number_float() ? full_precision(value.get<double>()) :
-                                               value.dump());
-          }
-      }
-    return text + "\n";
+      lines.push_back(line_of(results, k));
+    for (const WorkPick &pick : results.picks)
+      lines.push_back({{"name", pick.name},
+                       {"family", "auto"},
+                       {"model", pick.model},
+                       {"error", pick.error},
+                       {"wall time", pick.wall_time},
+                       {"tolerance", pick.tolerance}});
+    return csv_of(columns(), lines);
+  }
+
+
+  std::string in_time_csv(const WorkResults &results)
+  {
+    std::vector<Json> lines;
+    for (const TimeRow &row : results.in_time)
+      lines.push_back(entry_in_time(row));
+    return csv_of({"name",
+                   "stepper",
+                   "tolerance",
+                   "steps",
+                   "iterations",
+                   "operator applications",
+                   "work",
+                   "error",
+                   "wall time"},
+                  lines);
   }
 
 
   std::string work_json(const Study &study, const WorkPlan &plan, const WorkResults &results)
   {
     Json json;
-    json["title"]     = study.title;
-    json["text"]      = study.text;
-    json["scene"]     = study.rows.front().scene;
-    json["program"]   = std::string("PeriDeal ") + PERIDEAL_VERSION;
-    json["steady"]    = results.steady;
-    json["work"]      = results.steady ? "nonzeros applied x iterations" :
-                                         "nonzeros applied x operator applications";
-    json["reference"] = describe_reference(plan, results.reference);
-    json["left out"]  = plan.left_out;
-    json["columns"]   = columns();
-    json["rows"]      = Json::array();
+    json["title"]                       = study.title;
+    json["text"]                        = study.text;
+    json["scene"]                       = study.rows.front().scene;
+    json["program"]                     = std::string("PeriDeal ") + PERIDEAL_VERSION;
+    static const char *const measures[] = {"field", "opening", "stress intensity"};
+    json["measure"]                     = measures[static_cast<int>(plan.measure)];
+    json["steady"]                      = results.steady;
+    json["work"]                        = results.steady ? "nonzeros applied x iterations" :
+                                                           "nonzeros applied x operator applications";
+    json["reference"]                   = describe_reference(plan, results.reference);
+    json["left out"]                    = plan.left_out;
+    for (const std::string &name : results.without)
+      json["left out"].push_back(name + ": no such number can be found on it.");
+    json["columns"] = columns();
+    json["rows"]    = Json::array();
     for (std::size_t k = 0; k < results.rows.size(); ++k)
       json["rows"].push_back(line_of(results, k));
     json["front"]              = names_of_rows(results, results.front(false));
@@ -279,6 +393,18 @@ namespace PeriDeal
     for (const WorkFamily &family : work_families())
       if (const auto some = results.of_family(family); !some.empty())
         json["families"].push_back(describe_family(results, family, some));
+    json["picks"] = Json::array();
+    for (const WorkPick &pick : results.picks)
+      json["picks"].push_back(pick_entry(pick));
+    json["no picks"] = plan.no_picks;
+    if (!results.in_time.empty())
+      {
+        json["in time"] = {{"method", results.method_in_time},
+                           {"error in space", number(results.error_in_space)},
+                           {"rows", Json::array()}};
+        for (const TimeRow &row : results.in_time)
+          json["in time"]["rows"].push_back(entry_in_time(row));
+      }
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
   }
 
@@ -295,6 +421,8 @@ namespace PeriDeal
               " settings, which are uncertain: --reference takes finer lattices.\n";
     for (const std::string &sentence : plan.left_out)
       text += "Left out: " + sentence + "\n";
+    for (const std::string &name : results.without)
+      text += "Left out: " + name + ": no such number can be found on it.\n";
     const std::string work = results.steady ? "nonzeros x iterations" :
                                               "nonzeros x operator applications";
     text += "\nPareto front (work: " + work + ")\n      work     error  wall time  setting\n";
@@ -314,6 +442,7 @@ namespace PeriDeal
                           results.rows[k].work / results.rows[by].work,
                           results.rows[k].name.c_str(),
                           results.rows[by].name.c_str());
+    text += report_picks(plan, results) + report_in_time(results);
     for (const double error : target_errors)
       text += report_target(results, error);
     return text;

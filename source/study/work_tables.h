@@ -7,8 +7,11 @@
 
 namespace PeriDeal
 {
-  /** work_precision.csv: a line for each finished row. */
+  /** work_precision.csv: a line for each finished row, and for what the program has chosen. */
   std::string work_csv(const WorkResults &results);
+
+  /** work_precision_in_time.csv: a line for each stepper and tolerance. */
+  std::string in_time_csv(const WorkResults &results);
 
   /**
    * work_precision.json: the rows, families with observed orders and costs at given errors, fronts,

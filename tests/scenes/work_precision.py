@@ -2,13 +2,14 @@
 # Copyright (C) 2026 the PeriDeal authors
 """perideal study work_precision: costs, errors, the front and what is dominated, on one process and on two; mistakes.
 
-    python3 work_precision.py [front | exact | mistakes | ranks] ...     (all without arguments)
+    python3 work_precision.py [front | exact | body | smooth | in_time | motion | measures | mistakes | ranks] ...     (all without arguments)
 """
 
 import csv
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -28,16 +29,6 @@ subsection Boundary conditions
 end
 subsection Cracks
   set Segments = -0.5,0 ; 0.5,0
-end
-subsection Time
-  set Steady = true
-end
-"""
-
-BAR = """
-set Dimension = 1
-subsection Boundary conditions
-  set Dirichlet = left: 0; right: 1
 end
 subsection Time
   set Steady = true
@@ -81,8 +72,8 @@ def front():
     rows = {row["name"]: row for row in data["rows"]}
     with open(os.path.join(directory, "work_precision.csv"), newline="") as file:
         lines = list(csv.DictReader(file))
-    check([line["name"] for line in lines] == list(rows), "the rows of both files")
-    for line in lines:
+    check([line["name"] for line in lines] == list(rows) + [pick["name"] for pick in data["picks"]], "the rows of both files")
+    for line in lines[:len(rows)]:
         row = rows[line["name"]]
         for key in ("work", "error", "wall time", "bonds", "nonzeros applied"):
             check(math.isclose(float(line[key]), row[key], rel_tol=1e-13), f"{line['name']}: {key} {line[key]} and {row[key]}")
@@ -137,7 +128,8 @@ def front():
     for text in (*left_out, "Pareto front", "Dominated", "At an error of 1 %", "At an error of 0.1 %", "own error", f"Results: {directory}"):
         check(text in stdout, f"the output does not say {text!r}")
     again, _, _ = study(plate, *SMALL)
-    check(again.count(": kept") == len(rows) + 3, "nothing is computed twice")
+    check(again.count(": kept") == len(rows) + 3 + len(data["picks"]), "nothing is computed twice")
+    check_picks(directory, data)
 
     # The charts.
     script = os.path.join(SOURCE_DIR, "applications", "report", "study.py")
@@ -147,7 +139,112 @@ def front():
         path = os.path.join(directory, name)
         check(os.path.exists(path) and os.path.getsize(path) > 20000, name)
     page = open(os.path.join(directory, "index.html"), encoding="utf-8").read()
-    check("The Pareto front" in page and "Dominated settings" in page, "the page has the tables")
+    check("The Pareto front" in page and "Dominated settings" in page and "What auto picks" in page, "the page has the tables")
+    check(all(f"auto {tolerance}" in stdout or f"auto, {tolerance}" in stdout for tolerance in ("3e-2", "1e-2", "1e-3")), "picks in the output")
+    check_interactive(page, data)
+    # Without the library the page has the figures alone.
+    bare = subprocess.run([os.environ.get("PERIDEAL_PYTHON", sys.executable), "-c", f"import sys; sys.path.insert(0, {os.path.dirname(script)!r})\n"
+                           f"import interactive, study\ninteractive.PLACES = ()\nsys.exit(study.main([{directory!r}]))"], capture_output=True, text=True)
+    page = open(os.path.join(directory, "index.html"), encoding="utf-8").read()
+    check(bare.returncode == 0 and "<canvas" not in page and "data:image/svg" in page, f"a page without the library: {bare.stderr}")
+
+
+def check_picks(directory, data, within=1.0):
+    """Three choices, each as wrong as was asked for at most, with the whole run's wall time. Relative to the L2 norm, not to the range, so `within` times that."""
+    check(data["no picks"] == "" and [pick["tolerance"] for pick in data["picks"]] == [3e-2, 1e-2, 1e-3], f"picks: {data['picks']}")
+    for pick in data["picks"]:
+        check(pick["met"] and pick["tries"] >= 2 and pick["estimate"] <= pick["tolerance"] and "Cells = " in pick["settings"], f"{pick}")
+        check_less(pick["error"], within * pick["tolerance"], f"{pick['name']}: error")
+        folder = os.path.join(directory, "rows", pick["name"].replace(", ", "_"))
+        with open(os.path.join(folder, "row.json")) as file:
+            check(json.load(file)["wall time"] == pick["wall time"], f"{pick['name']}: wall time")
+        with open(os.path.join(folder, "summary.json")) as file:
+            accuracy = json.load(file)["accuracy"]
+        check(accuracy["estimate"] == pick["estimate"] and len(accuracy["steps"]) == pick["tries"], f"{pick['name']}: summary")
+
+
+def check_interactive(page, data):
+    """The chart in the page has all settings and choices, and the library is in it, if it is installed."""
+    if not any(place and os.path.exists(place) for place in (os.environ.get("PERIDEAL_CHART_JS"), "/usr/share/javascript/chart.js/chart.min.js")):
+        check("<canvas" not in page, "no library, no chart")
+        return
+    text = re.search(r'<script type="application/json" id="all-settings-data">(.*?)</script>', page, re.S).group(1)
+    chart = json.loads(text)
+    told = {point["name"]: point for line in chart["lines"] for point in line["points"]}
+    for row in data["rows"]:
+        check(told[row["name"]]["error"] == row["error"] and told[row["name"]]["wall time"] == row["wall time"], f"{row['name']} in the chart")
+    check(len(told) == len(data["rows"]) + len(data["picks"]) and chart["lines"][-1]["stars"] == bool(data["picks"]), "points of the chart")
+    check("Chart.js v" in page and not re.search(r"""(src|href)=["']?(https?:)?//""", page), "the library is in the page, and nothing is fetched")
+
+
+def smooth():
+    """Without cracks: elements of degree 1 and 2, bonds with their treatments, a zone by a formula; against a solution, and against elements of degree 2."""
+    few = ["--cells", "8, 8 | 16, 16", "--budget", "8000"]
+    _, _, directory = study("prm/heat/smooth_source.prm", *few, output="smooth")
+    data = results(directory)
+    check(data["reference"] == {"kind": "exact solution"}, f"reference: {data['reference']}")
+    families = {family["name"]: family for family in data["families"]}
+    check(set(families) >= {"FEM, degree 1", "FEM, degree 2", "PD raw, m = 2", "PD energy-corrected, m = 3", "PD exchange, m = 4", "PD mirror, m = 3"}
+          and not any("coupled" in name for name in families), f"families: {list(families)}")
+    check_close(families["FEM, degree 1"]["observed order"], 2.0, absolute=0.1, what="order of degree 1")
+    check_close(families["FEM, degree 2"]["observed order"], 4.0, absolute=0.3, what="order of degree 2 at vertices")
+    check_picks(directory, data, within=2.0)  # the range is 1, the norm 1/2
+    # The same without its solution: the errors are the same.
+    text = open(os.path.join(SOURCE_DIR, "prm/heat/smooth_source.prm")).read()
+    unknown = write("unknown.prm", text.replace("set Solution = sin(pi*x)*sin(pi*y)", ""))
+    _, _, directory = study(unknown, *few, "--no-auto", output="unknown")
+    other = results(directory)
+    check(other["picks"] == [] and "degree 2" in other["reference"]["kind"], f"reference: {other['reference']}")
+    errors = {row["name"]: row["error"] for row in data["rows"]}
+    for row in other["rows"]:
+        check_close(row["error"], errors[row["name"]], absolute=3 * other["reference"]["own error"] + 1e-9, what=f"{row['name']}: error")
+    zone = write("zone.prm", text + "subsection Coupling\n  set Zone = 0.3 - sqrt((x-0.5)^2+(y-0.5)^2)\nend\n")
+    _, _, directory = study(zone, *few, "--no-auto", "--only", "coupled", output="zone")
+    check([row["family"] for row in results(directory)["rows"]][::2] == ["coupled, m = 2, zone of the scene", "coupled, m = 3, zone of the scene"], "a zone by a formula")
+    # A body that deforms.
+    _, _, directory = study("prm/elasticity/bar_2d.prm", *few, "--no-auto", "--only", "FEM, degree 1", "FEM, degree 2", "PD completed, m = 3", "reference", output="solid")
+    check(len(results(directory)["rows"]) >= 5, "a bar")
+
+
+def in_time():
+    """Of what changes in time: the error in time alone, by stepper."""
+    _, _, directory = study("prm/heat/harmonic_2d.prm", "--cells", "8, 8 | 16, 16", "--no-auto", "--only", "FEM, degree 1", "in time", "-s", "Reference/Solution=classical harmonic(1,2)",
+                            "-s", "Time/Tolerance=1e-6", output="in_time")
+    data = results(directory)["in time"]
+    check(data["method"] == "FEM, degree 1, 8 x 8" and data["error in space"] > 1e-3, f"{data['method']}: {data['error in space']}")
+    steppers = {}
+    for row in data["rows"]:
+        steppers.setdefault(row["stepper"], []).append(row)
+    check(list(steppers) == ["euler", "rk4", "rkc2", "chebyshev", "crank nicolson", "bdf2", "sdirk2"], f"steppers: {list(steppers)}")
+    for stepper in ("rkc2", "crank nicolson", "bdf2", "sdirk2"):
+        rows = steppers[stepper]
+        check([row["tolerance"] for row in rows] == [1e-2, 1e-3, 1e-4, 1e-5], f"{stepper}: tolerances")
+        check_less(rows[-1]["error"], 0.1 * rows[0]["error"], f"{stepper}: a tolerance a thousand times smaller")
+        check_less(rows[0]["work"], rows[-1]["work"], f"{stepper}: work")
+    check_less(steppers["rk4"][0]["error"], 0.1 * steppers["euler"][0]["error"], "the fourth order and the first")
+    with open(os.path.join(directory, "work_precision_in_time.csv"), newline="") as file:
+        lines = list(csv.DictReader(file))
+    check(len(lines) == len(data["rows"]) and all(math.isclose(float(line["error"]), row["error"], rel_tol=1e-13) for line, row in zip(lines, data["rows"])),
+          "the table of steppers")
+    script = os.path.join(SOURCE_DIR, "applications", "report", "study.py")
+    subprocess.run([os.environ.get("PERIDEAL_PYTHON", sys.executable), script, directory], check=True, stdout=subprocess.DEVNULL)
+    check(os.path.getsize(os.path.join(directory, "error_in_time_over_work.png")) > 20000, "the chart of steppers")
+
+
+def motion():
+    """A wave: smaller steps do not make up for large cells."""
+    _, _, directory = study("prm/elasticity/wave_in_bar.prm", "--cells", "100 | 200 | 400", output="motion")
+    data = results(directory)
+    check(data["no picks"] != "" or len(data["picks"]) == 3, "picks, or why there are none")
+    rows = {row["name"]: row for row in data["rows"]}
+    check(len(rows) + len(data["left out"]) == 36, f"rows: {list(rows)}; left out: {data['left out']}")
+    for step in ("0.8", "0.4", "0.2"):
+        errors = [rows[f"FEM, steps of {step} cells, {cells}"]["error"] for cells in (100, 200, 400)]
+        check(errors == sorted(errors, reverse=True), f"FEM, {step}: {errors}")
+    check_less(rows["FEM, steps of 0.8 cells, 400"]["error"], rows["FEM, steps of 0.2 cells, 400"]["error"], "steps near the limit take some of the dispersion back")
+    _, stderr, _ = study(write("wave.prm", open(os.path.join(SOURCE_DIR, "prm/elasticity/wave_in_bar.prm")).read().replace("set Solution = 1e-6", "# set Solution = 1e-6")),
+                         output="no_motion", expect=1)
+    check("'Solution'" in stderr and "motion" in stderr, f"a motion without a solution: {stderr}")
 
 
 def exact():
@@ -189,13 +286,37 @@ def body():
         check(1e-3 < row["error"] < 0.1, f"{row['name']}: {row['error']}")
 
 
+def measures():
+    """Openings and stress intensities of a crack in a body that deforms."""
+    few = ["--cells", "21, 21 | 41, 41", "--budget", "8000", "--only", "reference", "FEM, crack on faces", "FEM, cells removed", "coupled, m = 3, c = 1, scaled"]
+    crack = "prm/elasticity/coupled_crack.prm"
+    _, _, directory = study(crack, "--measure", "stress intensity", *few, "auto", output="intensity")
+    data = results(directory)
+    rows = {row["name"]: row for row in data["rows"]}
+    check(data["measure"] == "stress intensity" and "cells" in data["reference"], f"{data['measure']}, {data['reference']}")
+    check_less(data["reference"]["own error"], 1e-3, "the reference's stress intensities")
+    # Measured: 0.0022, 0.0094, 0.0166; K_I is sqrt(pi/2), K_II is 0.
+    check_less(rows["coupled, m = 3, c = 1, scaled, 41 x 41"]["error"], 0.004, "coupled")
+    check_less(rows["coupled, m = 3, c = 1, scaled, 41 x 41"]["error"], rows["FEM, crack on faces, 40 x 40"]["error"], "coupled and the crack on faces")
+    with open(os.path.join(directory, "rows", "FEM_cells_removed_41_x_41", "summary.json")) as file:
+        ends = json.load(file)["models"]["finite elements"]["stress intensity"]
+    exact, found = math.sqrt(math.pi / 2), [end[mode] for end in ends.values() for mode in ("I", "II")]
+    error = math.dist(found, [exact, 0.0] * len(ends)) / (exact * math.sqrt(len(ends)))
+    check_close(rows["FEM, cells removed, 41 x 41"]["error"], error, absolute=2e-3, what="cells removed: error")
+    check(data["picks"][2]["error"] < 1e-3 and data["picks"][2]["met"], f"{data['picks']}")
+    check(any("no stress intensities" in sentence for sentence in data["left out"]), f"{data['left out']}")
+    _, _, directory = study(crack, "--measure", "opening", "--no-auto", *few[:-4], *few[-3:], output="opening")
+    rows = {row["name"]: row["error"] for row in results(directory)["rows"]}
+    # Measured: 0.0034, 0.0346.
+    check(rows["coupled, m = 3, c = 1, scaled, 41 x 41"] < 0.005 and 0.025 < rows["FEM, cells removed, 41 x 41"] < 0.045, f"{rows}")
+
+
 def mistakes():
     """One message, and nothing is computed."""
     plate = write("plate.prm", PLATE)
     oblique = PLATE.replace("-0.5,0 ; 0.5,0", "-0.5,-0.2 ; 0.5,0.3")
     for what, scene, options, words in (
-            ("no crack", PLATE.replace("set Segments = -0.5,0 ; 0.5,0", ""), [], ["no crack", "'Segments'"]),
-            ("one dimension", BAR, [], ["'Dimension' is 1"]),
+            ("no box", PLATE.replace("subsection Domain", "subsection Domain\n  set Shape = plate with hole"), [], ["'Shape'", "box"]),
             ("nothing to compare with", oblique, [], ["'Solution'", "along the axes"]),
             ("a crack on no lattice", PLATE.replace("-0.5,0 ; 0.5,0", "-0.5,0 ; 0.4142135623,0"), [], ["'Solution'", "ends of all cracks"]),
             ("a share of bonds", PLATE.replace("0.5,0\n", "0.5,0\n  set Transmission = 0.5\n"), [], ["'Transmission'", "'Contact conductance'"]),
@@ -205,6 +326,8 @@ def mistakes():
             ("coarser lattices", None, ["--cells", "17, 17 | 9, 9"], ["--cells", "not finer"]),
             ("one number", None, ["--cells", "9 | 17"], ["--cells", "has 1 number"]),
             ("reference off the crack", None, ["--reference", "9, 9 | 18, 18 | 36, 36"], ["--reference", "three lattices"]),
+            ("an unknown measure", None, ["--measure", "openings"], ["--measure", "'openings'", "Did you mean 'opening'?"]),
+            ("no opening of what diffuses", None, ["--measure", "opening"], ["--measure", "bodies that deform"]),
             ("no budget", None, ["--budget", "0"], ["--budget"]),
             ("entry of the study", None, ["-s", "Domain/Cells=9, 9"], ["'Domain/Cells=9, 9'", "varies"]),
             ("--vary", None, ["--vary", "Domain/Cells=9, 9"], ["--vary", "--cells"]),
@@ -238,7 +361,7 @@ def ranks():
 
 
 def main():
-    parts = {part.__name__: part for part in (front, exact, body, mistakes, ranks)}
+    parts = {part.__name__: part for part in (front, exact, body, smooth, in_time, motion, measures, mistakes, ranks)}
     for name in sys.argv[1:] or parts:
         parts[name]()
     finish(FOLDER)
