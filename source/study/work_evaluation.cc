@@ -248,7 +248,7 @@ namespace PeriDeal
   {
     std::vector<CellCounts> lattices;
     for (const WorkPlan::Row &row : plan.rows)
-      if ((row.role == Role::method || row.role == Role::pick) &&
+      if ((row.role == Role::method || row.role == Role::pick_values) &&
           std::find(lattices.begin(), lattices.end(), row.cells) == lattices.end())
         lattices.push_back(row.cells);
     std::sort(lattices.begin(), lattices.end());
@@ -435,9 +435,10 @@ namespace PeriDeal
         const WorkPlan::Row &planned = plan.rows[k];
         if (!is_finished(computed, k))
           continue;
-        if (planned.role == Role::pick)
-          results.picks.push_back(pick_of(planned,
-                                          computed.results[k],
+        if (planned.role == Role::pick_values &&
+            is_finished(computed, k - 1)) // before it: its cost
+          results.picks.push_back(pick_of(plan.rows[k - 1],
+                                          computed.results[k - 1],
                                           measured_error(plan, computed, k, "auto", limit)));
         if (planned.role != Role::method)
           continue;

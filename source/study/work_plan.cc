@@ -172,16 +172,18 @@ namespace PeriDeal
       const std::string measure  = at_ends ? "stress intensity" : "field";
       const CellCounts  compared = beside_cracks(scene.box, plan.ladder.back());
       for (const char *const tolerance : {"3e-2", "1e-2", "1e-3"})
-        plan.rows.push_back({std::string("auto, ") + tolerance,
-                             WorkPlan::Role::pick,
-                             nullptr,
-                             compared,
-                             {{"Models", "auto"},
-                              {"Peridynamics/Horizon", ""}, // the classical solution, as all
-                              {"Accuracy/Measure", measure},
-                              {"Accuracy/Tolerance", tolerance}},
-                             "",
-                             std::stod(tolerance)});
+        for (const WorkPlan::Role role : {WorkPlan::Role::pick, WorkPlan::Role::pick_values})
+          plan.rows.push_back({std::string("auto, ") + tolerance +
+                                 (role == WorkPlan::Role::pick_values ? ", values" : ""),
+                               role,
+                               nullptr,
+                               compared,
+                               {{"Models", "auto"},
+                                {"Peridynamics/Horizon", ""}, // the classical solution, as all
+                                {"Accuracy/Measure", measure},
+                                {"Accuracy/Tolerance", tolerance}},
+                               "",
+                               std::stod(tolerance)});
     }
 
 

@@ -41,7 +41,8 @@ namespace PeriDeal
     {
       reference,
       method,
-      pick,          // by `Models = auto`
+      pick,          // by `Models = auto`: what it costs
+      pick_values,   // the same, with the values that are compared: to read them takes long
       exact_in_time, // the same in space, with hardly an error in time
       in_time        // of it only the error in time counts
     };

@@ -185,7 +185,7 @@ namespace PeriDeal
     /** In which the program chooses the model and the mesh. */
     bool is_chosen(const WorkPlan::Row &row)
     {
-      return row.role == Role::pick;
+      return row.role == Role::pick || row.role == Role::pick_values;
     }
 
 
@@ -206,7 +206,7 @@ namespace PeriDeal
     {
       std::vector<Setting> settings = row.settings;
       if (row.role != Role::reference)
-        settings.emplace_back("Output/Grid", to_text(row.cells));
+        settings.emplace_back("Output/Grid", row.role == Role::pick ? "" : to_text(row.cells));
       if (!is_chosen(row))
         {
           settings.emplace_back("Domain/Cells", to_text(row.cells));
@@ -225,7 +225,7 @@ namespace PeriDeal
           settings.emplace_back("Time/Tolerance",
                                 "1e-7"); // the error in time out of sight
         }
-      if (!plan.probes.empty())
+      if (!plan.probes.empty() && row.role != Role::pick)
         settings.emplace_back("Output/Probes", plan.probes);
       if (row.family != nullptr && row.family->courant > 0.)
         settings.emplace_back("Time/Time step", step_of(scene, row));
@@ -254,6 +254,7 @@ namespace PeriDeal
           case Role::reference:
             return "reference";
           case Role::pick:
+          case Role::pick_values:
             return "auto";
           case Role::method:
             return row.family->name;
@@ -296,12 +297,13 @@ namespace PeriDeal
       for (std::size_t k = 0; k < plan.rows.size(); ++k)
         {
           const WorkPlan::Row &row       = plan.rows[k];
-          const bool           uncertain = row.role == Role::pick || row.role == Role::in_time ||
+          const bool           uncertain = is_chosen(row) || row.role == Role::in_time ||
                                  (row.family != nullptr && row.family->courant > 0.);
           if (!uncertain || computed.results[k].status != RowResult::Status::failed)
             continue;
           computed.selected[k] = false;
-          plan.left_out.push_back(row.name + ": " + computed.results[k].message);
+          if (row.role != Role::pick_values)
+            plan.left_out.push_back(row.name + ": " + computed.results[k].message);
         }
     }
 
