@@ -13,8 +13,8 @@
 namespace PeriDeal
 {
   /**
-   * Looks for the node in the cells, so that it is for what is said once. The problem has to outlive
-   * this.
+   * Looks for the node in the cells, so that it is for what is said once. The problem has to
+   * outlive this.
    */
   template <int dim>
   PlaceOfNode place_of_nodes(const Problem<dim> &problem);

@@ -116,7 +116,7 @@ namespace PeriDeal
       return 1;
     }
 
-    /** What is wrong with the state at t, found by a look at it: at no more than one application. */
+    /** What is wrong with the state at t, found by a look at it: one application at most. */
     virtual Trip watch(const double t);
 
     /**

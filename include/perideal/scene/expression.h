@@ -97,7 +97,9 @@ namespace PeriDeal
     DeferredFormulaErrors(const DeferredFormulaErrors &)            = delete;
     DeferredFormulaErrors &operator=(const DeferredFormulaErrors &) = delete;
 
-    /** Throws Diverged on every process if a formula failed on any: monitor `formulas`. Collective. */
+    /**
+     * Throws Diverged on every process if a formula failed on any: monitor `formulas`. Collective.
+     */
     void throw_if_any(const MPI_Comm communicator) const;
 
     /** The first of these messages; empty if there is none. The same everywhere. Collective. */

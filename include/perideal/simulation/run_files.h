@@ -54,8 +54,8 @@ namespace PeriDeal
     void complete(const Json &summary);
 
     /**
-     * The run ends with an error: if it has results, which is returned, summary.json says how, and @p
-     * more. Not collective, since a process may have failed alone.
+     * The run ends with an error: if it has results, which is returned, summary.json says how, and
+     * @p more. Not collective, since a process may have failed alone.
      */
     bool end_early(const std::string &message, const bool diverged, const Json &more);
 
