@@ -9,6 +9,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <perideal/analysis/point_evaluator.h>
+#include <perideal/base/gathered_lists.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/cell_search.h>
 #include <perideal/scene/crack_geometry.h>
@@ -136,17 +137,15 @@ namespace PeriDeal
           points[k][d] = coordinates[k][d];
         points[k] = off_cracks(points[k], geometries, shift);
       }
-    inner = points;
-    const bool across_cells =
-      beside == BesideCracks::own_side && !at_centers && !cracks.on_faces() && !geometries.empty();
+    inner                   = points;
+    const bool across_cells = beside == BesideCracks::own_side && !at_centers &&
+                              !cracks.on_faces() && !geometries.empty();
     if (on_lattice && !across_cells)
       locate_on_lattice(*nodes, points);
     else if (at_centers && nodes != nullptr)
       locate_nearest(dofs, *nodes, points);
     else
-      locate_in_mesh(dofs,
-                     points,
-                     across_cells ? geometries : std::vector<CrackGeometry<dim>>());
+      locate_in_mesh(dofs, points, across_cells ? geometries : std::vector<CrackGeometry<dim>>());
     find_gaps(coordinates, entry, outside);
   }
 
@@ -304,7 +303,7 @@ namespace PeriDeal
     // Each part goes to the owner of its dof: what ghosts a vector has, and in which order, depends
     // on the model.
     const IndexSet &owned = dofs.locally_owned_dofs();
-    for (const std::vector<double> &list : Utilities::MPI::all_gather(communicator, own))
+    for (const std::vector<double> &list : gathered_lists(communicator, own))
       for (std::size_t i = 0; i < list.size(); i += 3 + dim)
         {
           const auto dof = static_cast<types::global_dof_index>(list[i + 1]);

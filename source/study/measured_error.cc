@@ -6,6 +6,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/analysis/point_evaluator.h>
+#include <perideal/base/gathered_lists.h>
 #include <perideal/base/user_error.h>
 #include <perideal/problems/problem_factory.h>
 #include <perideal/scene/lists.h>
@@ -85,8 +86,7 @@ namespace PeriDeal
           }
       Sample                           sample;
       std::vector<std::vector<double>> all;
-      for (const std::vector<double> &list :
-           Utilities::MPI::all_gather(mesh.get_communicator(), own))
+      for (const std::vector<double> &list : gathered_lists(mesh.get_communicator(), own))
         for (std::size_t k = 0; k < list.size(); k += dim + 1)
           all.emplace_back(list.begin() + k, list.begin() + k + dim + 1);
       std::sort(all.begin(), all.end());
