@@ -22,7 +22,7 @@ namespace PeriDeal
     std::string too_long(const double step, const double limit, const std::string &method)
     {
       return "'Time step' in section 'Time' is " + number_text(step) + ", " +
-             rounded_text(step / limit) + " times " + number_text(limit) + ", up to which '" +
+             rounded_text(step / limit, 4) + " times " + number_text(limit) + ", up to which '" +
              method + "' is stable";
     }
   } // namespace

@@ -9,6 +9,7 @@ once and the program must not hang.
     mistakes.py [part of the names of those wanted]
 """
 
+import json
 import os
 import re
 import sys
@@ -440,7 +441,11 @@ def judge(name, status, stdout, stderr, words, results, ranks):
     for word in words:
         check(word in message, f"{at}: the message does not say {word!r}:\n  {message[-1500:]}")
     check(len(message) < 700, f"{at}: a message of {len(message)} characters")
-    check(results is None or not os.path.exists(os.path.join(results, "summary.json")), f"{at}: a summary was left behind")
+    summary = os.path.join(results, "summary.json") if results else ""
+    if os.path.exists(summary):
+        with open(summary) as file:
+            status = json.load(file)["status"]
+        check(status == "diverged", f"{at}: a summary was left behind, of a run that is {status}")
     return (name, ranks, message.replace("perideal: error: ", "")[:150])
 
 
