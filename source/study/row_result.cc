@@ -135,7 +135,7 @@ namespace PeriDeal
     }
 
 
-    std::string to_text(const Json &json)
+    std::string text_of(const Json &json)
     {
       return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     }
@@ -163,7 +163,7 @@ namespace PeriDeal
     void write_record(const CheckedRow &checked, const RowResult &result)
     {
       fs::create_directories(checked.folder);
-      write_file(checked.folder + "/row.json", to_text(result.record));
+      write_file(checked.folder + "/row.json", text_of(result.record));
     }
 
 

@@ -194,8 +194,11 @@ namespace PeriDeal
                               certificate    = examine_coupling(op, op.symmetric());
                             });
           }
-        catch (const UserError &) // cells inside out
+        catch (const UserError &error)
           {
+            if (square.distortion == 0.) // only cells that are inside out are part of the map
+              throw;
+            point.parameters.emplace_back("fault", mistake_in_overrides(error));
             point.predicted = -std::numeric_limits<double>::infinity();
             point.observed  = std::numeric_limits<double>::quiet_NaN();
             point.verdict   = "refused";
