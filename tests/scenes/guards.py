@@ -188,7 +188,7 @@ def has_flown_off(run):
     """The step at which it was as far as the bound, by the speed with which it flies: about 2, that of its start."""
     guard = run.summary["guard"]
     check_less(guard["bound"], guard["value"], "how far it has flown")
-    check(1.0 < guard["place"][0] < 2.0, f"what flies is right of the middle: {guard['place']}")
+    check(1.0 < guard["place"][0] <= 2.0, f"what flies is right of the middle: {guard['place']}")
     return guard["step"] - math.ceil((guard["value"] - guard["bound"]) / (1.5 * step_of(run)))
 
 
