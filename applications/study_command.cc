@@ -4,10 +4,12 @@
 #include "study_command.h"
 
 #include <perideal/base/user_error.h>
+#include <perideal/scene/lists.h>
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace PeriDeal
 {
@@ -120,6 +122,10 @@ namespace PeriDeal
       return compute_work_precision(request);
     if (request.files.front() == stability)
       return compute_stability(request);
+    const std::string &first = request.files.front();
+    const std::string  hint  = did_you_mean(first, {work_precision, stability});
+    AssertThrow(hint.empty() || std::filesystem::exists(first),
+                UserError("perideal study: there is no scene '" + first + "'." + hint));
     refuse_options_of_work_precision(request);
     refuse_options_of_stability(request);
     const MPI_Comm communicator = MPI_COMM_WORLD;

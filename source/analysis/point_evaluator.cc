@@ -2,9 +2,8 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature.h>
 #include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/fe.h>
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/grid/grid_tools.h>
 
@@ -90,22 +89,26 @@ namespace PeriDeal
     }
 
 
-    /** By the shape functions of the cell. */
+    /**
+     * By the shape functions of the cell, mapped multilinearly: as FEValues does it, which is made
+     * for many points of many cells and takes longer to set up than one point does.
+     */
     template <int dim>
     std::vector<Share<dim>> interpolant(const Place<dim> &place)
     {
       const FiniteElement<dim>            &fe = place.first->get_fe();
       std::vector<types::global_dof_index> indices(fe.n_dofs_per_cell());
       place.first->get_dof_indices(indices);
-      const MappingQ1<dim> mapping;
-      FEValues<dim>        values(mapping,
-                           fe,
-                           Quadrature<dim>(place.second),
-                           update_values | update_gradients);
-      values.reinit(place.first);
+      Tensor<2, dim> jacobian;
+      for (const unsigned int v : place.first->vertex_indices())
+        jacobian +=
+          outer_product(Tensor<1, dim>(place.first->vertex(v)),
+                        GeometryInfo<dim>::d_linear_shape_function_gradient(place.second, v));
+      const Tensor<2, dim>    inverse = invert(jacobian);
       std::vector<Share<dim>> shares;
       for (unsigned int v = 0; v < indices.size(); ++v)
-        shares.push_back({indices[v], values.shape_value(v, 0), values.shape_grad(v, 0)});
+        shares.push_back(
+          {indices[v], fe.shape_value(v, place.second), fe.shape_grad(v, place.second) * inverse});
       return shares;
     }
   } // namespace

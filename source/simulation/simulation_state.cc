@@ -222,10 +222,22 @@ namespace PeriDeal
 
 
   template <int dim>
+  Problem<dim> &Simulation<dim>::problem_under_way() const
+  {
+    unsigned int k = place.problem; // companions come first
+    for (const auto &model : models)
+      for (const auto &companion : model->companions)
+        if (k-- == 0)
+          return *companion;
+    return *problems[k];
+  }
+
+
+  template <int dim>
   void Simulation<dim>::after_step(const double t)
   {
     if (guards->are_on())
-      guards->after_step(*all_problems()[place.problem], t);
+      guards->after_step(problem_under_way(), t);
     offer_checkpoint(t);
   }
 
@@ -361,6 +373,7 @@ namespace PeriDeal
   template std::vector<Problem<dim> *> Simulation<dim>::companions() const;                         \
   template std::vector<Problem<dim> *> Simulation<dim>::all_problems() const;                       \
   template double              Simulation<dim>::share_done(const unsigned int, const double) const; \
+  template Problem<dim>       &Simulation<dim>::problem_under_way() const;                          \
   template void                Simulation<dim>::after_step(const double);                           \
   template void                Simulation<dim>::dry_run();                                          \
   template void                Simulation<dim>::prepare_adaptation();                               \

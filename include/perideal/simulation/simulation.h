@@ -110,6 +110,7 @@ namespace PeriDeal
     std::vector<const Problem<dim> *> reported() const;
     List                              companions() const; // advance before the problems
     List                              all_problems() const;
+    Problem<dim>                     &problem_under_way() const;
     std::vector<double>               output_times() const;
 
     void build();
