@@ -122,10 +122,10 @@ namespace PeriDeal
   template <int dim>
   double Attempts<dim>::fineness_of(const CellCounts &cells) const
   {
-    double product = 1.;
+    double coarsest = std::numeric_limits<double>::max(); // errors are made there
     for (unsigned int d = 0; d < dim; ++d)
-      product *= cells[d] / (box.upper[d] - box.lower[d]) * longest;
-    return std::pow(product, 1. / dim);
+      coarsest = std::min(coarsest, cells[d] / (box.upper[d] - box.lower[d]) * longest);
+    return coarsest;
   }
 
 
@@ -252,7 +252,7 @@ namespace PeriDeal
   template <int dim>
   double Attempts<dim>::first_ratio() const
   {
-    return family == Family::bonds ? 1.5 : 2.;
+    return family == Family::bonds || family == Family::whole ? 1.5 : 2.;
   }
 
 

@@ -137,8 +137,10 @@ namespace PeriDeal
 
       bool is_met() const
       {
-        return ((chosen == &classical && is_nonlocal) || chosen->is_settled()) &&
-               estimate() <= scene.accuracy.tolerance;
+        const double tolerance = scene.accuracy.tolerance;
+        return ((chosen == &classical && is_nonlocal) ||
+                chosen->is_within(tolerance - time_error)) &&
+               estimate() <= tolerance;
       }
 
       /** One family, until its error is within a tolerance, or what is found will do. */
@@ -149,7 +151,7 @@ namespace PeriDeal
         for (;;)
           {
             next = family.next(tolerance);
-            if (family.is_settled() && family.error().error <= tolerance)
+            if (family.is_within(tolerance))
               return;
             if (&family == &nonlocal && elements_will_do())
               return;

@@ -10,7 +10,8 @@ namespace PeriDeal
 {
   namespace
   {
-    constexpr double usual_order = 2.; // where none has been seen
+    constexpr double usual_order   = 2.5;  // where none has been seen
+    constexpr double careful_order = 1.25; // where that is to be believed
 
     /** f0^-p - f1^-p over f1^-p - f2^-p, which grows with p. */
     double ratio(const double f0, const double f1, const double f2, const double p)
@@ -68,6 +69,13 @@ namespace PeriDeal
                                std::pow(steps[n - 2].fineness / steps[n - 1].fineness, now.order));
       }
     return now;
+  }
+
+
+  double largest_error(const std::vector<ComparedSolution> &steps)
+  {
+    const std::size_t n = steps.size();
+    return error_of(steps[n - 2], steps[n - 1], careful_order);
   }
 
 

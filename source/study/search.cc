@@ -66,11 +66,16 @@ namespace PeriDeal
     constexpr double aim      = 0.7; // of the tolerance: an estimate is no bound
     const double     farthest = dim == 3 ? 2. : 3.;
     const double     last     = latest.attempt.fineness;
-    const double     wanted   = n_compared() < 3 || now.error <= tolerance ?
-                                  family.first_ratio() * last :
-                                  fineness_for(now, last, aim * tolerance, farthest);
-    const double     least    = 1.1 * last;
-    Attempt          attempt  = with_settings(wanted);
+    double           wanted   = family.first_ratio() * last;
+    if (n_compared() == 2)
+      wanted = fineness_for({largest_error(steps), now.order},
+                            last,
+                            aim * tolerance,
+                            family.first_ratio());
+    else if (n_compared() > 2 && now.error > tolerance)
+      wanted = fineness_for(now, last, aim * tolerance, farthest);
+    const double least   = 1.1 * last;
+    Attempt      attempt = with_settings(wanted);
     for (double more = least; attempt.fineness < least; more *= 1.1)
       attempt = with_settings(more);
     return attempt;
@@ -139,9 +144,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool Search<dim>::is_settled() const
+  bool Search<dim>::is_within(const double tolerance) const
   {
-    return steps.size() > 3 || (steps.size() == 3 && now.order > 0.5 * family.best_order());
+    if (now.error < 0. || now.error > tolerance)
+      return false;
+    if (steps.size() == 2)
+      return scene.accuracy.measure == AccuracyMeasure::field && largest_error(steps) <= tolerance;
+    return steps.size() > 3 || now.order > 0.5 * family.best_order();
   }
 
 

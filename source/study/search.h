@@ -70,10 +70,12 @@ namespace PeriDeal
     const ObservedError &error() const;
 
     /**
-     * An order is seen in three solutions at least; a low one is not trusted as long as all are
-     * coarse, since it says more of the first than of the last.
+     * Whether the error may be called smaller than a tolerance. An order is seen in three solutions
+     * at least; a low one is not trusted as long as all are coarse, since it says more of the first
+     * than of the last. Two are enough for a field where even the lowest order leaves their
+     * difference within the tolerance: at so many points it is not small by accident.
      */
-    bool is_settled() const;
+    bool is_within(const double tolerance) const;
 
     unsigned int n_tried() const;
     unsigned int n_compared() const; // with something known of the one before
