@@ -12,7 +12,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <map>
+#include <optional>
 
 namespace PeriDeal
 {
@@ -35,6 +38,19 @@ namespace PeriDeal
   namespace
   {
     DeferredFormulaErrors *collector = nullptr;
+
+
+    /** A number and nothing else. Compiling a formula takes a hundred times as long. */
+    std::optional<double> plain_number(const std::string &text)
+    {
+      if (text.find_first_not_of("0123456789.eE+-") != std::string::npos)
+        return {};
+      char        *end   = nullptr;
+      const double value = std::strtod(text.c_str(), &end);
+      if (end == text.c_str() || *end != '\0')
+        return {};
+      return value;
+    }
 
 
     // What users of deal.II's FunctionParser find beyond muparser's own functions, with the same
@@ -236,15 +252,33 @@ namespace PeriDeal
   Expression::Expression(const std::string &text,
                          const std::string &where,
                          const bool         with_temperature)
-    : compiled(std::make_shared<Compiled>())
-    , formula(trimmed(text))
+    : formula(trimmed(text))
     , where(where)
     , constant(0.)
   {
     if (formula.empty())
       entry_error(where, "is empty, needs a number or a formula of x, y, z and t.");
-    refuse_assignment(formula, where);
+    if (const std::optional<double> number = plain_number(formula);
+        number && std::isfinite(*number))
+      {
+        constant = *number;
+        return;
+      }
+    // The variants of a scene have most of their formulas in common.
+    static std::map<std::pair<std::string, bool>, std::weak_ptr<Compiled>> known;
+    std::weak_ptr<Compiled> &one = known[{formula, with_temperature}];
+    compiled                     = one.lock();
+    if (compiled != nullptr)
+      return;
+    compiled = std::make_shared<Compiled>();
+    compile(with_temperature);
+    one = compiled;
+  }
 
+
+  void Expression::compile(const bool with_temperature)
+  {
+    refuse_assignment(formula, where);
     mu::Parser &parser = compiled->parser;
     define_names(parser);
     parser.DefineVar("x", &compiled->x);

@@ -303,7 +303,7 @@ namespace PeriDeal
   {
     if (family == Family::bonds)
       return 2. * longest / scene.peridynamics.horizon;
-    const double fewest = dim == 1 ? 4. : dim == 2 ? 3. : 2.;
+    const double fewest = dim == 1 ? 4. : 3.;
     return std::max(fewest, 0.25 * fineness_of_formulas(scene));
   }
 

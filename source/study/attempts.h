@@ -53,7 +53,10 @@ namespace PeriDeal
   public:
     Attempts(const Scene<dim> &scene, const LimitOfAttempts limit);
 
-    /** The coarsest that is worth a try: formulas of the scene are seen by it. Not collective. */
+    /**
+     * The coarsest that is worth a try: formulas of the scene are seen by it. Looks at them. Not
+     * collective.
+     */
     double coarsest() const;
 
     /** The one with about this fineness, as close as lattices allow. Not collective. */

@@ -14,19 +14,22 @@ namespace PeriDeal
 
   namespace
   {
-    /** Cells of the finest raster that is looked at, along each edge of what has n dimensions. */
-    unsigned int finest_raster(const unsigned int n)
+    /** Cells of the finest raster that is looked at, along each edge of a body or its side. */
+    template <int dim>
+    unsigned int finest_raster(const bool on_side)
     {
-      return n == 1 ? 4096 : n == 2 ? 256 : 32;
+      return dim == 1 ? 4096 : dim == 2 ? (on_side ? 1024 : 256) : (on_side ? 128 : 32);
     }
 
 
     /** Values of a function on a raster of an n-dimensional unit cube, the first axis fastest. */
     struct Raster
     {
-      Raster(const unsigned int n, const std::function<double(const double *)> &function)
+      Raster(const unsigned int                           n,
+             const unsigned int                           cells,
+             const std::function<double(const double *)> &function)
         : n(n)
-        , cells(finest_raster(n))
+        , cells(cells)
       {
         std::size_t size = 1;
         for (unsigned int d = 0; d < n; ++d)
@@ -110,7 +113,7 @@ namespace PeriDeal
       const unsigned int n       = on_side ? dim - 1 : dim;
       if (n == 0)
         return 1.;
-      const Raster raster(n, [&](const double *x) {
+      const Raster raster(n, finest_raster<dim>(on_side), [&](const double *x) {
         Point<dim> p;
         for (unsigned int d = 0, k = 0; d < dim; ++d)
           {

@@ -10,7 +10,7 @@ namespace PeriDeal
 {
   namespace
   {
-    constexpr double usual_order   = 2.5;  // where none has been seen
+    constexpr double usual_order   = 2.25; // where none has been seen
     constexpr double careful_order = 1.25; // where that is to be believed
 
     /** f0^-p - f1^-p over f1^-p - f2^-p, which grows with p. */
@@ -57,17 +57,16 @@ namespace PeriDeal
     const std::size_t n = steps.size();
     if (n < 2)
       return now;
-    now.order = std::min(best, usual_order);
-    if (n > 2)
-      now.order = order_of(steps[n - 3], steps[n - 2], steps[n - 1], lowest, best);
-    now.error = error_of(steps[n - 2], steps[n - 1], now.order);
-    if (n > 2)
+    if (n == 2)
       {
-        const double before = error_of(steps[n - 3], steps[n - 2], now.order);
-        now.error           = std::max(now.error,
-                             0.5 * before *
-                               std::pow(steps[n - 2].fineness / steps[n - 1].fineness, now.order));
+        now.error = error_of(steps[0], steps[1], usual_order);
+        return now;
       }
+    now.order           = order_of(steps[n - 3], steps[n - 2], steps[n - 1], lowest, best);
+    const double before = error_of(steps[n - 3], steps[n - 2], now.order);
+    now.error =
+      std::max(error_of(steps[n - 2], steps[n - 1], now.order),
+               0.5 * before * std::pow(steps[n - 2].fineness / steps[n - 1].fineness, now.order));
     return now;
   }
 

@@ -15,8 +15,8 @@ namespace PeriDeal
 {
   /**
    * A number given as a formula of x, y, z and t (muparser syntax), compiled when it is read so
-   * that a mistake in it is reported with its position before anything runs. Copies share the
-   * compiled form. Not thread safe.
+   * that a mistake in it is reported with its position before anything runs. Copies and others of
+   * the same text share the compiled form. Not thread safe.
    */
   class Expression
   {
@@ -64,6 +64,8 @@ namespace PeriDeal
     const std::string &text() const;
 
   private:
+    void compile(const bool with_temperature);
+
     template <int dim>
     void not_finite(const dealii::Point<dim> &p, const double t, const double temperature) const;
 
