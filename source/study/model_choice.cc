@@ -151,9 +151,9 @@ namespace PeriDeal
         for (;;)
           {
             next = family.next(tolerance);
-            if (family.is_within(tolerance))
-              return;
             if (&family == &nonlocal && elements_will_do())
+              return;
+            if (family.is_within(tolerance))
               return;
             limit = limit_before(family, next);
             if (!limit.empty())
