@@ -18,16 +18,24 @@ namespace PeriDeal
 
   namespace
   {
+    template <int dim>
+    bool moves(const Scene<dim> &scene)
+    {
+      return scene.deforms && !scene.elasticity.is_static();
+    }
+
+
     /** What is not yet chosen for, in words, or nothing. */
     template <int dim>
     std::string obstacle(const Scene<dim> &scene)
     {
-      const bool deforms = problem_factory(scene).n_components() > 1;
       if (scene.domain.shape != Shape::box || scene.domain.holes.has_one ||
           !scene.domain.holes.listed.empty())
         return "bodies other than a box ('Shape' and 'Holes' in section 'Domain')";
-      if (!scene.time.steady && deforms)
-        return "motion and loads that change with time";
+      if (moves(scene) && (!scene.cracks.cracks.empty() || scene.peridynamics.horizon > 0.))
+        return "motion with cracks, or with a horizon that is a length";
+      if (!scene.time.steady && scene.deforms && !moves(scene))
+        return "bodies at rest whose loads change with time";
       if (scene.cracks.change() && (scene.time.steady || scene.peridynamics.horizon > 0.))
         return "cracks that grow or change ('Growth', 'Transmission' in section 'Cracks') in a steady state, or with a "
                "horizon that is a length";
@@ -229,7 +237,7 @@ namespace PeriDeal
     switch (family)
       {
         case Family::whole:
-          return 3.;
+          return moves(scene) ? 2. : 3.; // steps as long as cells allow are of second order
         case Family::faces:
           return dim == 3 ? 2. : 3.;
         case Family::zone:

@@ -141,8 +141,11 @@ namespace PeriDeal
     see(scene.initial_and_source.source);
     if (!scene.time.steady)
       see(scene.initial_and_source.initial_value);
-    for (const Expression &force : scene.initial_and_source.body_force)
-      see(force);
+    for (const auto *const list : {&scene.initial_and_source.body_force,
+                                   &scene.initial_and_source.initial_displacement,
+                                   &scene.initial_and_source.initial_velocity})
+      for (const Expression &formula : *list)
+        see(formula);
     if (!scene.material.uniform_conductivity())
       most = std::max(most, cells_of<dim>(scene, [&](const Point<dim> &p) {
                         return scene.material.conductivity.value(p);

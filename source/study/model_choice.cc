@@ -68,6 +68,7 @@ namespace PeriDeal
         , classical(scene, text, communicator, measure, LimitOfAttempts::classical)
         , nonlocal(scene, text, communicator, measure, LimitOfAttempts::nonlocal)
         , is_nonlocal(scene.peridynamics.horizon > 0.)
+        , moves(scene.deforms && !scene.elasticity.is_static()) // with steps as long as cells allow
         , start(Clock::now())
       {}
 
@@ -90,7 +91,7 @@ namespace PeriDeal
         constexpr double share_of_elements = 0.3;
         const double     tolerance         = scene.accuracy.tolerance;
         progress.line(scene.general.title + "  (" + text.file_name + ")");
-        if (!scene.time.steady)
+        if (!scene.time.steady && !moves)
           choose_time_tolerance();
         refine(classical, (is_nonlocal ? share_of_elements : 1.) * (tolerance - time_error));
         if (!is_nonlocal)
@@ -342,7 +343,7 @@ namespace PeriDeal
       const MeasuredError<dim>  measure;
       Search<dim>               classical, nonlocal;
       Search<dim>              *chosen = &classical;
-      const bool                is_nonlocal;
+      const bool                is_nonlocal, moves;
       const Clock::time_point   start;
       double                    time_error = 0., horizon_effect = 0.;
       Json                      history = Json::array();

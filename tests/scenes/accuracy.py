@@ -11,7 +11,7 @@ import sys
 
 import numpy as np
 
-from accuracy_cases import crack_cases, elastic_cases, nonlocal_cases, nonlocal_share, smooth_cases, transient_cases
+from accuracy_cases import crack_cases, elastic_cases, moving_cases, nonlocal_cases, nonlocal_share, smooth_cases, transient_cases
 from scene_test import SOURCE_DIR, check, check_close, check_less, check_message, finish, print_table, run_scene
 
 N_POINTS = 1000
@@ -64,6 +64,7 @@ def changing():
     """What changes with time; solutions of a horizon."""
     check_cases(transient_cases(), (1e-2, 1e-3), "Fields that change with time", 0.75)  # of four scenes one is seen as 3.3 times as wrong as it is
     check_cases(nonlocal_cases(), (3e-2, 1e-3), "Fields of a horizon that is a length")
+    check_cases(moving_cases(), (1e-2, 1e-3), "Waves")
     for folder, scene in (("heat", "chosen_in_time"), ("coupling", "growing_cracks")):
         text = open(os.path.join(SOURCE_DIR, f"prm/{folder}/{scene}.prm")).read()
         coarse, fine = (run_scene(text, {"Models": "auto", "Accuracy/Measure": "probes", "Accuracy/Tolerance": tolerance, "Output/Fields": "none"}) for tolerance in ("2e-2", "5e-3"))
@@ -155,7 +156,8 @@ def others():
     refused({"Accuracy/Budget": "-1"}, "'Budget' in section 'Accuracy'")
     refused({"Domain/Shape": "plate with hole"}, "'auto' does not choose for", "Shape")
     plate = solid("-0.3,0 ; 0.3,0", "  set Displacement = bottom: 0, 0\n  set Traction = top: 0, 0.01*t")
-    check_message(run_scene(plate, expect_error=True), "'auto' does not choose for", "loads that change with time")
+    check_message(run_scene(plate, expect_error=True), "'auto' does not choose for", "loads change with time")
+    check_message(run_scene(plate, {"Elasticity/Solver": "dynamics"}, expect_error=True), "'auto' does not choose for", "motion with cracks")
     constant = run_scene("set Dimension = 2\nset Models = auto\nsubsection Boundary conditions\n  set Dirichlet = left: 0; right: 1\nend\nsubsection Time\n  set Steady = true\nend\n")
     check(constant.summary["accuracy"]["constant along"] == ["y"], "a plate that could be a bar")
     flow = run_scene("set Dimension = 2\nset Models = auto\nsubsection Boundary conditions\n  set Dirichlet = left: 0; right: t\nend\nsubsection Time\n  set End time = 2\nend\n",

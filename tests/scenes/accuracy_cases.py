@@ -202,5 +202,24 @@ def transient_cases():
     ]
 
 
+def moving_cases():
+    """Waves, at the end of a time: one that runs, in a bar, and standing ones (P waves, Lame constants 1 and 1, sides that slide)."""
+    pi, sin, exp = np.pi, np.sin, np.exp
+    pulse = "exp(-((x-0.25)/0.06)^2)"
+
+    def standing(name, dimension, end):
+        return Case(name, "elastic", lambda p: np.stack([sin(pi * p[:, 0]) * math.cos(math.sqrt(3) * pi * end)] + [np.zeros(len(p))] * (dimension - 1), axis=1), dimension,
+                    material={"Young modulus": 2.5, "Poisson ratio": 0.25, "Density": "1.0"}, elasticity={"Solver": "dynamics", **({"Plane": "strain"} if dimension == 2 else {})},
+                    source={"Initial displacement": ", ".join(["sin(pi*x)", "0", "0"][:dimension])}, time={"End time": end},
+                    boundary={"Symmetry": ", ".join(["left", "right", "bottom", "top", "back", "front"][:2 * dimension])})
+
+    return [
+        Case("pulse in a bar", "elastic", lambda p: exp(-((p - 0.75) / 0.06) ** 2), 1, material={"Young modulus": 1, "Density": "1.0"}, elasticity={"Solver": "dynamics"},
+             source={"Initial displacement": pulse, "Initial velocity": f"2*(x-0.25)/0.06^2*{pulse}"}, time={"End time": 0.5}),
+        standing("standing wave", 2, 1.3),
+        standing("standing wave in a block", 3, 0.4),
+    ]
+
+
 def cases():
     return smooth_cases() + crack_cases() + elastic_cases() + nonlocal_cases()

@@ -41,7 +41,7 @@ def settings(cells, steady, **more):
     """Overrides of the sample scene; keywords: section and entry joined by two underscores."""
     chosen = {"Domain/Cells": f"{cells}, {cells}", "Output/Fields": "none", "Output/Line": "", "Output/Write at": "",
               "Solver/Tolerance": "1e-12", "Time/Tolerance": "1e-9", "Time/Steady": "true" if steady else "false",
-              "Peridynamics/Boundary treatment": "none", "Cracks/Nodes on cracks": "left"}
+              "Peridynamics/Boundary treatment": "none", "Peridynamics/Surface correction": "none", "Cracks/Nodes on cracks": "left"}
     chosen.update({key.replace("__", "/").replace("_", " "): value for key, value in more.items()})
     return chosen
 
