@@ -10,8 +10,6 @@
 #include <cmath>
 #include <limits>
 
-#include "formula_scan.h"
-
 namespace PeriDeal
 {
   using namespace dealii;
@@ -68,6 +66,8 @@ namespace PeriDeal
     for (unsigned int d = 0; d < dim; ++d)
       longest = std::max(longest, box.upper[d] - box.lower[d]);
     family = family_for(scene, limit, !scene.cracks.cracks.empty() && on_faces(1.));
+    if (family != Family::bonds)
+      needs = needs_of_formulas(scene);
   }
 
 
@@ -234,6 +234,8 @@ namespace PeriDeal
   template <int dim>
   double Attempts<dim>::best_order() const
   {
+    if (needs.jumps)
+      return 1.;
     switch (family)
       {
         case Family::whole:
@@ -306,13 +308,66 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    constexpr double most_at_gaps = 40.; // cells along the longest edge that gaps ask for
+
+
+    /** Of a point and a segment. */
+    double distance(const std::vector<double>              &point,
+                    const std::vector<std::vector<double>> &segment)
+    {
+      double length = 0., along = 0., square = 0.;
+      for (std::size_t d = 0; d < point.size(); ++d)
+        {
+          const double edge = segment[1][d] - segment[0][d];
+          length += edge * edge;
+          along += edge * (point[d] - segment[0][d]);
+        }
+      const double share = std::clamp(along / length, 0., 1.);
+      for (std::size_t d = 0; d < point.size(); ++d)
+        square += std::pow(point[d] - segment[0][d] - share * (segment[1][d] - segment[0][d]), 2);
+      return std::sqrt(square);
+    }
+
+
+    /**
+     * The smallest distance of an end of a crack to a side or, in two dimensions, to another crack,
+     * that it does not touch; infinite if there is none.
+     */
+    double narrowest_gap(const CrackedBox &box)
+    {
+      double     narrowest = std::numeric_limits<double>::infinity();
+      const auto see       = [&](const double distance) {
+        const double touching = 1e-6 * (box.upper[0] - box.lower[0]);
+        if (distance > touching)
+          narrowest = std::min(narrowest, distance);
+      };
+      for (const auto &crack : box.cracks)
+        for (const std::vector<double> &end : crack)
+          {
+            for (unsigned int d = 0; d < box.dim(); ++d)
+              for (const double side : {box.lower[d], box.upper[d]})
+                see(std::abs(end[d] - side));
+            if (box.dim() == 2)
+              for (const auto &other : box.cracks)
+                if (&other != &crack)
+                  see(distance(end, other));
+          }
+      return narrowest;
+    }
+  } // namespace
+
+
   template <int dim>
   double Attempts<dim>::coarsest() const
   {
     if (family == Family::bonds)
       return 2. * longest / scene.peridynamics.horizon;
     const double fewest = dim == 1 ? 4. : 3.;
-    return std::max(fewest, 0.25 * fineness_of_formulas(scene));
+    // Cells at cracks are about the square of those far away.
+    const double at_gaps = dim == 1 ? 0. : 2. * std::sqrt(longest / narrowest_gap(box));
+    return std::max({fewest, 0.25 * needs.fineness, std::min(at_gaps, most_at_gaps)});
   }
 
 

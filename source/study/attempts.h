@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "formula_scan.h"
+
 namespace PeriDeal
 {
   /** A model on a mesh, as entries of a scene. */
@@ -54,8 +56,8 @@ namespace PeriDeal
     Attempts(const Scene<dim> &scene, const LimitOfAttempts limit);
 
     /**
-     * The coarsest that is worth a try: formulas of the scene are seen by it. Looks at them. Not
-     * collective.
+     * The coarsest that is worth a try: formulas of the scene and gaps beside cracks are seen by
+     * it. Not collective.
      */
     double coarsest() const;
 
@@ -99,6 +101,7 @@ namespace PeriDeal
     const Scene<dim> &scene;
     CrackedBox        box;
     double            longest = 0.;
-    Family            family  = Family::whole;
+    NeedsOfFormulas   needs;
+    Family            family = Family::whole;
   };
 } // namespace PeriDeal

@@ -3,7 +3,10 @@
 
 #include "formula_scan.h"
 
+#include <perideal/study/lattice_ladder.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -22,18 +25,25 @@ namespace PeriDeal
     }
 
 
-    /** Values of a function on a raster of an n-dimensional unit cube, the first axis fastest. */
+    /** Values of a function on a raster of a box of n dimensions, the first axis fastest. */
     struct Raster
     {
-      Raster(const unsigned int                           n,
-             const unsigned int                           cells,
+      /**
+       * @param cells    along each edge
+       * @param edges    the lengths of the edges; the unit is that of fineness_needed()
+       * @param function of coordinates between 0 and 1
+       */
+      Raster(const unsigned int                           cells,
+             const std::vector<double>                   &edges,
              const std::function<double(const double *)> &function)
-        : n(n)
+        : n(edges.size())
         , cells(cells)
+        , edges(edges)
       {
         std::size_t size = 1;
         for (unsigned int d = 0; d < n; ++d)
           size *= cells + 1;
+        values.reserve(size);
         for (std::size_t k = 0; k < size; ++k)
           {
             double      x[3] = {0., 0., 0.};
@@ -45,15 +55,28 @@ namespace PeriDeal
       }
 
 
-      /** The multilinear interpolant from every stride-th point. */
-      double interpolant(const std::size_t k, const unsigned int stride) const
+      /** Points of the raster between those of cells of about this size, along each edge. */
+      std::array<std::size_t, 3> strides(const double fineness) const
+      {
+        std::array<std::size_t, 3> strides{{1, 1, 1}};
+        for (unsigned int d = 0; d < n; ++d)
+          {
+            const double wanted = std::exp2(std::round(std::log2(fineness * edges[d])));
+            strides[d] = cells / static_cast<std::size_t>(std::clamp<double>(wanted, 1., cells));
+          }
+        return strides;
+      }
+
+
+      /** The multilinear interpolant from the points that are so far apart. */
+      double interpolant(const std::size_t k, const std::array<std::size_t, 3> &strides) const
       {
         std::size_t rest = k, base = 0, step = 1;
         double      fraction[3];
         std::size_t steps[3];
         for (unsigned int d = 0; d < n; ++d)
           {
-            const std::size_t i = rest % (cells + 1);
+            const std::size_t i = rest % (cells + 1), stride = strides[d];
             rest /= cells + 1;
             const std::size_t low = std::min<std::size_t>(i / stride * stride, cells - stride);
             fraction[d]           = static_cast<double>(i - low) / stride;
@@ -77,100 +100,249 @@ namespace PeriDeal
       }
 
 
-      unsigned int cells_needed() const
+      /** Sum of the squares of what is left of the interpolant on such cells. */
+      double squared_error(const std::array<std::size_t, 3> &strides) const
       {
-        constexpr double allowed = 0.2;
-        double           mean = 0., variation = 0.;
+        double error = 0.;
+        for (std::size_t k = 0; k < values.size(); ++k)
+          error += std::pow(values[k] - interpolant(k, strides), 2);
+        return error;
+      }
+
+
+      /** That of the mean; 0 but for round-off is none. */
+      double variation() const
+      {
+        double mean = 0., sum = 0.;
         for (const double v : values)
           mean += v / values.size();
         for (const double v : values)
-          variation += (v - mean) * (v - mean);
-        if (!(variation > 1e-24 * values.size() * (mean * mean + 1e-300)))
-          return 1;
-        for (unsigned int coarse = 1; coarse < cells; coarse *= 2)
-          {
-            double error = 0.;
-            for (std::size_t k = 0; k < values.size(); ++k)
-              error += std::pow(values[k] - interpolant(k, cells / coarse), 2);
-            if (error < allowed * allowed * variation)
-              return coarse;
-          }
-        return cells;
+          sum += (v - mean) * (v - mean);
+        return sum > 1e-24 * values.size() * (mean * mean + 1e-300) ? sum : 0.;
       }
 
-      const unsigned int  n, cells;
-      std::vector<double> values;
+
+      double fineness_needed() const
+      {
+        constexpr double allowed   = 0.2;
+        const double     variation = this->variation();
+        if (variation == 0.)
+          return 1.;
+        const double finest = cells / *std::min_element(edges.begin(), edges.end());
+        for (double fineness = 1.; fineness < finest; fineness *= 2.)
+          if (squared_error(strides(fineness)) < allowed * allowed * variation)
+            return fineness;
+        return finest;
+      }
+
+
+      /** Errors of smooth functions become a quarter as cells are halved, of kinks 0.35, of jumps 0.7. */
+      bool jumps() const
+      {
+        constexpr double least = 0.5;
+        const double     fine  = squared_error({{2, 2, 2}});
+        return fine > 1e-8 * variation() && fine > least * least * squared_error({{4, 4, 4}});
+      }
+
+      const unsigned int        n, cells;
+      const std::vector<double> edges;
+      std::vector<double>       values;
     };
 
 
-    /** A formula in the body, and on a side of it if @p side is one. */
+    /** Looks at one function after the other. */
     template <int dim>
-    double cells_of(const Scene<dim>                                &scene,
-                    const std::function<double(const Point<dim> &)> &formula,
-                    const unsigned int side = numbers::invalid_unsigned_int)
+    class FormulaScan
     {
-      const bool         on_side = side < 2 * dim;
-      const unsigned int n       = on_side ? dim - 1 : dim;
-      if (n == 0)
-        return 1.;
-      const Raster raster(n, finest_raster<dim>(on_side), [&](const double *x) {
-        Point<dim> p;
-        for (unsigned int d = 0, k = 0; d < dim; ++d)
-          {
-            const double s = on_side && d == side / 2 ? side % 2 : x[k++];
-            p[d]           = (1. - s) * scene.domain.lower[d] + s * scene.domain.upper[d];
-          }
-        return formula(p);
-      });
-      return raster.cells_needed();
+    public:
+      using Function = std::function<double(const Point<dim> &, const double t)>;
+
+      enum class Jumps
+      {
+        matter,       // the solution becomes rough
+        do_not_matter // its gradient at most
+      };
+
+      static constexpr unsigned int nowhere = numbers::invalid_unsigned_int;
+
+      explicit FormulaScan(const Scene<dim> &scene)
+        : scene(scene)
+      {}
+
+      const NeedsOfFormulas &needs() const
+      {
+        return found;
+      }
+
+      /** In the body or, if @p side is one, on it. */
+      void see(const Function    &function,
+               const bool         changes,
+               const Jumps        jumps,
+               const unsigned int side = nowhere)
+      {
+        // At the beginning much is still zero.
+        static constexpr double parts_of_time[] = {0., 0.31, 0.67, 1.};
+        for (const double part : parts_of_time)
+          if (part == 0. || (changes && !scene.time.steady))
+            see_at(part * scene.time.end_time, function, jumps, side);
+      }
+
+      void see(const Expression &formula, const Jumps jumps, const unsigned int side = nowhere)
+      {
+        if (formula.depends_on_position())
+          see([&](const Point<dim> &p, const double t) { return formula.value(p, t); },
+              formula.depends_on_time(),
+              jumps,
+              side);
+      }
+
+      void see(const MaterialProperty &property)
+      {
+        if (!property.is_constant())
+          see([&](const Point<dim> &p, double) { return property.value(p); }, false, Jumps::matter);
+      }
+
+      /** Where the part is; a point is not seen by any mesh. */
+      void see(const Part &part)
+      {
+        if (part.kind != Part::point)
+          see([&](const Point<dim> &p, double) { return part.holds(p) ? 1. : 0.; },
+              false,
+              holds_values(part.id) ? Jumps::matter : Jumps::do_not_matter,
+              side_of(part.id));
+      }
+
+      /** A formula of a condition on a side or a part. It may jump where a crack ends on the side. */
+      void see_condition(const types::boundary_id id, const Expression &formula, const Jumps jumps)
+      {
+        const unsigned int side = side_of(id);
+        see(formula, meets_crack(side) ? Jumps::do_not_matter : jumps, side);
+      }
+
+    private:
+      unsigned int side_of(const types::boundary_id id) const
+      {
+        for (const Part &part : scene.boundary_conditions.parts)
+          if (part.id == id)
+            return part.kind == Part::of_side ? part.side : nowhere;
+        return id < 2 * dim ? id : nowhere;
+      }
+
+      bool meets_crack(const unsigned int side) const
+      {
+        if (side == nowhere)
+          return false;
+        const unsigned int d     = side / 2;
+        const double       place = side % 2 == 0 ? scene.domain.lower[d] : scene.domain.upper[d];
+        for (const auto &crack : cracked_box(scene).cracks)
+          for (const std::vector<double> &end : crack)
+            if (std::abs(end[d] - place) < 1e-6 * (scene.domain.upper[d] - scene.domain.lower[d]))
+              return true;
+        return false;
+      }
+
+      bool holds_values(const types::boundary_id id) const
+      {
+        return find_condition(scene.boundary_conditions.dirichlet, id) != nullptr ||
+               find_condition(scene.boundary_conditions.displacement, id) != nullptr;
+      }
+
+      void see_at(const double       t,
+                  const Function    &function,
+                  const Jumps        jumps,
+                  const unsigned int side)
+      {
+        const bool on_side = side < 2 * dim;
+        double     longest = 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          longest = std::max(longest, scene.domain.upper[d] - scene.domain.lower[d]);
+        std::vector<double> edges;
+        for (unsigned int d = 0; d < dim; ++d)
+          if (!on_side || d != side / 2)
+            edges.push_back((scene.domain.upper[d] - scene.domain.lower[d]) / longest);
+        if (edges.empty())
+          return;
+        const Raster raster(finest_raster<dim>(on_side), edges, [&](const double *x) {
+          Point<dim> p;
+          for (unsigned int d = 0, k = 0; d < dim; ++d)
+            {
+              const double s = on_side && d == side / 2 ? side % 2 : x[k++];
+              p[d]           = (1. - s) * scene.domain.lower[d] + s * scene.domain.upper[d];
+            }
+          return function(p, t);
+        });
+        found.fineness = std::max(found.fineness, raster.fineness_needed());
+        found.jumps    = found.jumps || (jumps == Jumps::matter && raster.jumps());
+      }
+
+      const Scene<dim> &scene;
+      NeedsOfFormulas   found;
+    };
+
+
+    template <int dim>
+    void see_body(const Scene<dim> &scene, FormulaScan<dim> &scan)
+    {
+      using Jumps                     = typename FormulaScan<dim>::Jumps;
+      const InitialAndSource &in_body = scene.initial_and_source;
+      scan.see(in_body.source, Jumps::do_not_matter);
+      if (!scene.time.steady)
+        scan.see(in_body.initial_value, Jumps::matter);
+      for (const Expression &formula : in_body.body_force)
+        scan.see(formula, Jumps::do_not_matter);
+      for (const auto *const list : {&in_body.initial_displacement, &in_body.initial_velocity})
+        for (const Expression &formula : *list)
+          scan.see(formula, Jumps::matter);
+      const Material &material = scene.material;
+      if (!scene.deforms)
+        return scan.see(material.conductivity);
+      scan.see(material.thermal_expansion);
+      scan.see(scene.elasticity.temperature_change, Jumps::matter);
+      if (!material.uniform_moduli())
+        for (const auto modulus : {&Moduli::bulk, &Moduli::shear})
+          scan.see([&](const Point<dim> &p, double) { return material.moduli(p).*modulus; },
+                   false,
+                   Jumps::matter);
+    }
+
+
+    template <int dim>
+    void see_conditions(const Scene<dim> &scene, FormulaScan<dim> &scan)
+    {
+      using Jumps                          = typename FormulaScan<dim>::Jumps;
+      const BoundaryConditions<dim> &given = scene.boundary_conditions;
+      for (const Part &part : given.parts)
+        scan.see(part);
+      for (const SideCondition &condition : given.dirichlet)
+        scan.see_condition(condition.id, condition.value, Jumps::matter);
+      for (const SurfaceTransfer &transfer : given.transfers)
+        for (const Expression *const formula :
+             {&transfer.flux, &transfer.coefficient, &transfer.ambient})
+          scan.see_condition(transfer.id, *formula, Jumps::do_not_matter);
+      for (const auto *const list : {&given.displacement, &given.traction})
+        for (const VectorCondition &condition : *list)
+          for (const auto &value : condition.values)
+            if (value)
+              scan.see_condition(condition.id,
+                                 *value,
+                                 list == &given.displacement ? Jumps::matter :
+                                                               Jumps::do_not_matter);
     }
   } // namespace
 
 
   template <int dim>
-  double fineness_of_formulas(const Scene<dim> &scene)
+  NeedsOfFormulas needs_of_formulas(const Scene<dim> &scene)
   {
     const DeferredFormulaErrors ignored; // they are told where the values are used
-    double                      most = 1.;
-    const auto                  see  = [&](const Expression &formula) {
-      if (formula.depends_on_position())
-        most = std::max(most, cells_of<dim>(scene, [&](const Point<dim> &p) {
-                          return formula.value(p);
-                        }));
-    };
-    see(scene.initial_and_source.source);
-    if (!scene.time.steady)
-      see(scene.initial_and_source.initial_value);
-    for (const auto *const list : {&scene.initial_and_source.body_force,
-                                   &scene.initial_and_source.initial_displacement,
-                                   &scene.initial_and_source.initial_velocity})
-      for (const Expression &formula : *list)
-        see(formula);
-    if (!scene.material.uniform_conductivity())
-      most = std::max(most, cells_of<dim>(scene, [&](const Point<dim> &p) {
-                        return scene.material.conductivity.value(p);
-                      }));
-    const auto on_side = [&](const unsigned int id, const Expression &formula) {
-      if (id < 2 * dim && formula.depends_on_position())
-        most = std::max(most,
-                        cells_of<dim>(
-                          scene,
-                          [&](const Point<dim> &p) { return formula.value(p); },
-                          id));
-    };
-    for (const SideCondition &given : scene.boundary_conditions.dirichlet)
-      on_side(given.id, given.value);
-    for (const auto *const list :
-         {&scene.boundary_conditions.displacement, &scene.boundary_conditions.traction})
-      for (const VectorCondition &given : *list)
-        for (const auto &value : given.values)
-          if (value)
-            on_side(given.id, *value);
-    return most;
+    FormulaScan<dim>            scan(scene);
+    see_body(scene, scan);
+    see_conditions(scene, scan);
+    return scan.needs();
   }
 
 
-  template double fineness_of_formulas(const Scene<1> &);
-  template double fineness_of_formulas(const Scene<2> &);
-  template double fineness_of_formulas(const Scene<3> &);
+  template NeedsOfFormulas needs_of_formulas(const Scene<1> &);
+  template NeedsOfFormulas needs_of_formulas(const Scene<2> &);
+  template NeedsOfFormulas needs_of_formulas(const Scene<3> &);
 } // namespace PeriDeal

@@ -7,13 +7,26 @@
 
 namespace PeriDeal
 {
+  /** What a mesh has to have for the formulas of a scene. */
+  struct NeedsOfFormulas
+  {
+    double fineness = 1.;    // cells along the longest edge
+    bool   jumps    = false; // within cells: errors get smaller only as cells do, unevenly
+  };
+
+
   /**
    * How many cells along the longest edge of the box of a scene its formulas need: the fewest, of
    * powers of two, on which the linear interpolant of each is right to a fifth of its variation in
-   * the mean square. Sources, conductivity and forces in the body, and given values on its sides;
-   * at most as many as are looked at. A solution on coarser cells may have missed what they
-   * describe. Not collective.
+   * the mean square, cells being as long as wide. Sources, materials, forces and initial fields in
+   * the body, what is given on its sides, and the parts that it is given on; what changes with time
+   * is looked at four times. At most as many as are looked at. A solution on coarser cells may have
+   * missed what they describe.
+   *
+   * Jumps are looked for in what makes the solution rough: materials, given values, initial fields,
+   * and parts of sides where values are given. Of a function that jumps the interpolant on the
+   * finest raster is wrong by more than half of what it is on one twice as coarse. Not collective.
    */
   template <int dim>
-  double fineness_of_formulas(const Scene<dim> &scene);
+  NeedsOfFormulas needs_of_formulas(const Scene<dim> &scene);
 } // namespace PeriDeal

@@ -213,6 +213,52 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** The size of a flow or of a force. */
+    double size_of(const Json &value)
+    {
+      double square = 0.;
+      for (const Json &component : value)
+        square += std::pow(component.template get<double>(), 2);
+      return std::sqrt(square);
+    }
+  } // namespace
+
+
+  template <int dim>
+  void MeasuredError<dim>::refuse_forces_at_points(Simulation<dim> &simulation) const
+  {
+    std::vector<std::string> points;
+    for (const Part &part : scene.boundary_conditions.parts)
+      if (part.kind == Part::point)
+        points.push_back(part.name);
+    if (dim == 1 || points.empty() || scene.accuracy.measure == AccuracyMeasure::stress_intensity)
+      return;
+    constexpr double  small    = 1e-6; // points that only keep a body from floating
+    const std::string reaction = scene.deforms ? "boundary force" : "boundary flux";
+    const Json        found    = simulation.found()["models"]["auto"];
+    double            largest  = 0.;
+    if (!found.contains(reaction))
+      return;
+    for (const Json &value : found[reaction])
+      largest = std::max(largest, size_of(value));
+    for (const std::string &name : points)
+      if (found[reaction].contains(name) && size_of(found[reaction][name]) > small * largest)
+        scene.accuracy.refuse(true,
+                              "Measure",
+                              "is '" + scene.accuracy.measure_text() + "', but at the point '" +
+                                name + "' (entry 'Parts' in section 'Boundary conditions') a " +
+                                (scene.deforms ? "force acts" : "flow enters") +
+                                ", near which the classical solution is infinite: it would be "
+                                "another one on each mesh. Give the part a size (for example 'top "
+                                "if abs(x) < 0.1', which has to be some cells wide)" +
+                                (scene.deforms && dim == 2 && !scene.cracks.cracks.empty() ?
+                                   ", or measure 'stress intensity'." :
+                                   "."));
+  }
+
+
   template <int dim>
   MeasuredNumbers MeasuredError<dim>::numbers(Simulation<dim> &simulation) const
   {

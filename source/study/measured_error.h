@@ -50,6 +50,12 @@ namespace PeriDeal
     /** What difference() needs of a solution that changes with time, as it is now. */
     SeenValues see(const Problem<dim> &problem) const;
 
+    /**
+     * Throws UserError where a force or a flow acts at a point, by its reaction in a solution, and
+     * fields are measured: near it the classical solution is infinite.
+     */
+    void refuse_forces_at_points(Simulation<dim> &simulation) const;
+
     /** Numbers of a solution, none where fields are measured or its mesh is too coarse for them. */
     MeasuredNumbers numbers(Simulation<dim> &simulation) const;
 

@@ -149,6 +149,7 @@ namespace PeriDeal
       {
         progress.line("Models = auto: " + family.attempts().reason());
         compute(family, family.first());
+        measure.refuse_forces_at_points(*family.last().simulation);
         for (;;)
           {
             next = family.next(tolerance);
@@ -279,9 +280,8 @@ namespace PeriDeal
         if (is_nonlocal)
           progress.line("the horizon changes the solution by about " +
                         rounded_text(100. * horizon_effect) + " %: " +
-                        (chosen == &classical ?
-                           "finite elements are right within the tolerance" :
-                           "finite elements would be wrong by that"));
+                        (chosen == &classical ? "finite elements are right within the tolerance" :
+                                                "finite elements would be wrong by that"));
       }
 
       void say_constant()

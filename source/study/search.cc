@@ -149,7 +149,8 @@ namespace PeriDeal
     if (now.error < 0. || now.error > tolerance)
       return false;
     if (steps.size() == 2)
-      return scene.accuracy.measure == AccuracyMeasure::field && largest_error(steps) <= tolerance;
+      return scene.accuracy.measure == AccuracyMeasure::field && family.best_order() > 1. &&
+             largest_error(steps) <= tolerance;
     return steps.size() > 3 || now.order > 0.5 * family.best_order();
   }
 
