@@ -310,9 +310,6 @@ namespace PeriDeal
 
   namespace
   {
-    constexpr double most_at_gaps = 40.; // cells along the longest edge that gaps ask for
-
-
     /** Of a point and a segment. */
     double distance(const std::vector<double>              &point,
                     const std::vector<std::vector<double>> &segment)
@@ -356,6 +353,17 @@ namespace PeriDeal
           }
       return narrowest;
     }
+
+
+    /**
+     * Cells at cracks are about the square of those far away, and one at least has to fit into a
+     * gap. Wide ones are seen by any mesh, and very narrow ones are as good as closed.
+     */
+    double fineness_at_gaps(const double gap)
+    {
+      constexpr double wide = 0.1, most = 40.;
+      return gap < wide ? std::min(most, 2. / std::sqrt(gap)) : 1.;
+    }
   } // namespace
 
 
@@ -365,9 +373,10 @@ namespace PeriDeal
     if (family == Family::bonds)
       return 2. * longest / scene.peridynamics.horizon;
     const double fewest = dim == 1 ? 4. : 3.;
-    // Cells at cracks are about the square of those far away.
-    const double at_gaps = dim == 1 ? 0. : 2. * std::sqrt(longest / narrowest_gap(box));
-    return std::max({fewest, 0.25 * needs.fineness, std::min(at_gaps, most_at_gaps)});
+    double       least  = std::max(fewest, 0.25 * needs.fineness);
+    if (family == Family::pairs || family == Family::zone)
+      least = std::max(least, fineness_at_gaps(narrowest_gap(box) / longest));
+    return least;
   }
 
 

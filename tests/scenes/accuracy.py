@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """`Models = auto`: results within the tolerance, estimates near the true errors, the same on any number of processes.
 
-    accuracy.py fields solids changing others
+    accuracy.py fields solids changing rough others
 """
 
 import math
@@ -112,6 +112,34 @@ def solids():
             check_close(end["I"], expected, relative=4e-2, what=f"{model}: K_I at {name}")
 
 
+def rough():
+    """Scenes that a coarse mesh sees wrong: against the same search with a fifth of the tolerance."""
+    steady = "subsection Time\n  set Steady = true\nend\n"
+    heat = lambda conditions, more="": f"set Dimension = 2\nset Models = auto\n{steady}subsection Boundary conditions\n{conditions}\nend\n{more}"
+    elastic = lambda modulus, more="": (f"set Dimension = 2\nset Physics = elasticity\nset Models = auto\nsubsection Material\n  set Young modulus = {modulus}\n  set Poisson ratio = 0.3\nend\n"
+                                        f"subsection Boundary conditions\n  set Displacement = bottom: 0, 0\n  set Traction = top: 0, 1\nend\n{more}")
+    scenes = {
+        "a part of a side is hot": heat("  set Parts = hot: top if x < 0.37\n  set Dirichlet = hot: 1; bottom: 0"),
+        "two values at a corner": heat("  set Dirichlet = left: 0; right: 0; bottom: 0; top: 1"),
+        "phases a thousand times apart": heat("  set Dirichlet = left: 0; right: 1", "subsection Material\n  set Conductivity = if(sin(3*pi*x)*sin(3*pi*y) > 0, 1000, 1)\nend\n"),
+        "a crack near a side": heat("  set Dirichlet = left: 0; right: 1", "subsection Cracks\n  set Segments = 0.5,0.02 ; 0.52,0.6\nend\n"),
+        "cracks that cross": heat("  set Dirichlet = bottom: 0; top: 1", "subsection Cracks\n  set Segments = 0.2,0.3 ; 0.8,0.7 ; 0.3,0.75 ; 0.75,0.25\nend\n"),
+        "a hard inclusion": elastic("if((x-0.5)^2+(y-0.5)^2 < 0.04, 100, 1)"),
+        "two cracks in a solid": elastic("1", "subsection Cracks\n  set Segments = 0.2,0.4 ; 0.5,0.5 ; 0.55,0.6 ; 0.85,0.5\nend\n"),
+        "a pulse of heat": heat("  set Dirichlet = left: 0; right: 0", "subsection Initial and source\n  set Source = 50*exp(-((t-0.5)/0.02)^2)*sin(pi*x)\nend\n").replace("set Steady = true", "set End time = 1"),
+    }
+    points = np.random.default_rng(5).random((400, 2))
+    for name, text in scenes.items():
+        found = {}
+        for tolerance in ("2e-2", "4e-3"):
+            run = run_scene(with_probes(text, points), {"Accuracy/Tolerance": tolerance})
+            check(run.summary["accuracy"]["met"], f"{name}: {tolerance} is met")
+            end = run.rows("auto")[-1]["time"]
+            found[tolerance] = np.array([[row[column] for column in row if column in ("value", "ux", "uy")] for row in run.rows("auto", time=end)])
+        fine = found["4e-3"]
+        check_less(root_mean_square(found["2e-2"] - fine) / widest(fine), 2.4e-2, f"{name}: difference from what is five times as accurate")
+
+
 def others():
     crack = crack_cases()[3]
     points = [(0.31, 0.12), (-0.2, 0.4), (0.1, 0.062)]
@@ -154,6 +182,12 @@ def others():
     refused({"Accuracy/Measure": "flow: tpo"}, "'Measure'", "Did you mean 'top'?")
     refused({"Accuracy/Memory": "4"}, "'Memory' in section 'Accuracy'", "'4 GB'")
     refused({"Accuracy/Budget": "-1"}, "'Budget' in section 'Accuracy'")
+    bend = open(os.path.join(SOURCE_DIR, "prm/fracture/three_point_bend.prm")).read().replace("set Models           = finite elements, coupled", "set Models = auto")
+    check_message(run_scene(bend, expect_error=True), "'Measure' in section 'Accuracy'", "at the point 'load'", "measure 'stress intensity'")
+    # ASTM E399, span 4: K = 4 P/(B sqrt(W)) f(1/2).
+    handbook = 4 * 3 * math.sqrt(0.5) * (1.99 - 0.25 * (2.15 - 3.93 / 2 + 2.7 / 4)) / (2 * 2 * 0.5 ** 1.5)
+    end = run_scene(bend, {"Accuracy/Measure": "stress intensity", "Accuracy/Tolerance": "3e-3", "Output/Fields": "none"}).model("auto")["stress intensity"]
+    check_close(next(iter(end.values()))["I"], handbook, relative=1e-2, what="K_I of a bend, loaded at points")
     refused({"Domain/Shape": "plate with hole"}, "'auto' does not choose for", "Shape")
     plate = solid("-0.3,0 ; 0.3,0", "  set Displacement = bottom: 0, 0\n  set Traction = top: 0, 0.01*t")
     check_message(run_scene(plate, expect_error=True), "'auto' does not choose for", "loads change with time")
@@ -166,6 +200,6 @@ def others():
     check_close(flow.model("auto")["boundary flux"]["right"], 2 + 1 / 3, relative=1e-3, what="what enters, changing with time")
 
 
-for part in sys.argv[1:] or ("fields", "solids", "changing", "others"):
-    {"fields": fields, "solids": solids, "changing": changing, "others": others}[part]()
+for part in sys.argv[1:] or ("fields", "solids", "changing", "rough", "others"):
+    {"fields": fields, "solids": solids, "changing": changing, "rough": rough, "others": others}[part]()
 finish()
