@@ -4,7 +4,6 @@
 #include "attempts.h"
 
 #include <perideal/base/user_error.h>
-#include <perideal/problems/problem_factory.h>
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +81,7 @@ namespace PeriDeal
       return Family::whole;
     if (on_faces && !scene.cracks.conduct() && !scene.cracks.change())
       return Family::faces;
-    return problem_factory(scene).n_components() > 1 ? Family::zone : Family::pairs;
+    return scene.deforms ? Family::zone : Family::pairs;
   }
 
 

@@ -136,7 +136,7 @@ namespace PeriDeal
       }
 
 
-      /** Errors of smooth functions become a quarter as cells are halved, of kinks 0.35, of jumps 0.7. */
+      /** As cells are halved, errors of smooth functions become a quarter, of jumps 0.7. */
       bool jumps() const
       {
         constexpr double least = 0.5;
@@ -212,7 +212,7 @@ namespace PeriDeal
               side_of(part.id));
       }
 
-      /** A formula of a condition on a side or a part. It may jump where a crack ends on the side. */
+      /** A formula of a condition on a side or part. It may jump on sides that a crack reaches. */
       void see_condition(const types::boundary_id id, const Expression &formula, const Jumps jumps)
       {
         const unsigned int side = side_of(id);

@@ -8,7 +8,6 @@
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/gathered_lists.h>
 #include <perideal/base/user_error.h>
-#include <perideal/problems/problem_factory.h>
 #include <perideal/scene/lists.h>
 #include <perideal/study/naming.h>
 
@@ -164,7 +163,7 @@ namespace PeriDeal
     : scene(scene)
   {
     const AccuracyControl &accuracy = scene.accuracy;
-    const bool             deforms  = problem_factory(scene).n_components() > 1;
+    const bool             deforms  = scene.deforms;
     accuracy.refuse(accuracy.measure == AccuracyMeasure::probes && scene.output.probes.empty(),
                     "Measure",
                     "is 'probes', but 'Probes' in section 'Output' has no point.");
