@@ -12,6 +12,8 @@
 #include <cmath>
 #include <optional>
 
+#include "goal_estimate.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -119,6 +121,26 @@ namespace PeriDeal
     last_memory = Utilities::MPI::sum(std::max(1e6, resident_memory() - before), communicator);
     steps.push_back({attempt.fineness, difference ? *difference : 0.});
     now = observed_error(steps, family.lowest_order(), family.best_order());
+    if (steps.size() == 2)
+      see_cubic();
+  }
+
+
+  template <int dim>
+  void Search<dim>::see_cubic()
+  {
+    const auto   cubic = cubic_attempt(scene, latest.attempt);
+    const double least =
+      steps[1].difference /
+      (std::pow(steps[1].fineness / steps[0].fineness, family.best_order()) - 1.);
+    if (!cubic || family.best_order() < 2. || least > scene.accuracy.tolerance)
+      return;
+    const Tried<dim> richer = solve(*cubic);
+    if (const auto d = measure.difference(richer.solution(), latest.solution()))
+      {
+        now.error = std::max(least, factor_of_cubic(scene) * *d);
+        has_cubic = true;
+      }
   }
 
 
@@ -148,6 +170,8 @@ namespace PeriDeal
   {
     if (now.error < 0. || now.error > tolerance)
       return false;
+    if (steps.size() == 2 && has_cubic)
+      return true;
     if (steps.size() == 2)
       return scene.accuracy.measure == AccuracyMeasure::field && family.best_order() > 1. &&
              largest_error(steps) <= tolerance;

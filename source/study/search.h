@@ -73,7 +73,8 @@ namespace PeriDeal
      * Whether the error may be called smaller than a tolerance. An order is seen in three solutions
      * at least; a low one is not trusted as long as all are coarse, since it says more of the first
      * than of the last. Two are enough for a field where even the lowest order leaves their
-     * difference within the tolerance: at so many points it is not small by accident.
+     * difference within the tolerance: at so many points it is not small by accident; and for
+     * probes and flows where cubic elements on the mesh of the second have been asked.
      */
     bool is_within(const double tolerance) const;
 
@@ -87,6 +88,7 @@ namespace PeriDeal
   private:
     Attempt with_settings(const double fineness) const;
     double  growth(const Attempt &attempt) const;
+    void    see_cubic();
 
     const Scene<dim>             &scene;
     const SceneText              &text;
@@ -99,5 +101,6 @@ namespace PeriDeal
     std::vector<ComparedSolution> steps;
     ObservedError                 now;
     double                        last_memory = 0.;
+    bool                          has_cubic   = false; // two solutions, and cubic elements
   };
 } // namespace PeriDeal

@@ -140,7 +140,25 @@ def rough():
         check_less(root_mean_square(found["2e-2"] - fine) / widest(fine), 2.4e-2, f"{name}: difference from what is five times as accurate")
 
 
+def goals():
+    """Probes, by two solutions and cubic elements: never wrong by more than is said, and near it where nothing is small by accident."""
+    random, rows = np.random.default_rng(5), []
+    for case in smooth_cases() + crack_cases():
+        if case.name not in ("sine", "harmonic", "graded material", "mixed", "crack along a row", "crack from a side"):
+            continue
+        lower, upper = case.box()
+        points = lower + (upper - lower) * random.random((5, 2))
+        run = run_scene(with_probes(case.text(), points), {"Accuracy/Measure": "probes", "Accuracy/Tolerance": "1e-2"})
+        values = np.array([row["value"] for row in run.rows("auto")])
+        found = run.summary["accuracy"]
+        error = np.abs(values - case.exact(points)).max() / widest(case.exact(lower + (upper - lower) * random.random((20000, 2)))[:, None])
+        rows.append([case.name, f"{error:.1e}", f"{found['estimate'] / error:.2f}", len(found["steps"])])
+        check(found["met"] and error <= 1e-2 and 0.67 <= found["estimate"] / error <= 3, f"{case.name}: {found['estimate']} for {error}")
+    print_table("Probes", ["scene", "error", "effectivity", "tries"], rows)
+
+
 def others():
+    goals()
     crack = crack_cases()[3]
     points = [(0.31, 0.12), (-0.2, 0.4), (0.1, 0.062)]
     text = with_probes(crack.text(), points)

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "goal_estimate.h"
+
+namespace PeriDeal
+{
+  template <int dim>
+  std::optional<Attempt> cubic_attempt(const Scene<dim> &scene, const Attempt &attempt)
+  {
+    const AccuracyMeasure measure = scene.accuracy.measure;
+    if ((measure != AccuracyMeasure::probes && measure != AccuracyMeasure::flow) || scene.deforms ||
+        !scene.time.steady || scene.peridynamics.horizon > 0.)
+      return {};
+    Attempt cubic = attempt;
+    for (Setting &setting : cubic.settings)
+      if (setting.first == "Finite elements/Degree" && setting.second == "2")
+        {
+          setting.second = "3";
+          return cubic;
+        }
+    return {};
+  }
+
+
+  template <int dim>
+  double factor_of_cubic(const Scene<dim> &scene)
+  {
+    const bool halves = !scene.cracks.cracks.empty() ||
+                        scene.accuracy.measure == AccuracyMeasure::flow;
+    return halves ? 2. : 1.;
+  }
+
+
+  template std::optional<Attempt> cubic_attempt(const Scene<1> &, const Attempt &);
+  template std::optional<Attempt> cubic_attempt(const Scene<2> &, const Attempt &);
+  template std::optional<Attempt> cubic_attempt(const Scene<3> &, const Attempt &);
+  template double                 factor_of_cubic(const Scene<1> &);
+  template double                 factor_of_cubic(const Scene<2> &);
+  template double                 factor_of_cubic(const Scene<3> &);
+} // namespace PeriDeal
