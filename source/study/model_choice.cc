@@ -267,12 +267,12 @@ namespace PeriDeal
              << readable_count(static_cast<unsigned long long>(last.cells)) << " cells, ";
         if (error >= 0.)
           line << "estimated error " << 100. * error << " %, ";
-        line << last.wall_time << " s";
+        line << last.wall_time + last.estimate_time << " s";
         progress.line(line.str());
         history.push_back({{"model", to_string(attempt.model)},
                            {"settings", settings_of(attempt)},
                            {"estimate", error >= 0. ? Json(error) : Json()},
-                           {"wall time", last.wall_time}});
+                           {"wall time", last.wall_time + last.estimate_time}});
       }
 
       void say_horizon() const

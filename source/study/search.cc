@@ -136,6 +136,7 @@ namespace PeriDeal
     if (!cubic || family.best_order() < 2. || least > scene.accuracy.tolerance)
       return;
     const Tried<dim> richer = solve(*cubic);
+    latest.estimate_time    = richer.wall_time;
     if (const auto d = measure.difference(richer.solution(), latest.solution()))
       {
         now.error = std::max(least, factor_of_cubic(scene) * *d);

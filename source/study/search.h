@@ -23,6 +23,7 @@ namespace PeriDeal
     MeasuredNumbers                  numbers;
     std::vector<SeenValues>          seen; // at each time of the output, unless steady
     double                           wall_time = 0., cells = 0.;
+    double                           estimate_time = 0.; // of a richer solution that was asked
 
     MeasuredSolution<dim> solution() const
     {
