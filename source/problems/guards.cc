@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/vectorization.h>
 
 #include <perideal/problems/guards.h>
 #include <perideal/scene/lists.h>
@@ -20,16 +21,63 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** The extent of some of many values, a few at a time. */
+    struct ExtentOfSome
+    {
+      using Lanes = VectorizedArray<double>;
+
+      static constexpr double largest = std::numeric_limits<double>::max();
+
+      void see(const double *values)
+      {
+        Lanes v;
+        v.load(values);
+        add(v, v, 0. * v); // which is 0 unless some value is not finite
+      }
+
+      void add(const Lanes &l, const Lanes &m, const Lanes &zero)
+      {
+        least = std::min(least, l);
+        most  = std::max(most, m);
+        nothing += zero;
+      }
+
+      Lanes least = largest, most = -largest, nothing = 0.;
+    };
+  } // namespace
+
+
   Extent extent_of(const Vector &u)
   {
-    const double      *values = u.begin();
-    const unsigned int n      = u.locally_owned_size();
-    double             least = std::numeric_limits<double>::max(), most = -least, nothing = 0.;
-    for (unsigned int i = 0; i < n; ++i)
+    // Four at once: a minimum waits for the one before it.
+    constexpr unsigned int width = ExtentOfSome::Lanes::size(), block = 4 * width;
+    const double          *values = u.begin();
+    const unsigned int     n = u.locally_owned_size(), n_whole = n / block * block;
+    ExtentOfSome           a, b, c, d;
+    for (unsigned int i = 0; i < n_whole; i += block)
+      {
+        a.see(values + i);
+        b.see(values + i + width);
+        c.see(values + i + 2 * width);
+        d.see(values + i + 3 * width);
+      }
+    for (const ExtentOfSome *const other : {&b, &c, &d})
+      a.add(other->least, other->most, other->nothing);
+
+    double least = ExtentOfSome::largest, most = -least, nothing = 0.;
+    for (unsigned int k = 0; k < width; ++k)
+      {
+        least = std::min(least, a.least[k]);
+        most  = std::max(most, a.most[k]);
+        nothing += a.nothing[k];
+      }
+    for (unsigned int i = n_whole; i < n; ++i)
       {
         least = std::min(least, values[i]);
         most  = std::max(most, values[i]);
-        nothing += 0. * values[i]; // unless that is not finite
+        nothing += 0. * values[i];
       }
     double found[3] = {most, -least, nothing == 0. ? 0. : 1.};
     Utilities::MPI::max(found, u.get_mpi_communicator(), found);
