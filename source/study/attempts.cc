@@ -88,10 +88,14 @@ namespace PeriDeal
   template <int dim>
   CellCounts Attempts<dim>::counts(const double fineness) const
   {
+    // Short edges have to get finer, too, or nothing would be seen of what varies along them.
+    const unsigned int at_least =
+      family == Family::whole ? std::max(2l, std::lround(2. * fineness / coarsest())) : 2;
     CellCounts cells;
     for (unsigned int d = 0; d < dim; ++d)
       cells.push_back(
-        std::max<unsigned int>(2, std::lround(fineness * (box.upper[d] - box.lower[d]) / longest)));
+        std::max<unsigned int>(at_least,
+                               std::lround(fineness * (box.upper[d] - box.lower[d]) / longest)));
     return cells;
   }
 

@@ -141,7 +141,7 @@ namespace PeriDeal
       {
         constexpr double least = 0.5;
         const double     fine  = squared_error({{2, 2, 2}});
-        return fine > 1e-8 * variation() && fine > least * least * squared_error({{4, 4, 4}});
+        return variation() > 0. && fine > 1e-8 * variation() && fine > least * least * squared_error({{4, 4, 4}});
       }
 
       const unsigned int        n, cells;
