@@ -138,6 +138,12 @@ namespace PeriDeal
   }
 
 
+  bool CrackEndIntegral::reaches(const Point<2> &p, const double radius) const
+  {
+    return p.distance(end) < outer + radius;
+  }
+
+
   void CrackEndIntegral::add(const Point<2>              &p,
                              const double                 weight,
                              const Tensor<2, 2>          &gradient,

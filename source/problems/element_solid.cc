@@ -9,6 +9,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/operators/solid/elastic_elements.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -21,6 +22,13 @@ namespace PeriDeal
 
   namespace
   {
+    /**
+     * Gauss points along an edge in rings about ends of cracks, besides those of the stiffness:
+     * their weights and the near fields are no polynomials, and cells may be a third of a ring.
+     */
+    constexpr unsigned int more_points_in_rings = 5; // 1 as everywhere
+
+
     template <int dim>
     class ElementSolid : public SolidProblem<dim>
     {
@@ -172,28 +180,32 @@ namespace PeriDeal
         if constexpr (dim == 2)
           {
             std::vector<CrackEndIntegral> ends = crack_end_integrals(scene, elements->crack_time());
-            if (!ends.empty())
-              visit_cells(QGauss<dim>(handler.get_fe().degree + 1),
-                          [&](const auto        &values,
-                              const unsigned int q,
-                              const auto        &indices,
-                              const auto        &gradient) {
-                            if (elements->cut_cells()[values.get_cell()->active_cell_index()])
-                              return;
-                            const Point<2>             &p = values.quadrature_point(q);
-                            const SymmetricTensor<2, 3> s =
-                              stress_at(values, q, indices, gradient, p);
-                            SymmetricTensor<2, 2> in_plane;
-                            for (unsigned int a = 0; a < 2; ++a)
-                              for (unsigned int b = a; b < 2; ++b)
-                                in_plane[a][b] = s[a][b];
-                            const auto  &given = scene.initial_and_source.body_force;
-                            Tensor<1, 2> force;
-                            for (unsigned int a = 0; a < 2 && !given.empty(); ++a)
-                              force[a] = given[a].value(p, time);
-                            for (CrackEndIntegral &end : ends)
-                              end.add(p, values.JxW(q), gradient, in_plane, force);
-                          });
+            const auto                    is_in_a_ring = [&](const auto &cell) {
+              return !elements->cut_cells()[cell->active_cell_index()] &&
+                     std::any_of(ends.begin(), ends.end(), [&](const CrackEndIntegral &end) {
+                       return end.reaches(cell->center(), 0.5 * cell->diameter());
+                     });
+            };
+            const auto &given = scene.initial_and_source.body_force;
+            visit_cells(
+              QGauss<dim>(handler.get_fe().degree + more_points_in_rings),
+              [&](const auto        &values,
+                  const unsigned int q,
+                  const auto        &indices,
+                  const auto        &gradient) {
+                const Point<2>             &p = values.quadrature_point(q);
+                const SymmetricTensor<2, 3> s = stress_at(values, q, indices, gradient, p);
+                SymmetricTensor<2, 2>       in_plane;
+                for (unsigned int a = 0; a < 2; ++a)
+                  for (unsigned int b = a; b < 2; ++b)
+                    in_plane[a][b] = s[a][b];
+                Tensor<1, 2> force;
+                for (unsigned int a = 0; a < 2 && !given.empty(); ++a)
+                  force[a] = given[a].value(p, time);
+                for (CrackEndIntegral &end : ends)
+                  end.add(p, values.JxW(q), gradient, in_plane, force);
+              },
+              is_in_a_ring);
             for (const CrackEndIntegral &end : ends)
               list.push_back(end.result(handler.get_communicator()));
           }
@@ -288,10 +300,18 @@ namespace PeriDeal
 
       /**
        * Call visit(values, point, indices of the nodes, gradient of the displacement) at the points
-       * of all own cells.
+       * of all own cells, or of those that are chosen.
        */
       template <typename Visit>
       void visit_cells(const Quadrature<dim> &points, const Visit &visit) const
+      {
+        visit_cells(points, visit, [](const auto &) { return true; });
+      }
+
+      template <typename Visit, typename Choose>
+      void visit_cells(const Quadrature<dim> &points,
+                       const Visit           &visit,
+                       const Choose          &choose) const
       {
         FEValues<dim>                        values(handler.get_fe(),
                              points,
@@ -300,7 +320,7 @@ namespace PeriDeal
         std::vector<types::global_dof_index> indices(handler.get_fe().n_dofs_per_cell());
         this->displacement.update_ghost_values();
         for (const auto &cell : handler.active_cell_iterators())
-          if (cell->is_locally_owned())
+          if (cell->is_locally_owned() && choose(cell))
             {
               values.reinit(cell);
               cell->get_dof_indices(indices);

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 
 namespace PeriDeal
 {
@@ -61,12 +63,22 @@ namespace PeriDeal
   Attempts<dim>::Attempts(const Scene<dim> &scene, const LimitOfAttempts limit)
     : scene(scene)
     , box(cracked_box(scene))
+    , points(box)
   {
+    points.cracks.clear();
+    for (const Part &part : scene.boundary_conditions.parts)
+      if (part.kind == Part::point)
+        {
+          const Point<dim> p = part.position<dim>();
+          points.cracks.push_back({std::vector<double>(p.begin_raw(), p.end_raw())});
+        }
     for (unsigned int d = 0; d < dim; ++d)
       longest = std::max(longest, box.upper[d] - box.lower[d]);
     family = family_for(scene, limit, !scene.cracks.cracks.empty() && on_faces(1.));
     if (family != Family::bonds)
       needs = needs_of_formulas(scene);
+    first_fineness =
+      fineness_of(family == Family::faces ? *on_faces(coarsest()) : counts(coarsest()));
   }
 
 
@@ -85,18 +97,76 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    template <int dim>
+    constexpr double fewest_cells = dim == 1 ? 4. : 3.; // along the longest edge
+
+
+    double product(const std::vector<double> &numbers)
+    {
+      return std::accumulate(numbers.begin(), numbers.end(), 1., std::multiplies<double>());
+    }
+  } // namespace
+
+
+  template <int dim>
+  std::vector<double> Attempts<dim>::first_counts() const
+  {
+    constexpr double    most = dim == 3 ? 1e4 : 1e5, longest_cell = 32.; // times as long as wide
+    std::vector<double> shares, n(dim);
+    for (unsigned int d = 0; d < dim; ++d)
+      shares.push_back((box.upper[d] - box.lower[d]) / longest);
+    for (unsigned int d = 0; d < dim; ++d)
+      n[d] = std::max(2., std::max(fewest_cells<dim>, 0.25 * needs.fineness) * shares[d]);
+    if (product(n) <= most)
+      return n;
+    // What varies across a thin body does not need short cells along it.
+    double shortest = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        n[d]     = std::max(2., std::max(fewest_cells<dim>, 0.25 * needs.along[d]) * shares[d]);
+        shortest = std::min(shortest, shares[d] / n[d]);
+      }
+    for (unsigned int d = 0; d < dim; ++d)
+      n[d] = std::max(n[d], shares[d] / (longest_cell * shortest));
+    const double shrink = std::pow(std::min(1., most / product(n)), 1. / dim);
+    for (double &one : n)
+      one = std::max(2., shrink * one);
+    return n;
+  }
+
+
   template <int dim>
   CellCounts Attempts<dim>::counts(const double fineness) const
   {
-    // Short edges have to get finer, too, or nothing would be seen of what varies along them.
-    const unsigned int at_least =
-      family == Family::whole ? std::max(2l, std::lround(2. * fineness / coarsest())) : 2;
-    CellCounts cells;
+    // All edges get finer, or nothing is seen of what varies along one.
+    const bool                grows = family == Family::whole || family == Family::faces;
+    const double              ratio = grows && first_fineness > 0. ? fineness / first_fineness : 1.;
+    const std::vector<double> first = family == Family::whole ? first_counts() :
+                                                                std::vector<double>(dim, 2.);
+    CellCounts                cells;
     for (unsigned int d = 0; d < dim; ++d)
-      cells.push_back(
-        std::max<unsigned int>(at_least,
-                               std::lround(fineness * (box.upper[d] - box.lower[d]) / longest)));
+      {
+        const double n = std::max(fineness * (box.upper[d] - box.lower[d]) / longest,
+                                  first[d] * std::max(1., ratio));
+        cells.push_back(std::max<unsigned int>(2, std::lround(n)));
+        if (family != Family::faces && family != Family::bonds)
+          cells.back() = with_points_on_planes(d, cells.back());
+      }
     return cells;
+  }
+
+
+  template <int dim>
+  unsigned int Attempts<dim>::with_points_on_planes(const unsigned int direction,
+                                                    const unsigned int n) const
+  {
+    const unsigned int most = dim == 3 ? n + n / 2 + 4 : 2 * n + 8;
+    for (unsigned int k = n; k <= most; ++k)
+      if (corners_on_planes(points, direction, k))
+        return k;
+    return n;
   }
 
 
@@ -118,10 +188,12 @@ namespace PeriDeal
       {
         const int wanted = counts(fineness)[d];
         int       found  = 0;
-        for (int k = 0; k <= wanted + most_to_fit<dim> && found == 0; ++k)
-          for (const int n : {wanted - k, wanted + k})
-            if (found == 0 && n > 1 && corners_on_planes(box, d, n))
-              found = n;
+        for (const bool with_points : {true, false})
+          for (int k = 0; k <= wanted + most_to_fit<dim> && found == 0; ++k)
+            for (const int n : {wanted - k, wanted + k})
+              if (found == 0 && n > 1 && corners_on_planes(box, d, n) &&
+                  (!with_points || corners_on_planes(points, d, n)))
+                found = n;
         if (found == 0)
           return {};
         cells.push_back(found);
@@ -331,9 +403,18 @@ namespace PeriDeal
     }
 
 
+    bool is_inside(const CrackedBox &box, const std::vector<double> &point)
+    {
+      for (unsigned int d = 0; d < box.dim(); ++d)
+        if (point[d] < box.lower[d] || point[d] > box.upper[d])
+          return false;
+      return true;
+    }
+
+
     /**
-     * The smallest distance of an end of a crack to a side or, in two dimensions, to another crack,
-     * that it does not touch; infinite if there is none.
+     * The smallest distance of an end of a crack in the box to a side or, in two dimensions, to
+     * another crack, that it does not touch; infinite if there is none.
      */
     double narrowest_gap(const CrackedBox &box)
     {
@@ -346,6 +427,8 @@ namespace PeriDeal
       for (const auto &crack : box.cracks)
         for (const std::vector<double> &end : crack)
           {
+            if (!is_inside(box, end))
+              continue;
             for (unsigned int d = 0; d < box.dim(); ++d)
               for (const double side : {box.lower[d], box.upper[d]})
                 see(std::abs(end[d] - side));
@@ -375,8 +458,15 @@ namespace PeriDeal
   {
     if (family == Family::bonds)
       return 2. * longest / scene.peridynamics.horizon;
-    const double fewest = dim == 1 ? 4. : 3.;
-    double       least  = std::max(fewest, 0.25 * needs.fineness);
+    if (family == Family::whole)
+      {
+        const std::vector<double> n     = first_counts();
+        double                    least = std::numeric_limits<double>::max();
+        for (unsigned int d = 0; d < dim; ++d)
+          least = std::min(least, n[d] / (box.upper[d] - box.lower[d]) * longest);
+        return least;
+      }
+    double least = std::max(fewest_cells<dim>, 0.25 * needs.fineness);
     if (family == Family::pairs || family == Family::zone)
       least = std::max(least, fineness_at_gaps(narrowest_gap(box) / longest));
     return least;

@@ -47,6 +47,9 @@ namespace PeriDeal
    *   the cracks, so that the cells there are the square of those far away; bodies that deform:
    *   bonds around the cracks on such a mesh.
    *
+   * Points that are held or loaded are put on nodes where a lattice not much finer does it: a model
+   * takes the nearest node.
+   *
    * For the nonlocal one of a horizon that is a length: peridynamics, with ever more nodes in it.
    */
   template <int dim>
@@ -93,15 +96,18 @@ namespace PeriDeal
                              const LimitOfAttempts limit,
                              const bool            on_faces);
 
-    CellCounts                counts(const double fineness) const;
-    void                      set_mesh(const double fineness, Attempt &attempt) const;
+    std::vector<double> first_counts() const;
+    CellCounts          counts(const double fineness) const;
+    unsigned int with_points_on_planes(const unsigned int direction, const unsigned int n) const;
+    void         set_mesh(const double fineness, Attempt &attempt) const;
     std::optional<CellCounts> on_faces(const double fineness) const;
     double                    fineness_of(const CellCounts &cells) const;
 
     const Scene<dim> &scene;
-    CrackedBox        box;
+    CrackedBox        box, points; // points: those of parts in place of cracks
     double            longest = 0.;
     NeedsOfFormulas   needs;
-    Family            family = Family::whole;
+    Family            family         = Family::whole;
+    double            first_fineness = 0.; // of the coarsest mesh; 0 until it is known
   };
 } // namespace PeriDeal

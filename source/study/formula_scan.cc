@@ -55,15 +55,21 @@ namespace PeriDeal
       }
 
 
-      /** Points of the raster between those of cells of about this size, along each edge. */
-      std::array<std::size_t, 3> strides(const double fineness) const
+      static constexpr unsigned int all = numbers::invalid_unsigned_int;
+
+      /**
+       * Points of the raster between those of cells of about this size, along each edge or, as
+       * short as can be along the others, along one.
+       */
+      std::array<std::size_t, 3> strides(const double fineness, const unsigned int axis) const
       {
         std::array<std::size_t, 3> strides{{1, 1, 1}};
         for (unsigned int d = 0; d < n; ++d)
-          {
-            const double wanted = std::exp2(std::round(std::log2(fineness * edges[d])));
-            strides[d] = cells / static_cast<std::size_t>(std::clamp<double>(wanted, 1., cells));
-          }
+          if (axis == all || axis == d)
+            {
+              const double wanted = std::exp2(std::round(std::log2(fineness * edges[d])));
+              strides[d] = cells / static_cast<std::size_t>(std::clamp<double>(wanted, 1., cells));
+            }
         return strides;
       }
 
@@ -122,7 +128,8 @@ namespace PeriDeal
       }
 
 
-      double fineness_needed() const
+      /** Along all edges, or along one. */
+      double fineness_needed(const unsigned int axis) const
       {
         constexpr double allowed   = 0.2;
         const double     variation = this->variation();
@@ -130,7 +137,7 @@ namespace PeriDeal
           return 1.;
         const double finest = cells / *std::min_element(edges.begin(), edges.end());
         for (double fineness = 1.; fineness < finest; fineness *= 2.)
-          if (squared_error(strides(fineness)) < allowed * allowed * variation)
+          if (squared_error(strides(fineness, axis)) < allowed * allowed * variation)
             return fineness;
         return finest;
       }
@@ -141,7 +148,8 @@ namespace PeriDeal
       {
         constexpr double least = 0.5;
         const double     fine  = squared_error({{2, 2, 2}});
-        return variation() > 0. && fine > 1e-8 * variation() && fine > least * least * squared_error({{4, 4, 4}});
+        return variation() > 0. && fine > 1e-8 * variation() &&
+               fine > least * least * squared_error({{4, 4, 4}});
       }
 
       const unsigned int        n, cells;
@@ -234,10 +242,14 @@ namespace PeriDeal
           return false;
         const unsigned int d     = side / 2;
         const double       place = side % 2 == 0 ? scene.domain.lower[d] : scene.domain.upper[d];
+        const double       slack = 1e-6 * (scene.domain.upper[d] - scene.domain.lower[d]);
+        const auto         lies_lower = [&](const auto &a, const auto &b) { return a[d] < b[d]; };
         for (const auto &crack : cracked_box(scene).cracks)
-          for (const std::vector<double> &end : crack)
-            if (std::abs(end[d] - place) < 1e-6 * (scene.domain.upper[d] - scene.domain.lower[d]))
+          {
+            const auto [low, high] = std::minmax_element(crack.begin(), crack.end(), lies_lower);
+            if ((*low)[d] < place + slack && (*high)[d] > place - slack)
               return true;
+          }
         return false;
       }
 
@@ -256,10 +268,14 @@ namespace PeriDeal
         double     longest = 0.;
         for (unsigned int d = 0; d < dim; ++d)
           longest = std::max(longest, scene.domain.upper[d] - scene.domain.lower[d]);
-        std::vector<double> edges;
+        std::vector<double>       edges;
+        std::vector<unsigned int> directions;
         for (unsigned int d = 0; d < dim; ++d)
           if (!on_side || d != side / 2)
-            edges.push_back((scene.domain.upper[d] - scene.domain.lower[d]) / longest);
+            {
+              edges.push_back((scene.domain.upper[d] - scene.domain.lower[d]) / longest);
+              directions.push_back(d);
+            }
         if (edges.empty())
           return;
         const Raster raster(finest_raster<dim>(on_side), edges, [&](const double *x) {
@@ -271,8 +287,16 @@ namespace PeriDeal
             }
           return function(p, t);
         });
-        found.fineness = std::max(found.fineness, raster.fineness_needed());
-        found.jumps    = found.jumps || (jumps == Jumps::matter && raster.jumps());
+        const double fineness = raster.fineness_needed(Raster::all);
+        found.fineness        = std::max(found.fineness, fineness);
+        for (unsigned int axis = 0; axis < directions.size(); ++axis)
+          {
+            double &along = found.along[directions[axis]];
+            along         = std::max(along, on_side ? fineness : raster.fineness_needed(axis));
+          }
+        if (on_side) // what varies along a side fades as fast away from it
+          found.along[side / 2] = std::max(found.along[side / 2], fineness);
+        found.jumps = found.jumps || (jumps == Jumps::matter && raster.jumps());
       }
 
       const Scene<dim> &scene;

@@ -8,9 +8,9 @@ namespace PeriDeal
   template <int dim>
   std::optional<Attempt> cubic_attempt(const Scene<dim> &scene, const Attempt &attempt)
   {
-    const AccuracyMeasure measure = scene.accuracy.measure;
-    if ((measure != AccuracyMeasure::probes && measure != AccuracyMeasure::flow) || scene.deforms ||
-        !scene.time.steady || scene.peridynamics.horizon > 0.)
+    const bool rests = scene.deforms ? scene.elasticity.is_static() : scene.time.steady;
+    if (scene.accuracy.measure == AccuracyMeasure::field || !rests ||
+        scene.peridynamics.horizon > 0. || (dim == 3 && scene.deforms))
       return {};
     Attempt cubic = attempt;
     for (Setting &setting : cubic.settings)

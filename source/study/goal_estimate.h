@@ -11,9 +11,10 @@ namespace PeriDeal
 {
   /**
    * The same mesh with cubic elements, where the error of quadratic ones in a goal J, a value at a
-   * probe or a flow, is J(u_3) - J(u_2): what dual weights with a dual solution in cubic elements
-   * would give. Nothing for other elements and other measures, for what changes with time or
-   * deforms, and for a horizon that is a length. Not collective.
+   * probe, a flow or a stress intensity, is J(u_3) - J(u_2): what dual weights with a dual solution
+   * in cubic elements would give. Nothing for other elements, for fields, for what changes with
+   * time, for a horizon that is a length, and in 3D for bodies that deform, where a third mesh
+   * costs less. Not collective.
    */
   template <int dim>
   std::optional<Attempt> cubic_attempt(const Scene<dim> &scene, const Attempt &attempt);
@@ -24,4 +25,11 @@ namespace PeriDeal
    */
   template <int dim>
   double factor_of_cubic(const Scene<dim> &scene);
+
+  /** In time and memory, of that of quadratic ones on the same mesh. */
+  template <int dim>
+  constexpr double cost_of_cubic()
+  {
+    return dim == 3 ? 8. : 4.;
+  }
 } // namespace PeriDeal

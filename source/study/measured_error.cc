@@ -222,6 +222,18 @@ namespace PeriDeal
         square += std::pow(component.template get<double>(), 2);
       return std::sqrt(square);
     }
+
+
+    /** The forces or the flow inside a body, which need not act on its sides. */
+    double scale_of(const Json &found)
+    {
+      double scale = 0.;
+      for (const auto &[balance, key] :
+           {std::make_pair("force balance", "scale"), std::make_pair("heat balance", "throughput")})
+        if (found.contains(balance))
+          scale = std::max(scale, found[balance].value(key, 0.));
+      return scale;
+    }
   } // namespace
 
 
@@ -237,9 +249,9 @@ namespace PeriDeal
     constexpr double  small    = 1e-6; // points that only keep a body from floating
     const std::string reaction = scene.deforms ? "boundary force" : "boundary flux";
     const Json        found    = simulation.found()["models"]["auto"];
-    double            largest  = 0.;
     if (!found.contains(reaction))
       return;
+    double largest = scale_of(found);
     for (const Json &value : found[reaction])
       largest = std::max(largest, size_of(value));
     for (const std::string &name : points)

@@ -93,12 +93,14 @@ namespace PeriDeal
         progress.line(scene.general.title + "  (" + text.file_name + ")");
         if (!scene.time.steady && !moves)
           choose_time_tolerance();
-        refine(classical, (is_nonlocal ? share_of_elements : 1.) * (tolerance - time_error));
+        // What steps in time leave may be too much; the mesh need not be made for nothing then.
+        const double in_space = std::max(0.5 * tolerance, tolerance - time_error);
+        refine(classical, (is_nonlocal ? share_of_elements : 1.) * in_space);
         if (!is_nonlocal)
           return;
         limit.clear();
         chosen = &nonlocal;
-        refine(nonlocal, tolerance - time_error);
+        refine(nonlocal, in_space);
       }
 
       void write(std::unique_ptr<RunFiles> files)
@@ -107,7 +109,7 @@ namespace PeriDeal
         line.precision(3);
         line << "estimated error: " << 100. * estimate() << " % (" << scene.accuracy.measure_text()
              << "), asked for " << 100. * scene.accuracy.tolerance << " %"
-             << (is_met() ? "" : ": not reached within " + limit);
+             << (is_met() ? "" : ": not reached " + reason_of_miss());
         progress.line(line.str());
         say_horizon();
         say_constant();
@@ -118,6 +120,15 @@ namespace PeriDeal
         const Tried<dim> last = chosen->release();
         Simulation<dim>(*last.scene, text, communicator, quiet)
           .write(std::move(files), more, progress);
+      }
+
+      std::string reason_of_miss() const
+      {
+        if (!limit.empty())
+          return "within " + limit;
+        return "by the smallest steps in time ('Tolerance' in section 'Time'), which leave about " +
+               rounded_text(100. * time_error) +
+               " %: something jumps in time, or linear systems are not solved well enough";
       }
 
       double elapsed() const
@@ -172,7 +183,8 @@ namespace PeriDeal
       {
         horizon_effect =
           *measure.difference(nonlocal.last().solution(), classical.last().solution());
-        if (nonlocal.error().error < 0.)
+        if (nonlocal.error().error < 0. ||
+            !classical.is_within(scene.accuracy.tolerance - time_error))
           return false;
         chosen = &classical;
         if (is_met())
@@ -226,15 +238,18 @@ namespace PeriDeal
           "room around the ends of cracks for some cells.");
         if (family.n_tried() >= most)
           return std::to_string(most) + " tries";
-        if (scene.accuracy.budget > 0. &&
-            elapsed() + family.expected_time(attempt) > scene.accuracy.budget)
+        return limit_of(family.expected_time(attempt), family.expected_memory(attempt));
+      }
+
+      /** Whether so many seconds and bytes may still be spent: what forbids it, or nothing. */
+      std::string limit_of(const double seconds, const double bytes) const
+      {
+        if (scene.accuracy.budget > 0. && elapsed() + seconds > scene.accuracy.budget)
           return "'Budget'";
         const double taken = Utilities::MPI::sum(resident_memory(), communicator);
         const bool   given = scene.accuracy.memory > 0.;
         const double left  = given ? scene.accuracy.memory - taken : available_memory(communicator);
-        return family.expected_memory(attempt) < left ? "" :
-               given                                  ? "'Memory'" :
-                                                        "the memory of the machine";
+        return bytes < left ? "" : given ? "'Memory'" : "the memory of the machine";
       }
 
       /** Throws UserError if nothing can be said of an error yet. */
@@ -259,6 +274,9 @@ namespace PeriDeal
       void compute(Search<dim> &family, const Attempt &attempt)
       {
         family.compute(attempt);
+        if (family.asks_richer() &&
+            limit_of(family.time_of_richer(), family.memory_of_richer()).empty())
+          family.ask_richer();
         const Tried<dim>  &last  = family.last();
         const double       error = family.error().error;
         std::ostringstream line;

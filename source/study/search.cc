@@ -121,21 +121,44 @@ namespace PeriDeal
     last_memory = Utilities::MPI::sum(std::max(1e6, resident_memory() - before), communicator);
     steps.push_back({attempt.fineness, difference ? *difference : 0.});
     now = observed_error(steps, family.lowest_order(), family.best_order());
-    if (steps.size() == 2)
-      see_cubic();
   }
 
 
   template <int dim>
-  void Search<dim>::see_cubic()
+  double Search<dim>::smallest_error() const
   {
-    const auto   cubic = cubic_attempt(scene, latest.attempt);
-    const double least =
-      steps[1].difference /
-      (std::pow(steps[1].fineness / steps[0].fineness, family.best_order()) - 1.);
-    if (!cubic || family.best_order() < 2. || least > scene.accuracy.tolerance)
-      return;
-    const Tried<dim> richer = solve(*cubic);
+    return steps[1].difference /
+           (std::pow(steps[1].fineness / steps[0].fineness, family.best_order()) - 1.);
+  }
+
+
+  template <int dim>
+  bool Search<dim>::asks_richer() const
+  {
+    return steps.size() == 2 && family.best_order() >= 2. &&
+           smallest_error() <= scene.accuracy.tolerance && cubic_attempt(scene, latest.attempt);
+  }
+
+
+  template <int dim>
+  double Search<dim>::time_of_richer() const
+  {
+    return cost_of_cubic<dim>() * latest.wall_time;
+  }
+
+
+  template <int dim>
+  double Search<dim>::memory_of_richer() const
+  {
+    return cost_of_cubic<dim>() * last_memory;
+  }
+
+
+  template <int dim>
+  void Search<dim>::ask_richer()
+  {
+    const double     least  = smallest_error();
+    const Tried<dim> richer = solve(*cubic_attempt(scene, latest.attempt));
     latest.estimate_time    = richer.wall_time;
     if (const auto d = measure.difference(richer.solution(), latest.solution()))
       {

@@ -62,6 +62,15 @@ namespace PeriDeal
     /** Solve, and compare with the last one, of which only its numbers are kept. */
     void compute(const Attempt &attempt);
 
+    /** Whether cubic elements would tell the error after two solutions. */
+    bool asks_richer() const;
+
+    /** Solve with them. */
+    void ask_richer();
+
+    double time_of_richer() const;   // seconds
+    double memory_of_richer() const; // bytes on all processes
+
     const Tried<dim> &last() const;
 
     /** After it nothing may be asked of the last one's solution. */
@@ -73,9 +82,9 @@ namespace PeriDeal
     /**
      * Whether the error may be called smaller than a tolerance. An order is seen in three solutions
      * at least; a low one is not trusted as long as all are coarse, since it says more of the first
-     * than of the last. Two are enough for a field where even the lowest order leaves their
-     * difference within the tolerance: at so many points it is not small by accident; and for
-     * probes and flows where cubic elements on the mesh of the second have been asked.
+     * than of the last. Two are enough for a field where an order of 1.25 leaves their difference
+     * within the tolerance: at so many points it is not small by accident; and for what
+     * cubic_attempt() is for where that has been solved on the mesh of the second.
      */
     bool is_within(const double tolerance) const;
 
@@ -89,7 +98,7 @@ namespace PeriDeal
   private:
     Attempt with_settings(const double fineness) const;
     double  growth(const Attempt &attempt) const;
-    void    see_cubic();
+    double  smallest_error() const; // of the second one
 
     const Scene<dim>             &scene;
     const SceneText              &text;

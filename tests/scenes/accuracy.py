@@ -121,10 +121,15 @@ def rough():
     scenes = {
         "a part of a side is hot": heat("  set Parts = hot: top if x < 0.37\n  set Dirichlet = hot: 1; bottom: 0"),
         "a thin strip": heat("  set Dirichlet = bottom: 0; top: 0", "subsection Domain\n  set Upper corner = 10, 1\nend\nsubsection Initial and source\n  set Source = exp(6*y)*(1+0.01*x)\nend\n"),
+        "a crack in a thin strip": heat("  set Dirichlet = bottom: 0; top: 0", "subsection Domain\n  set Upper corner = 10, 1\nend\nsubsection Cracks\n  set Segments = 5,0.5 ; 5,1\nend\n"
+                                        "subsection Initial and source\n  set Source = sin(2*pi*y)\nend\n"),
         "two values at a corner": heat("  set Dirichlet = left: 0; right: 0; bottom: 0; top: 1"),
         "phases a thousand times apart": heat("  set Dirichlet = left: 0; right: 1", "subsection Material\n  set Conductivity = if(sin(3*pi*x)*sin(3*pi*y) > 0, 1000, 1)\nend\n"),
         "a crack near a side": heat("  set Dirichlet = left: 0; right: 1", "subsection Cracks\n  set Segments = 0.5,0.02 ; 0.52,0.6\nend\n"),
         "cracks that cross": heat("  set Dirichlet = bottom: 0; top: 1", "subsection Cracks\n  set Segments = 0.2,0.3 ; 0.8,0.7 ; 0.3,0.75 ; 0.75,0.25\nend\n"),
+        "held at points, and warm": "set Dimension = 2\nset Physics = elasticity\nset Models = auto\nsubsection Material\n  set Young modulus = 1\n  set Poisson ratio = 0.3\n  set Thermal expansion = 1e-3\nend\n"
+                                    "subsection Elasticity\n  set Temperature change = sin(3*x)*y\nend\nsubsection Boundary conditions\n  set Parts = a: point 0, 0.3 ; b: point 1, 0.3\n"
+                                    "  set Displacement = a: 0, 0 ; b: free, 0\nend\n",
         "a hard inclusion": elastic("if((x-0.5)^2+(y-0.5)^2 < 0.04, 100, 1)"),
         "two cracks in a solid": elastic("1", "subsection Cracks\n  set Segments = 0.2,0.4 ; 0.5,0.5 ; 0.55,0.6 ; 0.85,0.5\nend\n"),
         "a pulse of heat": heat("  set Dirichlet = left: 0; right: 0", "subsection Initial and source\n  set Source = 50*exp(-((t-0.5)/0.02)^2)*sin(pi*x)\nend\n").replace("set Steady = true", "set End time = 1"),
@@ -140,6 +145,22 @@ def rough():
             found[tolerance] = np.array([[row[column] for column in row if column in ("value", "ux", "uy")] for row in run.rows("auto", time=end)])
         fine = found["4e-3"]
         check_less(root_mean_square(found["2e-2"] - fine) / widest(fine), 2.4e-2, f"{name}: difference from what is five times as accurate")
+    thin_block()
+
+
+def thin_block():
+    """What varies across a plate does not fill it with cells as short as that needs."""
+    plate = ("set Dimension = 3\nset Models = auto\nsubsection Time\n  set Steady = true\nend\nsubsection Domain\n  set Upper corner = 1, 1, 0.02\nend\n"
+             "subsection Boundary conditions\n  set Dirichlet = back: 0; front: 0\nend\nsubsection Initial and source\n  set Source = exp(-z/0.002)*(1+0.5*x)\nend\n")
+    rng = np.random.default_rng(7)
+    points = np.column_stack([0.1 + 0.8 * rng.random((200, 2)), 0.02 * rng.random(200)])
+    run = run_scene(with_probes(plate, points), {"Accuracy/Tolerance": "3e-2"})
+    tries = run.summary["accuracy"]["steps"]
+    check_less(np.prod([int(n) for n in tries[0]["settings"]["Domain/Cells"].split(",")]), 1.1e4, "cells of the first mesh")
+    x, z = points[:, 0], points[:, 2] / 0.02
+    exact = (1 + 0.5 * x) * 0.002 ** 2 * (1 - np.exp(-10 * z) - z * (1 - np.exp(-10.)))
+    found = np.array([row["value"] for row in run.rows("auto")])
+    check_less(root_mean_square((found - exact)[:, None]) / (exact.max() - exact.min()), 3e-2, "error of a plate with a layer")
 
 
 def goals():

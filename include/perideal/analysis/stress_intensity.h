@@ -57,6 +57,9 @@ namespace PeriDeal
                      const Moduli               &moduli,
                      const PlaneState            plane);
 
+    /** Whether what lies at most so far from a point counts. */
+    bool reaches(const dealii::Point<2> &p, const double radius) const;
+
     /** @param weight the share of the area; gradient[i][j] = du_i/dx_j; force: b, per volume */
     void add(const dealii::Point<2>              &p,
              const double                         weight,
