@@ -45,7 +45,7 @@ namespace
     EXPECT_LT(observed_error({{4., 0.}}, 1., 3.).error, 0.);
     const double two = 0.3 / (std::pow(2., 2.25) - 1.);
     EXPECT_NEAR(observed_error({{4., 0.}, {8., 0.3}}, 1., 3.).error, two, 1e-12);
-    EXPECT_NEAR(observed_error({{4., 0.}, {8., 0.3}}, 1., 1.).error, two, 1e-12);
+    EXPECT_NEAR(observed_error({{4., 0.}, {8., 0.3}}, 1., 1.).error, 0.3, 1e-12);
     EXPECT_NEAR(largest_error({{4., 0.}, {8., 0.3}}), 0.3 / (std::pow(2., 1.25) - 1.), 1e-12);
   }
 
