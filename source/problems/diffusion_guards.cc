@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// What the guards of a run look for where something diffuses, and what brings it about.
+#include "diffusion_guards.h"
 
 #include <perideal/problems/diffusion_problem.h>
-#include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,52 +46,56 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned int DiffusionProblem<dim>::steps_between_looks() const
+  DiffusionGuards<dim>::DiffusionGuards(DiffusionProblem<dim> &problem)
+    : problem(problem)
+  {}
+
+
+  template <int dim>
+  unsigned int DiffusionGuards<dim>::steps_between_looks() const
   {
-    if (!stepper || growth.suspects())
+    if (!problem.stepper || growth.suspects())
       return 1;
     // A look reads the values once, a step of one application all of K.
-    return stepper->name() == "euler" ? 10 : stepper->name() == "rk4" ? 3 : 1;
+    const std::string name = problem.stepper->name();
+    return name == "euler" ? 10 : name == "rk4" ? 3 : 1;
   }
 
 
   template <int dim>
-  Trip DiffusionProblem<dim>::watch(const double t)
+  Trip DiffusionGuards<dim>::watch(const double t)
   {
-    const PlaceOfNode place_of = place_of_nodes(*this);
+    const PlaceOfNode  place_of = place_of_nodes(problem);
+    const Scene<dim>  &scene    = problem.scene;
+    DiffusionOperator &op       = problem.op();
     if (scene.time.steady)
-      return extent_of(solution).finite ?
+      return extent_of(problem.solution).finite ?
                Trip() :
-               values_not_finite(solution, 1, place_of, this->field_name(), t);
-    const auto before = op().n_applications();
-    const auto given  = range_of_given(scene, op());
-    const Trip trip   = growth.look(op(),
-                                  solution,
+               values_not_finite(problem.solution, 1, place_of, problem.field_name(), t);
+    const auto before = op.n_applications();
+    const auto given  = range_of_given(scene, op);
+    const Trip trip   = growth.look(op,
+                                  problem.solution,
                                   t,
                                   given ? &*given : nullptr,
                                   place_of,
-                                  names_of(scene.general.physics).field);
-    op().carry_over_applications(before - op().n_applications()); // a look is none of the run's
-    return trip ? trip : step_too_small(*stepper, scene.time.end_time, t);
+                                  problem.field_name());
+    op.carry_over_applications(before - op.n_applications()); // a look is none of the run's
+    return trip ? trip : step_too_small(*problem.stepper, scene.time.end_time, t);
   }
 
 
   template <int dim>
-  void DiffusionProblem<dim>::explain(Trip &trip)
+  void DiffusionGuards<dim>::explain(Trip &trip) const
   {
-    if (trip.cause.empty() && stepper)
-      trip.cause = cause_in_step(*stepper, op(), solution, trip);
+    if (trip.cause.empty() && problem.stepper)
+      trip.cause = cause_in_step(*problem.stepper, problem.op(), problem.solution, trip);
     if (trip.cause.empty())
-      trip.cause = cause_in_operator(op(), place_of_nodes(*this), trip);
+      trip.cause = cause_in_operator(problem.op(), place_of_nodes(problem), trip);
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                           \
-  template unsigned int DiffusionProblem<dim>::steps_between_looks() const; \
-  template Trip         DiffusionProblem<dim>::watch(const double);         \
-  template void         DiffusionProblem<dim>::explain(Trip &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  template class DiffusionGuards<1>;
+  template class DiffusionGuards<2>;
+  template class DiffusionGuards<3>;
 } // namespace PeriDeal

@@ -11,10 +11,11 @@
 #include <algorithm>
 #include <sstream>
 
+#include "diffusion_guards.h"
 #include "diffusion_notes.h"
 #include "diffusion_parts.h"
-#include "effective_conductivity.h"
-#include "finite_results.h"
+#include "diffusion_summary.h"
+#include "diffusion_totals.h"
 
 namespace PeriDeal
 {
@@ -107,7 +108,12 @@ namespace PeriDeal
   template <int dim>
   DiffusionProblem<dim>::DiffusionProblem(const Scene<dim> &scene)
     : scene(scene)
+    , guards(std::make_unique<DiffusionGuards<dim>>(*this))
   {}
+
+
+  template <int dim>
+  DiffusionProblem<dim>::~DiffusionProblem() = default;
 
 
   template <int dim>
@@ -409,59 +415,35 @@ namespace PeriDeal
   template <int dim>
   void DiffusionProblem<dim>::add_totals(const double t, const RunContext &context)
   {
-    ResultRecord &record = context.record;
-    Balance       balance;
-    double        content = 0.;
-    with_formulas(this->dofs().get_communicator(), [&] {
-      balance = op().balance(solution, t, scene.time.steady);
-      content = scene.general.physics == Physics::moisture ? weight(solution) : balance.content;
-    });
-    const PhysicsNames &names = names_of(scene.general.physics);
-    require_finite(
-      {{"largest " + names.field, solution.linfty_norm()},
-       {names.flow, balance.throughput()},
-       {"imbalance", balance.imbalance()},
-       {names.content, balance.content}},
-      this->name(),
-      t,
-      "Numbers beyond 1e308 came up. Check the sizes and units of values, fluxes and sources (sections 'Boundary conditions' and 'Initial and source') and of the "
-      "properties in section 'Material'.");
-    const auto row = [&](const std::string &quantity, const double value) {
-      record.add_row(this->name(), quantity, value, t);
-    };
-    row(names.content, content);
-    for (const auto &[side, value] : balance.sides)
-      row(names.flow + " through " + side, value);
-    row(names.flow + " from sources", balance.sources);
-    nlohmann::ordered_json cumulative; // not if steady
-    row("rate of storage", balance.stored);
-    row("throughput", balance.throughput());
-    row("imbalance", balance.imbalance());
-    if (stepper)
-      {
-        const CumulativeBalance since_start =
-          ledger.balance(stepper->entered(), balance.content, this->dofs().get_communicator());
-        row(names.quantity + " entered since start", since_start.entered);
-        row(names.quantity + " stored since start", since_start.stored);
-        row("cumulative imbalance", since_start.imbalance());
-        cumulative = {{"entered", since_start.entered},
-                      {"stored", since_start.stored},
-                      {"imbalance", since_start.imbalance()}};
-      }
-    for (std::size_t crack = 0; crack < balance.cracks.size(); ++crack)
-      row(names.flow + " through crack " + std::to_string(crack + 1), balance.cracks[crack]);
-    record.balances[this->name()] = {
-      {"boundary flux", balance.sides},
-      {"heat balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}}};
-    if (!cumulative.empty())
-      record.balances[this->name()]["heat balance"]["cumulative"] = cumulative;
-    if (const auto kappa = effective_conductivity(scene, balance))
-      {
-        row("effective conductivity", *kappa);
-        record.balances[this->name()]["effective conductivity"] = *kappa;
-      }
-    if (!balance.cracks.empty())
-      record.balances[this->name()]["crack flux"] = balance.cracks;
+    add_diffusion_totals(*this, t, context);
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::describe_scene(nlohmann::ordered_json &summary, const bool) const
+  {
+    describe_diffusion_scene(scene, summary);
+  }
+
+
+  template <int dim>
+  unsigned int DiffusionProblem<dim>::steps_between_looks() const
+  {
+    return guards->steps_between_looks();
+  }
+
+
+  template <int dim>
+  Trip DiffusionProblem<dim>::watch(const double t)
+  {
+    return guards->watch(t);
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::explain(Trip &trip)
+  {
+    guards->explain(trip);
   }
 
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// What the summary says of a scene in which something diffuses.
-
-#include <perideal/problems/diffusion_problem.h>
-#include <perideal/problems/result_record.h>
+#include "diffusion_summary.h"
 
 namespace PeriDeal
 {
@@ -55,7 +52,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void DiffusionProblem<dim>::describe_scene(nlohmann::ordered_json &summary, const bool) const
+  void describe_diffusion_scene(const Scene<dim> &scene, nlohmann::ordered_json &summary)
   {
     if (scene.general.physics == Physics::moisture)
       summary["moisture counts"] = counts_wetness(scene.material) ? "wetness" : "mass";
@@ -63,10 +60,8 @@ namespace PeriDeal
     summary["reference"] = scene.reference.solution;
   }
 
-#define PERIDEAL_INSTANTIATE(dim) \
-  template void DiffusionProblem<dim>::describe_scene(nlohmann::ordered_json &, const bool) const;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+
+  template void describe_diffusion_scene(const Scene<1> &, nlohmann::ordered_json &);
+  template void describe_diffusion_scene(const Scene<2> &, nlohmann::ordered_json &);
+  template void describe_diffusion_scene(const Scene<3> &, nlohmann::ordered_json &);
 } // namespace PeriDeal

@@ -5,7 +5,6 @@
 
 #include <perideal/analysis/comparison.h>
 #include <perideal/analysis/recovery.h>
-#include <perideal/problems/guards.h>
 #include <perideal/problems/heat_ledger.h>
 #include <perideal/problems/model.h>
 #include <perideal/problems/problem.h>
@@ -20,12 +19,16 @@
 
 namespace PeriDeal
 {
+  template <int dim>
+  class DiffusionGuards;
+
   /** What diffuses, in one model of a scene. Functions are collective. */
   template <int dim>
   class DiffusionProblem : public Problem<dim>
   {
   public:
     explicit DiffusionProblem(const Scene<dim> &scene);
+    ~DiffusionProblem() override;
 
     void                   begin(const RunContext &context) override;
     void                   settle(const RunContext &context) override;
@@ -123,7 +126,7 @@ namespace PeriDeal
     void make_stepper();
     void repeat_changes();
 
-    GrowthGuard growth;
+    std::unique_ptr<DiffusionGuards<dim>> guards;
   };
 
 

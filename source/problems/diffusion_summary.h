@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/scene/scene.h>
+
+#include <nlohmann/json.hpp>
+
+namespace PeriDeal
+{
+  /** What the summary says of a scene in which something diffuses: sides and what holds there. */
+  template <int dim>
+  void describe_diffusion_scene(const Scene<dim> &scene, nlohmann::ordered_json &summary);
+} // namespace PeriDeal

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "diffusion_totals.h"
+
+#include <perideal/problems/result_record.h>
+#include <perideal/scene/with_formulas.h>
+
+#include "effective_conductivity.h"
+#include "finite_results.h"
+
+namespace PeriDeal
+{
+  template <int dim>
+  void add_diffusion_totals(DiffusionProblem<dim> &problem,
+                            const double           t,
+                            const RunContext      &context)
+  {
+    ResultRecord &record = context.record;
+    Balance       balance;
+    double        content = 0.;
+    with_formulas(problem.dofs().get_communicator(), [&] {
+      balance = problem.op().balance(problem.solution, t, problem.scene.time.steady);
+      content = problem.scene.general.physics == Physics::moisture ?
+                  problem.weight(problem.solution) :
+                  balance.content;
+    });
+    const PhysicsNames &names = names_of(problem.scene.general.physics);
+    require_finite(
+      {{"largest " + names.field, problem.solution.linfty_norm()},
+       {names.flow, balance.throughput()},
+       {"imbalance", balance.imbalance()},
+       {names.content, balance.content}},
+      problem.name(),
+      t,
+      "Numbers beyond 1e308 came up. Check the sizes and units of values, fluxes and sources (sections 'Boundary conditions' and 'Initial and source') and of the "
+      "properties in section 'Material'.");
+    const auto row = [&](const std::string &quantity, const double value) {
+      record.add_row(problem.name(), quantity, value, t);
+    };
+    row(names.content, content);
+    for (const auto &[side, value] : balance.sides)
+      row(names.flow + " through " + side, value);
+    row(names.flow + " from sources", balance.sources);
+    nlohmann::ordered_json cumulative; // not if steady
+    row("rate of storage", balance.stored);
+    row("throughput", balance.throughput());
+    row("imbalance", balance.imbalance());
+    if (problem.stepper)
+      {
+        const CumulativeBalance since_start =
+          problem.ledger.balance(problem.stepper->entered(),
+                                 balance.content,
+                                 problem.dofs().get_communicator());
+        row(names.quantity + " entered since start", since_start.entered);
+        row(names.quantity + " stored since start", since_start.stored);
+        row("cumulative imbalance", since_start.imbalance());
+        cumulative = {{"entered", since_start.entered},
+                      {"stored", since_start.stored},
+                      {"imbalance", since_start.imbalance()}};
+      }
+    for (std::size_t crack = 0; crack < balance.cracks.size(); ++crack)
+      row(names.flow + " through crack " + std::to_string(crack + 1), balance.cracks[crack]);
+    record.balances[problem.name()] = {
+      {"boundary flux", balance.sides},
+      {"heat balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}}};
+    if (!cumulative.empty())
+      record.balances[problem.name()]["heat balance"]["cumulative"] = cumulative;
+    if (const auto kappa = effective_conductivity(problem.scene, balance))
+      {
+        row("effective conductivity", *kappa);
+        record.balances[problem.name()]["effective conductivity"] = *kappa;
+      }
+    if (!balance.cracks.empty())
+      record.balances[problem.name()]["crack flux"] = balance.cracks;
+  }
+
+
+  template void add_diffusion_totals(DiffusionProblem<1> &, const double, const RunContext &);
+  template void add_diffusion_totals(DiffusionProblem<2> &, const double, const RunContext &);
+  template void add_diffusion_totals(DiffusionProblem<3> &, const double, const RunContext &);
+} // namespace PeriDeal
