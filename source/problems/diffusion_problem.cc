@@ -129,6 +129,8 @@ namespace PeriDeal
     with_formulas(this->dofs().get_communicator(),
                   [&] { stepper = PeriDeal::make_stepper(scene.time.stepper, op(), options); });
     check_stepper(stepper->name(), scene.time, op().spectrum().sharp * scene.time.end_time);
+    if (scene.guards.goes_on())
+      stepper->findings().let_wait();
   }
 
 
@@ -148,8 +150,10 @@ namespace PeriDeal
       return;
     const StepperCost before  = stepper->cost();
     const double      entered = stepper->entered();
+    const Findings    found   = stepper->findings();
     make_stepper();
     stepper->carry_over(before, entered);
+    stepper->findings().carry_over(found);
   }
 
 
@@ -430,6 +434,13 @@ namespace PeriDeal
   unsigned int DiffusionProblem<dim>::steps_between_looks() const
   {
     return guards->steps_between_looks();
+  }
+
+
+  template <int dim>
+  Trip DiffusionProblem<dim>::take_finding()
+  {
+    return stepper ? stepper->findings().take() : Trip();
   }
 
 

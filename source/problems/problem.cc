@@ -51,6 +51,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  Trip Problem<dim>::take_finding()
+  {
+    return {};
+  }
+
+
+  template <int dim>
   void Problem<dim>::explain(Trip &)
   {}
 

@@ -108,6 +108,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  Trip SolidProblem<dim>::take_finding()
+  {
+    return stepper ? stepper->findings().take() : loading ? loading->findings().take() : Trip();
+  }
+
+
+  template <int dim>
   Trip SolidProblem<dim>::watch(const double t)
   {
     const PlaceOfNode place_of = place_of_nodes(*this);
@@ -138,6 +145,7 @@ namespace PeriDeal
 
 #define PERIDEAL_INSTANTIATE(dim)                                       \
   template unsigned int SolidProblem<dim>::steps_between_looks() const; \
+  template Trip         SolidProblem<dim>::take_finding();              \
   template Trip         SolidProblem<dim>::watch(const double);         \
   template double       SolidProblem<dim>::body_size();                 \
   template void         SolidProblem<dim>::explain(Trip &);

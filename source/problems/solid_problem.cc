@@ -161,6 +161,8 @@ namespace PeriDeal
     op().linearize(displacement);
     stepper     = make_motion_stepper(scene.time.stepper, op(), stepper_options());
     stable_step = stable_motion_step(op());
+    if (scene.guards.goes_on())
+      stepper->findings().let_wait();
     std::ostringstream line;
     line << this->name() << ": stepper " << stepper->name() << ", step " << stepper->current_step()
          << ", "
@@ -412,6 +414,8 @@ namespace PeriDeal
       op(),
       make_static_solver(scene.elasticity.solver_name(), op(), options),
       options);
+    if (scene.guards.goes_on())
+      loading->findings().let_wait();
   }
 
 

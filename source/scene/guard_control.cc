@@ -14,8 +14,9 @@ namespace PeriDeal
       "stop",
       "",
       "What a run does when its state becomes none (values that are not finite or grow without a cause, parts that have flown off): `stop` ends it there with the "
-      "place and the cause, exit status 1 and the status `diverged`; `warn` says so in a note, once for each kind, and goes on; `off` looks for nothing. "
-      "What solvers cannot compute is an error in any case.",
+      "place and the cause, exit status 1 and the status `diverged`; `warn` says so in a note, once for each kind, and goes on, also where a solver finds energy "
+      "from nowhere, a step above its limit or a body inside out; `off` goes on, too, and says nothing. "
+      "Values that are not finite, a `Time step` above its limit from the start and what solvers cannot compute are errors in any case.",
       {"stop", "warn", "off"});
   }
 

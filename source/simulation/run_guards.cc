@@ -5,6 +5,8 @@
 
 #include <perideal/scene/lists.h>
 
+#include <cmath>
+
 namespace PeriDeal
 {
   namespace
@@ -70,18 +72,48 @@ namespace PeriDeal
     if (!are_on())
       return;
     Timings::Scope scope(timings, "guards");
-    Trip           trip = problem.watch(t);
-    const bool     stop = control.action == GuardAction::stop;
-    if (!trip || (!stop && !told.insert({problem.name(), trip.monitor}).second))
+    act_on_findings(problem);
+    act_on(problem, problem.watch(t));
+  }
+
+
+  template <int dim>
+  void RunGuards<dim>::act_on_findings(Problem<dim> &problem)
+  {
+    while (const Trip found = problem.take_finding())
+      act_on(problem, found);
+  }
+
+
+  template <int dim>
+  void RunGuards<dim>::act_on(const Problem<dim> &problem, Trip trip)
+  {
+    if (!trip)
       return;
-    // What a run goes on with keeps its material.
-    if (stop)
+    // Nothing can go on with what is no number. What a run goes on with keeps its material: the
+    // cause, for which that is changed, is not looked for.
+    if (control.action == GuardAction::stop || !std::isfinite(trip.value))
       throw Diverged(trip);
-    trip.n_steps           = steps_of(problem.describe_solving());
+    nlohmann::ordered_json &told = record.warned[problem.name()];
+    if (told.contains(trip.monitor))
+      return;
+    told[trip.monitor] = true;
+    if (trip.n_steps == 0) // else a solver has found it some steps ago
+      trip.n_steps = steps_of(problem.describe_solving());
     const std::string note = message_of(problem, trip) +
                              " 'Action = stop' in section 'Guards' would have ended the run there.";
     progress.note(note);
     record.notes.push_back(note);
+  }
+
+
+  template <int dim>
+  void RunGuards<dim>::examine(Problem<dim> &problem, const double t)
+  {
+    look(problem, t);
+    problem.examine(t);
+    if (are_on())
+      act_on_findings(problem);
   }
 
 

@@ -11,9 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <functional>
-#include <set>
 #include <string>
-#include <utility>
 
 namespace PeriDeal
 {
@@ -36,8 +34,11 @@ namespace PeriDeal
     /** A step of this problem ends at t: look, if that is due. Throws Diverged. */
     void after_step(Problem<dim> &problem, const double t);
 
-    /** Look now. Throws Diverged. */
+    /** Look now, at what solvers have found by themselves first. Throws Diverged. */
     void look(Problem<dim> &problem, const double t);
+
+    /** Before results of a time are written: look, and have the problem examine its state. */
+    void examine(Problem<dim> &problem, const double t);
 
     /**
      * Do it, and add to what it throws as Diverged what the problem knows of it: the message for
@@ -46,12 +47,17 @@ namespace PeriDeal
     void over(Problem<dim> &problem, const double t, const std::function<void()> &action);
 
   private:
-    const GuardControl                           &control;
-    const Progress                               &progress;
-    ResultRecord                                 &record;
-    Timings                                      &timings;
-    unsigned int                                  n_steps = 0; // since the last look
-    std::set<std::pair<std::string, std::string>> told;        // problem and monitor, of `warn`
+    /** Of solvers, which wait. */
+    void act_on_findings(Problem<dim> &problem);
+
+    /** What has been found ends the run, or becomes a note. */
+    void act_on(const Problem<dim> &problem, Trip trip);
+
+    const GuardControl &control;
+    const Progress     &progress;
+    ResultRecord       &record;
+    Timings            &timings;
+    unsigned int        n_steps = 0; // since the last look
   };
 
 

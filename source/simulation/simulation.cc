@@ -305,10 +305,7 @@ namespace PeriDeal
   void Simulation<dim>::write_output(const double t)
   {
     for (Problem<dim> *const problem : problems)
-      guards->over(*problem, t, [&] {
-        guards->look(*problem, t);
-        problem->examine(t);
-      });
+      guards->over(*problem, t, [&] { guards->examine(*problem, t); });
     progress.doing("writing results");
     Timings::Scope scope(timings, "output");
     if (!adaptation.readers_fit)

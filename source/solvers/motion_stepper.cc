@@ -80,53 +80,69 @@ namespace PeriDeal
   void MotionStepper::check(const Vector &v, const double t)
   {
     const Trip fault = account.fault(v, spent.steps);
-    if (fault)
-      throw Diverged("The run became unstable: stepper '" + name() + "' " + fault.found +
-                       " before t = " + number(t) +
-                       ". Choose a smaller 'Time step', or 'Stepper = newmark', in section 'Time'.",
-                     fault.monitor,
-                     fault.value,
-                     fault.bound,
-                     t);
+    if (fault && !found.has(fault.monitor))
+      found.add(
+        Diverged("The run became unstable: stepper '" + name() + "' " + fault.found +
+                   " before t = " + number(t) +
+                   ". Choose a smaller 'Time step', or 'Stepper = newmark', in section 'Time'.",
+                 fault.monitor,
+                 fault.value,
+                 fault.bound,
+                 t),
+        spent.steps);
   }
 
 
   void MotionStepper::check_drift(const Vector &u, const Vector &v, const double t)
   {
-    const MotionEnergy found = energy(u, v);
-    const std::string  fault = account.drift_fault(found, allowed_drift);
+    if (found.has("energy"))
+      return;
+    const MotionEnergy now   = energy(u, v);
+    const std::string  fault = account.drift_fault(now, allowed_drift);
     if (!fault.empty())
-      throw Diverged("The energy of the motion is not kept: before t = " + number(t) +
-                       " stepper '" + name() + "' has " + fault +
-                       ". The body deforms too much within a step of " + number(account.step()) +
-                       ": choose a 'Time step' of " + number(0.5 * account.step()) +
-                       " or less in section 'Time', or a smaller load.",
-                     "energy",
-                     found.drift,
-                     allowed_drift * found.exchanged,
-                     t);
+      found.add(
+        Diverged("The energy of the motion is not kept: before t = " + number(t) + " stepper '" +
+                   name() + "' has " + fault + ". The body deforms too much within a step of " +
+                   number(account.step()) + ": choose a 'Time step' of " +
+                   number(0.5 * account.step()) + " or less in section 'Time', or a smaller load.",
+                 "energy",
+                 now.drift,
+                 allowed_drift * now.exchanged,
+                 t),
+        spent.steps);
   }
 
 
-  void MotionStepper::check_inversion(const Vector &u, const double t) const
+  void MotionStepper::check_inversion(const Vector &u, const double t)
   {
-    if (!op.nonlinear())
+    if (!op.nonlinear() || found.has("inversion"))
       return;
-    const Inversion found = op.inverted(u);
-    if (found.n_nodes > 0)
-      throw Diverged("Before t = " + number(t) + " " + inverted_text(found),
-                     "inversion",
-                     found.n_nodes,
-                     0.,
-                     t);
+    const Inversion now = op.inverted(u);
+    if (now.n_nodes > 0)
+      found.add(Diverged("Before t = " + number(t) + " " + inverted_text(now),
+                         "inversion",
+                         now.n_nodes,
+                         0.,
+                         t),
+                spent.steps);
   }
 
 
   bool MotionStepper::follow_body(const Vector &u, const double t)
   {
-    const double before = longest;
-    if (limit)
-      longest = limit->follow(u, t, spent.steps);
+    const std::string what   = "time step"; // all that is gone on from here
+    const double      before = longest;
+    if (limit && !found.has(what))
+      try
+        {
+          longest = limit->follow(u, t, spent.steps);
+        }
+      catch (const Diverged &diverged)
+        {
+          if (diverged.trip.monitor != what)
+            throw;
+          found.add(diverged, spent.steps);
+        }
     shortest = std::min(shortest, longest);
     return longest != before;
   }

@@ -47,10 +47,18 @@ namespace PeriDeal
 
       void restart() override
       {
-        if (fixed)
-          refuse_unstable_step(method, op, dt);
-        else
+        if (!fixed)
           dt = share_of_bound * stable_step(method, op.spectrum().sharp);
+        else if (!found.has("time step"))
+          try
+            {
+              refuse_unstable_step(method, op, dt);
+            }
+          catch (Diverged &diverged)
+            {
+              diverged.trip.time = span.now;
+              found.add(diverged, spent.steps);
+            }
       }
 
       double current_step() const override
@@ -91,15 +99,7 @@ namespace PeriDeal
         op.distribute(u, t);
         op.take_material_at(u);
         inverse = inverse_capacity(op);
-        try
-          {
-            restart(); // the bound of this step
-          }
-        catch (Diverged &diverged)
-          {
-            diverged.trip.time = t;
-            throw;
-          }
+        restart(); // the bound of this step
         const bool   lands = t + dt * (1. + 1e-10) >= span.end;
         const double size  = lands ? span.end - t : dt;
         if (conservative.needed())

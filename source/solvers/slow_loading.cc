@@ -87,18 +87,19 @@ namespace PeriDeal
   }
 
 
-  void SlowLoading::check_inversion(Vector &u, const double t) const
+  void SlowLoading::check_inversion(Vector &u, const double t)
   {
-    if (!op.nonlinear())
+    if (!op.nonlinear() || found.has("inversion"))
       return;
-    const Inversion found = op.inverted(u);
-    if (found.n_nodes == 0)
+    const Inversion inverted = op.inverted(u);
+    if (inverted.n_nodes == 0)
       return;
-    u = last;
+    if (!found.may_wait())
+      u = last;
     std::ostringstream message;
     message << "In the equilibrium that '" << solver->name() << "' has found at t = " << t << ' '
-            << inverted_text(found);
-    throw Diverged(message.str(), "inversion", found.n_nodes, 0., t);
+            << inverted_text(inverted);
+    found.add(Diverged(message.str(), "inversion", inverted.n_nodes, 0., t), steps);
   }
 
 

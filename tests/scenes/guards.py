@@ -14,9 +14,10 @@ import xml.etree.ElementTree as xml
 import h5py
 import numpy
 
-from scene_test import check, check_clean_error, check_less, finish, print_table, run_scene
+from scene_test import Run, check, check_less, finish, print_table, run_perideal, run_scene
 
 SOON = 20  # steps after the first growth
+TOLD = "'Action = stop' in section 'Guards'"  # in notes of what would have ended the run
 
 PLATE = """
 set Models = peridynamics
@@ -253,6 +254,49 @@ def actions():
     for action in ("warn", "off"):
         run = run_scene(SOURCE_ENDS, {"Guards/Action": action}, expect_error=True)
         check(run.summary["status"] == "diverged" and "sqrt(0.05 - t)" in run.stderr, f"{action}: {run.stderr}")
+    findings_of_solvers()
+
+
+def findings_of_solvers():
+    """Where solvers notice something by themselves `warn` and `off` go on, too, until nothing is finite."""
+    scene = PULLED.replace("STEP", "0.0092")
+    words = ("'verlet' is stable up to", "the body is inside out", "The energy of the motion is not kept")
+    numbers = {}
+    for action, ranks in (("warn", 1), ("warn", 2), ("off", 1)):
+        what = f"strip that is pulled, {action} on {ranks}"
+        run = run_scene(scene, {"Guards/Action": action, "Output/Fields": "none"}, ranks)
+        notes = told_by(run)
+        check(run.summary["status"] == "complete" and "guard" not in run.summary, f"{what}: {run.summary['status']}")
+        check_told(notes, words if action == "warn" else (), what)
+        numbers[what] = [row["value"] for row in run.totals], [note.split(": ")[0] for note in notes]
+    whole, two, silent = numbers.values()
+    check(whole[0] == silent[0], "guards change no result of a solver")
+    check(whole[1] == two[1], f"notes of {whole[1]}, and of {two[1]} on two processes")
+    # until that, and nothing is told again by a run that is resumed
+    for action in ("warn", "off"):
+        settings = {"Guards/Action": action, "Time/End time": "8", "Checkpoint/Times": "2"}
+        run = run_scene(scene, settings, expect_error=True)
+        for what in (f"{action}, until nothing is finite", f"{action}, resumed"):
+            is_resumed = "resumed" in what
+            guard = run.summary.get("guard", {})
+            check(run.summary["status"] == "diverged" and guard.get("monitor") == "finite values", f"{what}: {run.summary['status']}, {guard}")
+            check(4 < guard["time"] < 5, f"{what}: at t = {guard['time']}")
+            check(("resumed at t = 2," in run.stdout) == is_resumed, f"{what}: {run.stdout}")
+            told = [line for line in run.stdout.splitlines() if TOLD in line]  # summary.json may be that of an earlier time of output
+            check_told(told, words if action == "warn" and not is_resumed else (), what)
+            if not is_resumed:
+                arguments = ["run", os.path.join(os.path.dirname(run.folder), "scene.prm"), "--resume", "-s", f"Output directory={run.folder}"]
+                result = run_perideal(arguments + [word for entry, value in settings.items() for word in ("-s", f"{entry}={value}")])
+                run = Run(run.folder, *result)
+
+
+def told_by(run):
+    return [note for note in run.summary["notes"] if TOLD in note]
+
+
+def check_told(notes, words, what):
+    """One note with each of the words, in their order."""
+    check(len(notes) == len(words) and all(word in note for word, note in zip(words, notes)), f"{what}: {notes}")
 
 
 def share():

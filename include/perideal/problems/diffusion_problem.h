@@ -39,6 +39,7 @@ namespace PeriDeal
     void                   exchange(Archive &archive) override;
     double                 work_of(const double span) const override;
     unsigned int           steps_between_looks() const override;
+    Trip                   take_finding() override;
     Trip                   watch(const double t) override;
     void                   explain(Trip &trip) override;
     void                   add_totals(const double t, const RunContext &context) override;

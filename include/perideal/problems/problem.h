@@ -116,6 +116,12 @@ namespace PeriDeal
       return 1;
     }
 
+    /**
+     * The oldest of what a solver has found wrong and has gone on from, which then is told; empty
+     * if there is none. Not collective, but the same on all processes.
+     */
+    virtual Trip take_finding();
+
     /** What is wrong with the state at t, found by a look at it: one application at most. */
     virtual Trip watch(const double t);
 

@@ -67,6 +67,7 @@ namespace PeriDeal
     json comparisons = json::object(); // "coupled minus (other model)" -> norm -> [[t, value], ...]
     json balances    = json::object(); // model -> flux and balance at the last time
     json extremes    = json::object(); // model -> largest force, first time with broken bonds
+    json warned      = json::object(); // model -> monitors of guards that notes have told of
     std::string totals;                // rows for totals.csv that are not yet written
 
     /** A row of totals.csv. */
@@ -83,7 +84,7 @@ namespace PeriDeal
     void exchange(Archive &archive)
     {
       json state = json::array(
-        {notes, fields, errors, comparison, comparisons, balances, extremes, totals});
+        {notes, fields, errors, comparison, comparisons, balances, extremes, totals, warned});
       std::string text = state.dump(-1, ' ', false, json::error_handler_t::replace);
       archive.exchange("record", text);
       if (!archive.loads())
@@ -94,6 +95,8 @@ namespace PeriDeal
       json *const members[] = {&fields, &errors, &comparison, &comparisons, &balances, &extremes};
       for (unsigned int k = 0; k < 6; ++k)
         *members[k] = state[k + 1];
+      if (state.size() > 8) // checkpoints of earlier runs end here
+        warned = state[8];
     }
   };
 } // namespace PeriDeal

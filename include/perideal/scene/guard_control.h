@@ -24,6 +24,12 @@ namespace PeriDeal
 
     GuardAction action = GuardAction::stop;
 
+    /** What solvers find wrong, and could go on from, does not end the run. */
+    bool goes_on() const
+    {
+      return action != GuardAction::stop;
+    }
+
     void parse();
   };
 } // namespace PeriDeal

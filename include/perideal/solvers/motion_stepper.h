@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/solvers/findings.h>
 #include <perideal/solvers/motion_energy.h>
 #include <perideal/solvers/step_limit.h>
 #include <perideal/solvers/stepper.h>
@@ -85,6 +86,12 @@ namespace PeriDeal
       return spent;
     }
 
+    /** What examine() and the steps have found wrong so far. Not collective. */
+    Findings &findings()
+    {
+      return found;
+    }
+
     /** Energies at time t; the start is that of the first advance(). Collective. */
     MotionEnergy energy(const Vector &u, const Vector &v) const;
 
@@ -112,6 +119,7 @@ namespace PeriDeal
     const std::vector<bool>   held; // prescribed
     Vector                    unbalanced, last, last_velocity;
     StepperCost               spent;
+    Findings                  found;
 
   private:
     void begin(const Vector &u, const Vector &v, const double t);
@@ -119,7 +127,7 @@ namespace PeriDeal
     void look_after(const Vector &u, const Vector &v);
     void check(const Vector &v, const double t);
     void check_drift(const Vector &u, const Vector &v, const double t);
-    void check_inversion(const Vector &u, const double t) const;
+    void check_inversion(const Vector &u, const double t);
     bool follow_body(const Vector &u, const double t);
     void change_bonds(const Vector &u, const double t);
 

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/solvers/findings.h>
 #include <perideal/solvers/static_solver.h>
 #include <perideal/solvers/step_span.h>
 #include <perideal/solvers/work_of_forces.h>
@@ -89,6 +90,12 @@ namespace PeriDeal
       return steps;
     }
 
+    /** What has been found wrong with equilibria so far. Not collective. */
+    Findings &findings()
+    {
+      return found;
+    }
+
     /** Of the solver so far. */
     unsigned int n_iterations() const
     {
@@ -113,7 +120,7 @@ namespace PeriDeal
 
     void solve(Vector &u, const double t);
     void change_bonds(Vector &u, const double t, const AfterStep &after_round);
-    void check_inversion(Vector &u, const double t) const;
+    void check_inversion(Vector &u, const double t);
 
     ElasticOperator              &op;
     std::unique_ptr<StaticSolver> solver;
@@ -127,5 +134,6 @@ namespace PeriDeal
     unsigned int  iterations = 0, steps = 0;
     LoadingEnergy so_far;
     Breaking      breaking;
+    Findings      found;
   };
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/operators/interface/operator.h>
+#include <perideal/solvers/findings.h>
 #include <perideal/solvers/step_span.h>
 
 #include <memory>
@@ -111,6 +112,12 @@ namespace PeriDeal
       return spent;
     }
 
+    /** What has been found wrong so far: a given step above its limit. Not collective. */
+    Findings &findings()
+    {
+      return found;
+    }
+
     /**
      * What entered through sides and from sources in all time advanced so far, this process's
      * share: Operator::entering() integrated by the method's own steps, as if it were one more
@@ -147,6 +154,7 @@ namespace PeriDeal
 
     StepSpan    span;
     StepperCost spent;
+    Findings    found;
     double      heat_entered = 0.;
   };
 
