@@ -72,6 +72,7 @@ namespace PeriDeal
       return extent_of(problem.solution).finite ?
                Trip() :
                values_not_finite(problem.solution, 1, place_of, problem.field_name(), t);
+    problem.ledger.see(problem.stepper->entered(), problem.dofs().get_communicator());
     const auto before = op.n_applications();
     const auto given  = range_of_given(scene, op);
     const Trip trip   = growth.look(op,
@@ -86,8 +87,18 @@ namespace PeriDeal
 
 
   template <int dim>
+  Trip DiffusionGuards<dim>::watch_totals(const double t) const
+  {
+    const std::string &quantity = names_of(problem.scene.general.physics).quantity;
+    return problem.stepper ? heat_lost(problem.op(), problem.ledger, quantity, t) : Trip();
+  }
+
+
+  template <int dim>
   void DiffusionGuards<dim>::explain(Trip &trip) const
   {
+    if (trip.cause.empty() && trip.monitor == "balance")
+      trip.cause = cause_in_balance(problem.scene.solver.tolerance);
     if (trip.cause.empty() && problem.stepper)
       trip.cause = cause_in_step(*problem.stepper, problem.op(), problem.solution, trip);
     if (trip.cause.empty())

@@ -27,6 +27,9 @@ namespace PeriDeal
     /** As Problem::watch(). */
     Trip watch(const double t);
 
+    /** As Problem::watch_totals(). Not collective. */
+    Trip watch_totals(const double t) const;
+
     /** As Problem::explain(). */
     void explain(Trip &trip) const;
 

@@ -452,6 +452,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  Trip DiffusionProblem<dim>::watch_totals(const double t) const
+  {
+    return guards->watch_totals(t);
+  }
+
+
+  template <int dim>
   void DiffusionProblem<dim>::explain(Trip &trip)
   {
     guards->explain(trip);

@@ -6,11 +6,45 @@
 #include <perideal/problems/result_record.h>
 #include <perideal/scene/with_formulas.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "effective_conductivity.h"
 #include "finite_results.h"
 
 namespace PeriDeal
 {
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Heat that lies elsewhere than if that of the start were spread evenly, whatever the
+     * temperature counts from; at least so much of all that there is that its round-off is small.
+     * Collective.
+     */
+    double heat_apart(const Operator &op, const Vector &u, const double content_at_start)
+    {
+      constexpr double   least        = 1e-4;
+      const Vector      &capacity     = op.lumped_capacity();
+      const MPI_Comm     communicator = u.get_mpi_communicator();
+      const unsigned int n            = u.locally_owned_size();
+      double             whole        = 0.;
+      for (unsigned int i = 0; i < n; ++i)
+        whole += capacity.local_element(i);
+      const double even  = content_at_start / Utilities::MPI::sum(whole, communicator);
+      double       apart = 0., all = 0.;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          apart += std::abs(capacity.local_element(i) * (u.local_element(i) - even));
+          all += std::abs(capacity.local_element(i) * u.local_element(i));
+        }
+      return std::max(Utilities::MPI::sum(apart, communicator),
+                      least * Utilities::MPI::sum(all, communicator));
+    }
+  } // namespace
+
+
   template <int dim>
   void add_diffusion_totals(DiffusionProblem<dim> &problem,
                             const double           t,
@@ -52,12 +86,17 @@ namespace PeriDeal
           problem.ledger.balance(problem.stepper->entered(),
                                  balance.content,
                                  problem.dofs().get_communicator());
+        problem.ledger.keep(since_start,
+                            heat_apart(problem.op(), problem.solution, problem.ledger.at_start()),
+                            balance.throughput(),
+                            t);
         row(names.quantity + " entered since start", since_start.entered);
         row(names.quantity + " stored since start", since_start.stored);
         row("cumulative imbalance", since_start.imbalance());
         cumulative = {{"entered", since_start.entered},
                       {"stored", since_start.stored},
-                      {"imbalance", since_start.imbalance()}};
+                      {"imbalance", since_start.imbalance()},
+                      {"scale", problem.ledger.most_moved()}};
       }
     for (std::size_t crack = 0; crack < balance.cracks.size(); ++crack)
       row(names.flow + " through crack " + std::to_string(crack + 1), balance.cracks[crack]);

@@ -112,6 +112,16 @@ namespace PeriDeal
   }
 
 
+  std::string cause_in_balance(const double solver_tolerance)
+  {
+    constexpr double rough = 1e-6;
+    if (!(solver_tolerance > rough))
+      return "";
+    return "'Tolerance' in section 'Solver' is " + number_text(solver_tolerance) +
+           ": what is left of the residual, as a share of the start, is lost or comes from nowhere. Choose 1e-8 or less.";
+  }
+
+
   std::string cause_in_operator(Operator &op, const PlaceOfNode &place_of, const Trip &trip)
   {
     constexpr double hardly   = 1e-6;

@@ -34,6 +34,9 @@ namespace PeriDeal
   /** The same of a motion. K becomes the tangent at u. Collective. */
   std::string cause_in_motion(const MotionStepper &stepper, ElasticOperator &op, const Vector &u);
 
+  /** Of balances that do not hold: solutions that are too rough; empty if they are not. */
+  std::string cause_in_balance(const double solver_tolerance);
+
   /**
    * Nodes that hardly conduct beside others, or a K that lets values grow; empty if it does not.
    * Collective.

@@ -151,6 +151,46 @@ namespace PeriDeal
   }
 
 
+  Trip balance_broken(const std::string &what,
+                      const double       missing,
+                      const std::string &of,
+                      const double       whole,
+                      const double       t)
+  {
+    constexpr double share = 0.01;
+    Trip             trip;
+    if (!(std::abs(missing) > share * whole))
+      return trip;
+    trip.monitor = "balance";
+    trip.value   = std::abs(missing);
+    trip.bound   = share * whole;
+    trip.time    = t;
+    trip.found   = what + ", " + rounded_text(100. * trip.value / whole) + " % of " + of +
+                 " and more than " + rounded_text(100. * share) + " %";
+    return trip;
+  }
+
+
+  Trip heat_lost(const DiffusionOperator &op,
+                 const HeatLedger        &ledger,
+                 const std::string       &quantity,
+                 const double             t)
+  {
+    if (!op.symmetric() || op.capacity_depends_on_solution())
+      return {};
+    const double      missing = ledger.last_found().imbalance();
+    const std::string number  = rounded_text(std::abs(missing));
+    return balance_broken(
+      missing > 0. ?
+        number + " of the " + quantity + " that has come in since the start is not in the body" :
+        "the body holds " + number + " of " + quantity + " that has not come in since the start",
+      missing,
+      "the most that has moved",
+      ledger.most_moved(),
+      t);
+  }
+
+
   bool GrowthGuard::returns_too_fast(const DiffusionOperator &op,
                                      const Vector            &u,
                                      const double             t,

@@ -58,6 +58,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  Trip Problem<dim>::watch_totals(const double) const
+  {
+    return {};
+  }
+
+
+  template <int dim>
   void Problem<dim>::explain(Trip &)
   {}
 

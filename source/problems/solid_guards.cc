@@ -129,6 +129,20 @@ namespace PeriDeal
 
 
   template <int dim>
+  Trip SolidProblem<dim>::watch_totals(const double t) const
+  {
+    if (stepper || !op().symmetric())
+      return {};
+    return balance_broken("the forces on the body at rest do not balance: their sum is " +
+                            rounded_text(force_lost),
+                          force_lost,
+                          "the largest force in it",
+                          force_scale,
+                          t);
+  }
+
+
+  template <int dim>
   void SolidProblem<dim>::explain(Trip &trip)
   {
     const PlaceOfNode place_of = place_of_nodes(*this);
@@ -136,6 +150,8 @@ namespace PeriDeal
       trip.place = find_worst(velocity, dim, place_of, [&](const unsigned int i) {
                      return std::abs(velocity.local_element(i));
                    }).place;
+    if (trip.cause.empty() && trip.monitor == "balance")
+      trip.cause = cause_in_balance(scene.solver.tolerance);
     if (trip.cause.empty() && stepper)
       trip.cause = cause_in_motion(*stepper, op(), displacement);
     if (trip.cause.empty())
@@ -143,11 +159,12 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                       \
-  template unsigned int SolidProblem<dim>::steps_between_looks() const; \
-  template Trip         SolidProblem<dim>::take_finding();              \
-  template Trip         SolidProblem<dim>::watch(const double);         \
-  template double       SolidProblem<dim>::body_size();                 \
+#define PERIDEAL_INSTANTIATE(dim)                                            \
+  template unsigned int SolidProblem<dim>::steps_between_looks() const;      \
+  template Trip         SolidProblem<dim>::take_finding();                   \
+  template Trip         SolidProblem<dim>::watch(const double);              \
+  template Trip         SolidProblem<dim>::watch_totals(const double) const; \
+  template double       SolidProblem<dim>::body_size();                      \
   template void         SolidProblem<dim>::explain(Trip &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

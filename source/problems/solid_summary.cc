@@ -214,14 +214,17 @@ namespace PeriDeal
             most[d]        = std::max(most[d], v);
           }
       }
-    double edge = std::numeric_limits<double>::max();
+    // Of a body that moves as a whole only round-off is left.
+    constexpr double least_strain = 1e-6;
+    double           edge         = std::numeric_limits<double>::max();
     for (unsigned int d = 0; d < dim; ++d)
       {
         const auto width = [&](const double low, const double high) {
           return Utilities::MPI::max(low, communicator) + Utilities::MPI::max(high, communicator);
         };
-        edge   = std::min(edge, width(lowest[d], highest[d]));
-        spread = std::max(spread, width(least[d], most[d]));
+        edge                  = std::min(edge, width(lowest[d], highest[d]));
+        const double farthest = Utilities::MPI::max(std::max(least[d], most[d]), communicator);
+        spread = std::max({spread, width(least[d], most[d]), least_strain * farthest});
       }
     volume    = Utilities::MPI::sum(volume, communicator);
     stiffness = Utilities::MPI::sum(stiffness, communicator) / (volume > 0. ? volume : 1.);

@@ -142,6 +142,7 @@ namespace PeriDeal
           {"throughput", balance.throughput()},
           {"imbalance", balance.imbalance()},
           {"scale", problem.force_scale}};
+        problem.force_lost = balance.imbalance();
       }
     if (!ends.empty())
       context.record.balances[problem.name()]["stress intensity"] = ends;

@@ -108,6 +108,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  void RunGuards<dim>::look_at_totals(Problem<dim> &problem, const double t)
+  {
+    if (are_on())
+      over(problem, t, [&] { act_on(problem, problem.watch_totals(t)); });
+  }
+
+
+  template <int dim>
   void RunGuards<dim>::examine(Problem<dim> &problem, const double t)
   {
     look(problem, t);

@@ -37,6 +37,9 @@ namespace PeriDeal
     /** Look now, at what solvers have found by themselves first. Throws Diverged. */
     void look(Problem<dim> &problem, const double t);
 
+    /** The problem has added its totals of t: look at their balances. Throws Diverged. */
+    void look_at_totals(Problem<dim> &problem, const double t);
+
     /** Before results of a time are written: look, and have the problem examine its state. */
     void examine(Problem<dim> &problem, const double t);
 

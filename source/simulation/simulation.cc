@@ -274,7 +274,10 @@ namespace PeriDeal
   void Simulation<dim>::add_totals(const double t)
   {
     for (const auto &problem : problems)
-      problem->add_totals(t, context());
+      {
+        problem->add_totals(t, context());
+        guards->look_at_totals(*problem, t);
+      }
   }
 
 

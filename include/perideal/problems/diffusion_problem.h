@@ -41,6 +41,7 @@ namespace PeriDeal
     unsigned int           steps_between_looks() const override;
     Trip                   take_finding() override;
     Trip                   watch(const double t) override;
+    Trip                   watch_totals(const double t) const override;
     void                   explain(Trip &trip) override;
     void                   add_totals(const double t, const RunContext &context) override;
     nlohmann::ordered_json describe_solving() const override;

@@ -5,6 +5,7 @@
 
 #include <perideal/base/diverged.h>
 #include <perideal/operators/interface/operator.h>
+#include <perideal/problems/heat_ledger.h>
 
 #include <functional>
 #include <string>
@@ -57,6 +58,31 @@ namespace PeriDeal
                          const PlaceOfNode &place_of,
                          const std::string &name,
                          const double       t);
+
+
+  /**
+   * The monitor `balance`: more than a hundredth is missing where nothing should. That is far above
+   * what solvers and steps leave, and far below what would be seen.
+   * @param what    has been found, with the number
+   * @param of      the name of @p whole, of which so much is missing
+   * Not collective.
+   */
+  Trip balance_broken(const std::string &what,
+                      const double       missing,
+                      const std::string &of,
+                      const double       whole,
+                      const double       t);
+
+  /**
+   * That monitor for what has come in since the start and what the body holds more than then; none
+   * where K or C let heat get lost (K that are not symmetric, C of the temperature itself).
+   * @param quantity as PhysicsNames::quantity
+   * Not collective.
+   */
+  Trip heat_lost(const DiffusionOperator &op,
+                 const HeatLedger        &ledger,
+                 const std::string       &quantity,
+                 const double             t);
 
 
   /**

@@ -126,6 +126,12 @@ namespace PeriDeal
     virtual Trip watch(const double t);
 
     /**
+     * What is wrong with the balances that add_totals() has just found. Not collective, but the
+     * same on all processes.
+     */
+    virtual Trip watch_totals(const double t) const;
+
+    /**
      * Add to what has been found, by watch() or by a solver that has thrown Diverged, a place where
      * there is none, and the cause: of what is known to bring that about the first that holds here,
      * with the numbers.

@@ -64,6 +64,7 @@ namespace PeriDeal
     unsigned int steps_between_looks() const override;
     Trip         take_finding() override;
     Trip         watch(const double t) override;
+    Trip         watch_totals(const double t) const override;
     void         explain(Trip &trip) override;
     void         examine(const double t) override;
     void         add_totals(const double t, const RunContext &context) override;
@@ -105,6 +106,7 @@ namespace PeriDeal
     std::unique_ptr<SlowLoading>   loading;           // null in motion
     double                         stable_step  = 0.; // of a motion by verlet, at its start
     double                         force_scale  = 0.; // the largest find_force_scale() so far
+    double                         force_lost   = 0.; // sum of all forces at the last totals
     unsigned int                   n_iterations = 0;
 
   private:
