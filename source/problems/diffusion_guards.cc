@@ -3,6 +3,7 @@
 
 #include "diffusion_guards.h"
 
+#include <perideal/problems/body_causes.h>
 #include <perideal/problems/diffusion_problem.h>
 
 #include <algorithm>
@@ -101,6 +102,13 @@ namespace PeriDeal
       trip.cause = cause_in_balance(problem.scene.solver.tolerance);
     if (trip.cause.empty() && problem.stepper)
       trip.cause = cause_in_step(*problem.stepper, problem.op(), problem.solution, trip);
+    const MaterialProperty &conductivity = problem.scene.material.conductivity;
+    if (trip.cause.empty() && !conductivity.depends_on_temperature())
+      trip.cause = cause_in_contrast<dim>(
+        problem.dofs().get_triangulation(),
+        "'Conductivity'",
+        [&](const Point<dim> &p) { return conductivity.value(p); },
+        trip.monitor);
     if (trip.cause.empty())
       trip.cause = cause_in_operator(problem.op(), place_of_nodes(problem), trip);
   }

@@ -3,6 +3,7 @@
 
 // What the guards of a run look for in bodies that deform, and what brings it about.
 
+#include <perideal/problems/body_causes.h>
 #include <perideal/problems/solid_problem.h>
 #include <perideal/scene/lists.h>
 #include <perideal/solvers/step_tools.h>
@@ -154,6 +155,12 @@ namespace PeriDeal
       trip.cause = cause_in_balance(scene.solver.tolerance);
     if (trip.cause.empty() && stepper)
       trip.cause = cause_in_motion(*stepper, op(), displacement);
+    if (trip.cause.empty())
+      trip.cause = cause_in_contrast<dim>(
+        this->dofs().get_triangulation(),
+        "The Young modulus",
+        [&](const Point<dim> &p) { return scene.material.moduli(p).young(); },
+        trip.monitor);
     if (trip.cause.empty())
       trip.cause = cause_in_operator(op(), place_of, trip);
   }

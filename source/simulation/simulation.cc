@@ -251,12 +251,12 @@ namespace PeriDeal
     for (Problem<dim> *const companion : companions())
       {
         Timings::Scope scope(timings, companion->field_name());
-        companion->settle(context());
+        guards->over(*companion, 0., [&] { companion->settle(context()); });
       }
-    for (const auto &problem : problems)
+    for (Problem<dim> *const problem : problems)
       {
         progress.doing("solving " + problem->name());
-        problem->settle(context());
+        guards->over(*problem, 0., [&] { problem->settle(context()); });
       }
   }
 
