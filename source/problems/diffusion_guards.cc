@@ -11,8 +11,6 @@
 #include <limits>
 #include <optional>
 
-#include "guard_causes.h"
-
 namespace PeriDeal
 {
   using namespace dealii;
@@ -83,7 +81,8 @@ namespace PeriDeal
                                   place_of,
                                   problem.field_name());
     op.carry_over_applications(before - op.n_applications()); // a look is none of the run's
-    return trip ? trip : step_too_small(*problem.stepper, scene.time.end_time, t);
+    const Trip of_step = steps.look(*problem.stepper, scene.time.end_time, t);
+    return trip ? trip : of_step;
   }
 
 

@@ -5,6 +5,8 @@
 
 #include <perideal/problems/guards.h>
 
+#include "guard_causes.h"
+
 namespace PeriDeal
 {
   template <int dim>
@@ -36,5 +38,6 @@ namespace PeriDeal
   private:
     DiffusionProblem<dim> &problem;
     GrowthGuard            growth;
+    StepGuard              steps;
   };
 } // namespace PeriDeal

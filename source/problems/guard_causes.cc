@@ -58,12 +58,23 @@ namespace PeriDeal
   template PlaceOfNode place_of_nodes(const Problem<3> &);
 
 
-  Trip step_too_small(const Stepper &stepper, const double end_time, const double t)
+  Trip StepGuard::look(const Stepper &stepper, const double end_time, const double t)
   {
-    constexpr double share = 1e-14;
-    const double     step = stepper.current_step(), bound = share * end_time;
-    Trip             trip;
-    if (step <= 0. || step >= bound)
+    constexpr double         share   = 1e-14;
+    constexpr unsigned int   guesses = 1000; // until the first one is short enough
+    constexpr unsigned int   enough  = 10;   // looks without growth
+    const double             step = stepper.current_step(), bound = share * end_time;
+    const StepperCost       &cost = stepper.cost();
+    const unsigned long long n    = cost.steps + cost.rejected;
+    Trip                     trip;
+    if (n == n_last) // the same state again
+      return trip;
+    const bool goes_on = step <= 0. || step >= bound || step > last_step ||
+                         (cost.steps == 0 && cost.rejected < guesses);
+    last_step = step;
+    n_last    = n;
+    n_stuck   = goes_on ? 0 : n_stuck + 1;
+    if (n_stuck < enough)
       return trip;
     trip.monitor = "step size";
     trip.value   = step;

@@ -19,8 +19,21 @@ namespace PeriDeal
   template <int dim>
   PlaceOfNode place_of_nodes(const Problem<dim> &problem);
 
-  /** The monitor `step size`: steps that adapt have become so short that they lead nowhere. */
-  Trip step_too_small(const Stepper &stepper, const double end_time, const double t);
+  /**
+   * The monitor `step size`: steps that adapt have become so short that they lead nowhere. Those
+   * at the start may be as short where nothing changes yet, but grow.
+   */
+  class StepGuard
+  {
+  public:
+    /** After a step or some. Not collective, but the same on all processes. */
+    Trip look(const Stepper &stepper, const double end_time, const double t);
+
+  private:
+    double             last_step = 0.;
+    unsigned long long n_last    = 0; // steps then, rejected ones, too
+    unsigned int       n_stuck   = 0; // looks that have found no growth
+  };
 
   /**
    * Explicit steps above their limit for the values that there are, in sentences; empty if they are
