@@ -26,7 +26,7 @@ namespace PeriDeal
      * Gauss points along an edge in rings about ends of cracks, besides those of the stiffness:
      * their weights and the near fields are no polynomials, and cells may be a third of a ring.
      */
-    constexpr unsigned int more_points_in_rings = 5; // 1 as everywhere
+    constexpr unsigned int more_points_in_rings = 5; // for linear elements 6
 
 
     template <int dim>
