@@ -23,10 +23,10 @@ namespace PeriDeal
   namespace
   {
     /**
-     * Gauss points along an edge in rings about ends of cracks, besides those of the stiffness:
-     * their weights and the near fields are no polynomials, and cells may be a third of a ring.
+     * Gauss points along an edge in rings about ends of cracks, above the degree of elements: the
+     * weights and near fields are no polynomials, and cells may be a third of a ring.
      */
-    constexpr unsigned int more_points_in_rings = 5; // for linear elements 6
+    constexpr unsigned int more_points_in_rings = 5;
 
 
     template <int dim>
@@ -180,7 +180,9 @@ namespace PeriDeal
         if constexpr (dim == 2)
           {
             std::vector<CrackEndIntegral> ends = crack_end_integrals(scene, elements->crack_time());
-            const auto                    is_in_a_ring = [&](const auto &cell) {
+            if (ends.empty())
+              return list;
+            const auto is_in_a_ring = [&](const auto &cell) {
               return !elements->cut_cells()[cell->active_cell_index()] &&
                      std::any_of(ends.begin(), ends.end(), [&](const CrackEndIntegral &end) {
                        return end.reaches(cell->center(), 0.5 * cell->diameter());

@@ -77,6 +77,8 @@ namespace PeriDeal
     family = family_for(scene, limit, !scene.cracks.cracks.empty() && on_faces(1.));
     if (family != Family::bonds)
       needs = needs_of_formulas(scene);
+    if (family == Family::whole)
+      first = first_counts();
     first_fineness =
       fineness_of(family == Family::faces ? *on_faces(coarsest()) : counts(coarsest()));
   }
@@ -122,10 +124,11 @@ namespace PeriDeal
     if (product(n) <= most)
       return n;
     // What varies across a thin body does not need short cells along it.
-    double shortest = 1.;
+    const std::vector<double> along    = needs_along_edges(scene);
+    double                    shortest = 1.;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        n[d]     = std::max(2., std::max(fewest_cells<dim>, 0.25 * needs.along[d]) * shares[d]);
+        n[d]     = std::max(2., std::max(fewest_cells<dim>, 0.25 * along[d]) * shares[d]);
         shortest = std::min(shortest, shares[d] / n[d]);
       }
     for (unsigned int d = 0; d < dim; ++d)
@@ -141,15 +144,13 @@ namespace PeriDeal
   CellCounts Attempts<dim>::counts(const double fineness) const
   {
     // All edges get finer, or nothing is seen of what varies along one.
-    const bool                grows = family == Family::whole || family == Family::faces;
-    const double              ratio = grows && first_fineness > 0. ? fineness / first_fineness : 1.;
-    const std::vector<double> first = family == Family::whole ? first_counts() :
-                                                                std::vector<double>(dim, 2.);
-    CellCounts                cells;
+    const bool   grows = family == Family::whole || family == Family::faces;
+    const double ratio = grows && first_fineness > 0. ? fineness / first_fineness : 1.;
+    CellCounts   cells;
     for (unsigned int d = 0; d < dim; ++d)
       {
         const double n = std::max(fineness * (box.upper[d] - box.lower[d]) / longest,
-                                  first[d] * std::max(1., ratio));
+                                  (first.empty() ? 2. : first[d]) * std::max(1., ratio));
         cells.push_back(std::max<unsigned int>(2, std::lround(n)));
         if (family != Family::faces && family != Family::bonds)
           cells.back() = with_points_on_planes(d, cells.back());
@@ -460,10 +461,9 @@ namespace PeriDeal
       return 2. * longest / scene.peridynamics.horizon;
     if (family == Family::whole)
       {
-        const std::vector<double> n     = first_counts();
-        double                    least = std::numeric_limits<double>::max();
+        double least = std::numeric_limits<double>::max();
         for (unsigned int d = 0; d < dim; ++d)
-          least = std::min(least, n[d] / (box.upper[d] - box.lower[d]) * longest);
+          least = std::min(least, first[d] / (box.upper[d] - box.lower[d]) * longest);
         return least;
       }
     double least = std::max(fewest_cells<dim>, 0.25 * needs.fineness);

@@ -103,11 +103,12 @@ namespace PeriDeal
     std::optional<CellCounts> on_faces(const double fineness) const;
     double                    fineness_of(const CellCounts &cells) const;
 
-    const Scene<dim> &scene;
-    CrackedBox        box, points; // points: those of parts in place of cracks
-    double            longest = 0.;
-    NeedsOfFormulas   needs;
-    Family            family         = Family::whole;
-    double            first_fineness = 0.; // of the coarsest mesh; 0 until it is known
+    const Scene<dim>   &scene;
+    CrackedBox          box, points; // points: those of parts in place of cracks
+    double              longest = 0.;
+    NeedsOfFormulas     needs;
+    Family              family = Family::whole;
+    std::vector<double> first; // family `whole`: cells of its coarsest mesh, not rounded
+    double              first_fineness = 0.; // of the coarsest mesh; 0 until it is known
   };
 } // namespace PeriDeal

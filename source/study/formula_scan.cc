@@ -173,9 +173,17 @@ namespace PeriDeal
 
       static constexpr unsigned int nowhere = numbers::invalid_unsigned_int;
 
-      explicit FormulaScan(const Scene<dim> &scene)
+      /** @param by_direction look at each direction, too */
+      FormulaScan(const Scene<dim> &scene, const bool by_direction)
         : scene(scene)
+        , by_direction(by_direction)
+        , fineness_along(dim, 1.)
       {}
+
+      const std::vector<double> &along_edges() const
+      {
+        return fineness_along;
+      }
 
       const NeedsOfFormulas &needs() const
       {
@@ -268,14 +276,10 @@ namespace PeriDeal
         double     longest = 0.;
         for (unsigned int d = 0; d < dim; ++d)
           longest = std::max(longest, scene.domain.upper[d] - scene.domain.lower[d]);
-        std::vector<double>       edges;
-        std::vector<unsigned int> directions;
+        std::vector<double> edges;
         for (unsigned int d = 0; d < dim; ++d)
           if (!on_side || d != side / 2)
-            {
-              edges.push_back((scene.domain.upper[d] - scene.domain.lower[d]) / longest);
-              directions.push_back(d);
-            }
+            edges.push_back((scene.domain.upper[d] - scene.domain.lower[d]) / longest);
         if (edges.empty())
           return;
         const Raster raster(finest_raster<dim>(on_side), edges, [&](const double *x) {
@@ -289,18 +293,16 @@ namespace PeriDeal
         });
         const double fineness = raster.fineness_needed(Raster::all);
         found.fineness        = std::max(found.fineness, fineness);
-        for (unsigned int axis = 0; axis < directions.size(); ++axis)
-          {
-            double &along = found.along[directions[axis]];
-            along         = std::max(along, on_side ? fineness : raster.fineness_needed(axis));
-          }
-        if (on_side) // what varies along a side fades as fast away from it
-          found.along[side / 2] = std::max(found.along[side / 2], fineness);
+        for (unsigned int d = 0; by_direction && d < dim; ++d)
+          fineness_along[d] =
+            std::max(fineness_along[d], on_side ? fineness : raster.fineness_needed(d));
         found.jumps = found.jumps || (jumps == Jumps::matter && raster.jumps());
       }
 
-      const Scene<dim> &scene;
-      NeedsOfFormulas   found;
+      const Scene<dim>   &scene;
+      const bool          by_direction;
+      NeedsOfFormulas     found;
+      std::vector<double> fineness_along;
     };
 
 
@@ -352,21 +354,38 @@ namespace PeriDeal
                                  list == &given.displacement ? Jumps::matter :
                                                                Jumps::do_not_matter);
     }
+
+
+    template <int dim>
+    FormulaScan<dim> scan_of(const Scene<dim> &scene, const bool by_direction)
+    {
+      const DeferredFormulaErrors ignored; // they are told where the values are used
+      FormulaScan<dim>            scan(scene, by_direction);
+      see_body(scene, scan);
+      see_conditions(scene, scan);
+      return scan;
+    }
   } // namespace
 
 
   template <int dim>
   NeedsOfFormulas needs_of_formulas(const Scene<dim> &scene)
   {
-    const DeferredFormulaErrors ignored; // they are told where the values are used
-    FormulaScan<dim>            scan(scene);
-    see_body(scene, scan);
-    see_conditions(scene, scan);
-    return scan.needs();
+    return scan_of(scene, false).needs();
   }
 
 
-  template NeedsOfFormulas needs_of_formulas(const Scene<1> &);
-  template NeedsOfFormulas needs_of_formulas(const Scene<2> &);
-  template NeedsOfFormulas needs_of_formulas(const Scene<3> &);
+  template <int dim>
+  std::vector<double> needs_along_edges(const Scene<dim> &scene)
+  {
+    return scan_of(scene, true).along_edges();
+  }
+
+
+  template NeedsOfFormulas     needs_of_formulas(const Scene<1> &);
+  template NeedsOfFormulas     needs_of_formulas(const Scene<2> &);
+  template NeedsOfFormulas     needs_of_formulas(const Scene<3> &);
+  template std::vector<double> needs_along_edges(const Scene<1> &);
+  template std::vector<double> needs_along_edges(const Scene<2> &);
+  template std::vector<double> needs_along_edges(const Scene<3> &);
 } // namespace PeriDeal

@@ -5,27 +5,25 @@
 
 #include <perideal/scene/scene.h>
 
-#include <array>
+#include <vector>
 
 namespace PeriDeal
 {
   /** What a mesh has to have for the formulas of a scene. */
   struct NeedsOfFormulas
   {
-    double                fineness = 1.;       // cells along the longest edge
-    std::array<double, 3> along{{1., 1., 1.}}; // the same if cells get short in one direction only
-    bool jumps = false; // within cells: errors get smaller only as cells do, unevenly
+    double fineness = 1.;    // cells along the longest edge
+    bool   jumps    = false; // within cells: errors get smaller only as cells do, unevenly
   };
 
 
   /**
    * How many cells along the longest edge of the box of a scene its formulas need: the fewest, of
    * powers of two, on which the linear interpolant of each is right to a fifth of its variation in
-   * the mean square, cells being as long as wide; and how many with cells that are short in one
-   * direction alone, where what is given on a side needs them in all. Sources, materials, forces
-   * and initial fields in the body, what is given on its sides, and the parts that it is given on;
-   * what changes with time is looked at four times. At most as many as are looked at. A solution on
-   * coarser cells may have missed what they describe.
+   * the mean square, cells being as long as wide. Sources, materials, forces and initial fields in
+   * the body, what is given on its sides, and the parts that it is given on; what changes with time
+   * is looked at four times. At most as many as are looked at. A solution on coarser cells may have
+   * missed what they describe.
    *
    * Jumps are looked for in what makes the solution rough: materials, given values, initial fields,
    * and parts of sides where values are given. Of a function that jumps the interpolant on the
@@ -33,4 +31,12 @@ namespace PeriDeal
    */
   template <int dim>
   NeedsOfFormulas needs_of_formulas(const Scene<dim> &scene);
+
+  /**
+   * The fineness of those needs with cells that are short in one direction alone, for each
+   * direction; what is given on a side needs them in all, since it fades as fast away from it.
+   * Takes some times as long. Not collective.
+   */
+  template <int dim>
+  std::vector<double> needs_along_edges(const Scene<dim> &scene);
 } // namespace PeriDeal

@@ -5,7 +5,6 @@
 
 #include <perideal/problems/result_record.h>
 #include <perideal/solvers/motion_stepper.h>
-#include <perideal/solvers/slow_loading.h>
 #include <perideal/solvers/stepper.h>
 
 #include <cmath>
@@ -86,29 +85,6 @@ namespace PeriDeal
         EXPECT_EQ(one->notes, record.notes);
         EXPECT_EQ(one->totals, record.totals);
       }
-  }
-
-
-  TEST(GuardFindings, equilibria_inside_out)
-  {
-    // Pushed through its own support.
-    const Body<2> body(
-      box<2>() + Settings{{"Domain/Cells", "8, 6"},
-                          {"Elasticity/Solver", "conjugate gradients"},
-                          {"Elasticity/Kinematics", "full"},
-                          {"Boundary conditions/Displacement", "left: 0, 0; right: -1.5, 0"}},
-      ModelKind::peridynamics);
-    StaticOptions options;
-    options.tolerance = 1e-6;
-    SlowLoading loading(body.op(),
-                        make_static_solver("conjugate gradients", body.op(), options),
-                        options);
-    loading.findings().let_wait();
-    Vector u;
-    loading.begin(u, 0.);
-    EXPECT_EQ(loading.findings().take().monitor, "inversion");
-    EXPECT_FALSE(loading.findings().take());
-    EXPECT_GT(body.op().inverted(u).n_nodes, 0u); // the state that it has found
   }
 
 

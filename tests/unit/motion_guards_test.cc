@@ -7,6 +7,8 @@
 #include <perideal/solvers/motion_stepper.h>
 #include <perideal/solvers/slow_loading.h>
 
+#include <memory>
+
 #include "elastic_test_tools.h"
 #include "scene_test_tools.h"
 
@@ -127,23 +129,52 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** A plate that is pushed through its own support. */
+    struct PushedThrough
+    {
+      PushedThrough()
+        : body(box<2>() + full_at_rest, ModelKind::peridynamics)
+      {
+        options.tolerance = 1e-6;
+        loading           = std::make_unique<SlowLoading>(
+          body.op(),
+          make_static_solver("conjugate gradients", body.op(), options),
+          options);
+      }
+
+      const Settings full_at_rest{
+        {"Domain/Cells", "8, 6"},
+        {"Elasticity/Solver", "conjugate gradients"},
+        {"Elasticity/Kinematics", "full"},
+        {"Boundary conditions/Displacement", "left: 0, 0; right: -1.5, 0"}};
+      const Body<2>                body;
+      StaticOptions                options;
+      std::unique_ptr<SlowLoading> loading;
+    };
+  } // namespace
+
+
   TEST(Inversion, ends_equilibria)
   {
-    // Pushed through its own support.
-    const Body<2> body(
-      box<2>() + Settings{{"Domain/Cells", "8, 6"},
-                          {"Elasticity/Solver", "conjugate gradients"},
-                          {"Elasticity/Kinematics", "full"},
-                          {"Boundary conditions/Displacement", "left: 0, 0; right: -1.5, 0"}},
-      ModelKind::peridynamics);
-    StaticOptions options;
-    options.tolerance = 1e-6;
-    SlowLoading loading(body.op(),
-                        make_static_solver("conjugate gradients", body.op(), options),
-                        options);
-    Vector      u;
-    expect_parts(message_of([&] { loading.begin(u, 0.); }),
+    const PushedThrough plate;
+    Vector              u;
+    expect_parts(message_of([&] { plate.loading->begin(u, 0.); }),
                  {"inside out", "t = 0", "'conjugate gradients'", "make the load smaller"});
+  }
+
+
+  TEST(Inversion, waits_to_be_told)
+  {
+    const PushedThrough plate;
+    Findings           &found = plate.loading->findings();
+    found.let_wait();
+    Vector u;
+    plate.loading->begin(u, 0.);
+    EXPECT_EQ(found.take().monitor, "inversion");
+    EXPECT_FALSE(found.take());
+    EXPECT_GT(plate.body.op().inverted(u).n_nodes, 0u); // the state that it has found
   }
 
 
