@@ -106,12 +106,18 @@ namespace PeriDeal
       }
 
 
-      /** Sum of the squares of what is left of the interpolant on such cells. */
-      double squared_error(const std::array<std::size_t, 3> &strides) const
+      /**
+       * Sum of the squares of what is left of the interpolant on such cells, or of some of them as
+       * soon as that is more than enough.
+       */
+      double squared_error(const std::array<std::size_t, 3> &strides, const double enough) const
       {
         double error = 0.;
-        for (std::size_t k = 0; k < values.size(); ++k)
-          error += std::pow(values[k] - interpolant(k, strides), 2);
+        for (std::size_t k = 0; k < values.size() && error <= enough; ++k)
+          {
+            const double left = values[k] - interpolant(k, strides);
+            error += left * left;
+          }
         return error;
       }
 
@@ -136,8 +142,9 @@ namespace PeriDeal
         if (variation == 0.)
           return 1.;
         const double finest = cells / *std::min_element(edges.begin(), edges.end());
+        const double most   = allowed * allowed * variation;
         for (double fineness = 1.; fineness < finest; fineness *= 2.)
-          if (squared_error(strides(fineness, axis)) < allowed * allowed * variation)
+          if (squared_error(strides(fineness, axis), most) < most)
             return fineness;
         return finest;
       }
@@ -147,9 +154,10 @@ namespace PeriDeal
       bool jumps() const
       {
         constexpr double least = 0.5;
-        const double     fine  = squared_error({{2, 2, 2}});
-        return variation() > 0. && fine > 1e-8 * variation() &&
-               fine > least * least * squared_error({{4, 4, 4}});
+        const double variation = this->variation(), fine = squared_error({{2, 2, 2}}, variation),
+                     coarse = fine / (least * least);
+        return variation > 0. && fine > 1e-8 * variation &&
+               squared_error({{4, 4, 4}}, coarse) < coarse;
       }
 
       const unsigned int        n, cells;

@@ -10,7 +10,7 @@ namespace PeriDeal
 {
   namespace
   {
-    constexpr double usual_order   = 2.25; // where none has been seen and the best is higher
+    constexpr double usual_order   = 2.25; // where none has been seen, and nothing jumps
     constexpr double careful_order = 1.25; // where that is to be believed
 
     /** f0^-p - f1^-p over f1^-p - f2^-p, which grows with p. */
@@ -59,7 +59,7 @@ namespace PeriDeal
       return now;
     if (n == 2)
       {
-        now.error = error_of(steps[0], steps[1], std::min(usual_order, best));
+        now.error = error_of(steps[0], steps[1], best > 1. ? usual_order : best);
         return now;
       }
     now.order           = order_of(steps[n - 3], steps[n - 2], steps[n - 1], lowest, best);

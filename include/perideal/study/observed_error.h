@@ -29,8 +29,8 @@ namespace PeriDeal
    * is d_k/(q^p - 1), q the ratio of their finenesses.
    *
    * The order p is that which the last two differences show, between @p lowest and @p best. As
-   * long as there is one difference only, 2.25 is taken, or @p best if that is lower: the first of
-   * all solutions is worse than an order would have it. A difference that is small by accident
+   * long as there is one difference only, 2.25 is taken, or 1 if @p best is not higher: the first
+   * of all solutions is worse than an order would have it. A difference that is small by accident
    * shows no small error: what the one before it said, with the order that is left, counts for
    * half.
    */
