@@ -65,6 +65,24 @@ namespace PeriDeal
     }
 
 
+    /** The predicted limit of a step. */
+    double predicted_step(const ExplicitMethod &method, const double eigenvalue)
+    {
+      const double limit = stability_limit(method.name, method.n_stages);
+      return method.name == "verlet" ? limit / std::sqrt(eigenvalue) : limit / eigenvalue;
+    }
+
+
+    /**
+     * Largest eigenvalues: of the whole body, whose limit the program refuses to exceed, and of
+     * the body without the bonds that its load breaks during a run.
+     */
+    struct LargestEigenvalues
+    {
+      double whole = 0., left = 0.;
+    };
+
+
     /** Numbers that grow until bonds break, some hundredths of them. Collective. */
     void break_some(ElasticOperator &op, const Vector &field, const double size)
     {
@@ -176,13 +194,13 @@ namespace PeriDeal
       }
 
       /**
-       * Build a body and call action(limit, run): the longest stable steps of each method as the
-       * program predicts them, and what steps do.
+       * Build a body and call action(eigenvalues, run): what the program predicts the longest
+       * stable step of each method from, and what steps do.
        */
       void with_steps(
         const SteppedBody &body,
         const std::function<
-          void(const double eigenvalue,
+          void(const LargestEigenvalues &eigenvalues,
                const std::function<Growth(const ExplicitMethod &method, const double step)> &run)>
           &action) const
       {
@@ -202,7 +220,8 @@ namespace PeriDeal
         with_formulas(scene.communicator, [&] {
           Operator    &op    = problem.op();
           const Vector field = fast_field(problem), start = problem.state();
-          action(op.spectrum().sharp, [&](const ExplicitMethod &method, const double step) {
+          const double eigenvalue = op.spectrum().sharp;
+          action({eigenvalue, eigenvalue}, [&](const ExplicitMethod &method, const double step) {
             return growth_of_diffusion(op, start, field, method, step);
           });
         });
@@ -212,9 +231,15 @@ namespace PeriDeal
       template <typename Action>
       void move(const SteppedBody &body, const Action &action) const
       {
-        double eigenvalue = 0.;
-        with_mover(body, [&](ElasticOperator &op, const Vector &, const double) {
-          eigenvalue = op.spectrum().sharp;
+        LargestEigenvalues eigenvalues;
+        with_mover(body, [&](ElasticOperator &op, const Vector &field, const double) {
+          eigenvalues.whole = eigenvalues.left = op.spectrum().sharp;
+          if (body.bonds != may)
+            return;
+          Vector at_rest(field);
+          at_rest = 0.;
+          run_verlet(op, at_rest, predicted_step({"verlet", 0}, eigenvalues.whole));
+          eigenvalues.left = op.spectrum().sharp;
         });
         const auto run = [&](const double step, const bool disturbed) {
           Trajectory result;
@@ -225,7 +250,7 @@ namespace PeriDeal
           });
           return result;
         };
-        action(eigenvalue, [&](const ExplicitMethod &, const double step) {
+        action(eigenvalues, [&](const ExplicitMethod &, const double step) {
           return growth_of_motion(run(step, false), run(step, true));
         });
       }
@@ -249,14 +274,6 @@ namespace PeriDeal
     };
 
 
-    /** The predicted limit of a step. */
-    double predicted_step(const ExplicitMethod &method, const double eigenvalue)
-    {
-      const double limit = stability_limit(method.name, method.n_stages);
-      return method.name == "verlet" ? limit / std::sqrt(eigenvalue) : limit / eigenvalue;
-    }
-
-
     class StepLimitMap : public StepMap
     {
     public:
@@ -264,7 +281,7 @@ namespace PeriDeal
 
       std::string meaning_of_predicted() const override
       {
-        return "the longest stable step, from the largest eigenvalue as the program estimates it; infinite: any";
+        return "the longest stable step, from the largest eigenvalue as the program estimates it (with the bonds that are left where the load breaks some); infinite: any";
       }
 
       std::string meaning_of_observed() const override
@@ -274,7 +291,7 @@ namespace PeriDeal
 
       std::string bound() const override
       {
-        return "'safe' where steps up to the predicted one do not grow: 2/lambda (euler), 2.785/lambda (rk4), about 0.65 (s^2 - 1)/lambda (rkc2 with s stages), 2/omega (verlet)";
+        return "'safe' where steps up to the limit of the program, which is that of the whole body, do not grow: 2/lambda (euler), 2.785/lambda (rk4), about 0.65 (s^2 - 1)/lambda (rkc2 with s stages), 2/omega (verlet)";
       }
 
       std::vector<StabilityPoint> points(const bool quick) override
@@ -287,9 +304,9 @@ namespace PeriDeal
         for (const SteppedBody &body : all)
           try
             {
-              with_steps(body, [&](const double eigenvalue, const auto &run) {
+              with_steps(body, [&](const LargestEigenvalues &eigenvalues, const auto &run) {
                 for (const ExplicitMethod &method : methods(quick, true))
-                  list.push_back(point(body, method, eigenvalue, run));
+                  list.push_back(point(body, method, eigenvalues, run));
               });
             }
           catch (const UserError &error)
@@ -307,22 +324,24 @@ namespace PeriDeal
 
     private:
       template <typename Run>
-      static StabilityPoint point(const SteppedBody    &body,
-                                  const ExplicitMethod &method,
-                                  const double          eigenvalue,
-                                  const Run            &run)
+      static StabilityPoint point(const SteppedBody        &body,
+                                  const ExplicitMethod     &method,
+                                  const LargestEigenvalues &eigenvalues,
+                                  const Run                &run)
       {
         StabilityPoint point;
         point.parameters = parameters_of(body, method);
-        point.predicted  = predicted_step(method, eigenvalue);
+        point.predicted  = predicted_step(method, eigenvalues.left);
         const auto grows = [&](const double step) { return run(method, step); };
         if (std::isfinite(point.predicted))
           point.observed = observed_limit(point.predicted, grows);
         else
-          point.observed = !grows(1e2 / eigenvalue).grows && !grows(3e3 / eigenvalue).grows ?
+          point.observed = !grows(1e2 / eigenvalues.whole).grows &&
+                               !grows(3e3 / eigenvalues.whole).grows ?
                              std::numeric_limits<double>::infinity() :
-                             1e2 / eigenvalue;
-        point.verdict = point.observed >= point.predicted * (1. - 1e-3) ? "safe" : "fails";
+                             1e2 / eigenvalues.whole;
+        const double refused = predicted_step(method, eigenvalues.whole);
+        point.verdict        = point.observed >= refused * (1. - 1e-3) ? "safe" : "fails";
         return point;
       }
     };
@@ -360,10 +379,10 @@ namespace PeriDeal
                             std::vector<double>{2., 2.5, 3., 3.5, 4., 5., 6.}))
           try
             {
-              with_steps(body, [&](const double eigenvalue, const auto &run) {
+              with_steps(body, [&](const LargestEigenvalues &eigenvalues, const auto &run) {
                 for (const ExplicitMethod &method : methods(true, false))
                   for (const double share : shares)
-                    list.push_back(point(body, method, eigenvalue, share, run));
+                    list.push_back(point(body, method, eigenvalues, share, run));
               });
             }
           catch (const UserError &error)
@@ -386,23 +405,24 @@ namespace PeriDeal
         // The limit of the program is up to 3 % on the safe side.
         const double   share = inside ? uniform(random, 0.1, 1.) : uniform(random, 1.03, 2.);
         StabilityPoint result;
-        with_steps(body, [&](const double eigenvalue, const auto &run) {
-          result = point(body, method, eigenvalue, share, run);
+        with_steps(body, [&](const LargestEigenvalues &eigenvalues, const auto &run) {
+          result = point(body, method, eigenvalues, share, run);
         });
         return result;
       }
 
     private:
       template <typename Run>
-      static StabilityPoint point(const SteppedBody    &body,
-                                  const ExplicitMethod &method,
-                                  const double          eigenvalue,
-                                  const double          share,
-                                  const Run            &run)
+      static StabilityPoint point(const SteppedBody        &body,
+                                  const ExplicitMethod     &method,
+                                  const LargestEigenvalues &eigenvalues,
+                                  const double              share,
+                                  const Run                &run)
       {
         StabilityPoint point;
-        point.parameters  = parameters_of(body, method);
-        const double step = share * predicted_step(method, eigenvalue);
+        point.parameters        = parameters_of(body, method);
+        const double eigenvalue = share > 1. ? eigenvalues.left : eigenvalues.whole;
+        const double step       = share * predicted_step(method, eigenvalue);
         point.parameters.emplace_back("step", step);
         point.parameters.emplace_back("step over limit", share);
         const double z = method.name == "verlet" ? step * std::sqrt(eigenvalue) : step * eigenvalue;
