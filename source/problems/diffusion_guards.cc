@@ -57,7 +57,7 @@ namespace PeriDeal
       return 1;
     // A look reads the values once, a step of one application all of K.
     const std::string name = problem.stepper->name();
-    return name == "euler" ? 10 : name == "rk4" ? 3 : 1;
+    return name == "euler" ? 10 : name == "rk4" || name == "rkc2" ? 3 : 1;
   }
 
 

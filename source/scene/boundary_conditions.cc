@@ -151,6 +151,15 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool BoundaryConditions<dim>::transfers_depend_on_time() const
+  {
+    return std::any_of(transfers.begin(), transfers.end(), [](const SurfaceTransfer &transfer) {
+      return transfer.depends_on_time();
+    });
+  }
+
+
+  template <int dim>
   bool BoundaryConditions<dim>::transfers_fix_level() const
   {
     return std::any_of(transfers.begin(), transfers.end(), [](const SurfaceTransfer &transfer) {

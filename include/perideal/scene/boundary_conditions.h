@@ -123,6 +123,9 @@ namespace PeriDeal
         visit("Traction", condition);
     }
 
+    /** Some flux or ambient value changes with time. */
+    bool transfers_depend_on_time() const;
+
     /** Some transfer determines a steady state. */
     bool transfers_fix_level() const;
 

@@ -181,7 +181,7 @@ namespace PeriDeal
     u.update_ghost_values();
     const double *const beyond   = outside.values(u, t);
     const double *const constant = loads.constant();
-    const bool          vary     = loads.depends_on_time();
+    const bool          vary     = loads.vary();
     double             *values   = r.begin();
     double             &entered  = this->entering_now;
     entered                      = loads.through_transfer(u);

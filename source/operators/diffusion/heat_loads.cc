@@ -22,7 +22,7 @@ namespace PeriDeal
     , source(source)
     , hanging(hanging)
     , any_source(!source.is_constant() || source.value(Point<dim>()) != 0.)
-    , varies(source.depends_on_time() || conditions.depends_on_time())
+    , varies(source.depends_on_time() || conditions.transfers_depend_on_time())
     , faces(dofs, conditions)
     , of_parts(unknowns_of_parts(dofs,
                                  conditions,

@@ -16,7 +16,8 @@ namespace PeriDeal
     : nodes(nodes)
     , constraints(constraints)
     , source(body.initial_and_source.source)
-    , varies(source.depends_on_time() || body.boundary_conditions.depends_on_time())
+    , varies(source.depends_on_time() || body.boundary_conditions.transfers_depend_on_time())
+    , values_vary(body.boundary_conditions.depends_on_time())
   {
     using Constraints      = NodeConstraints<dim>;
     const bool  natural    = body.peridynamics.natural_fluxes();

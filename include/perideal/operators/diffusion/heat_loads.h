@@ -43,7 +43,7 @@ namespace PeriDeal
     /** Loads, or prescribed values of the conditions, change with time. Not collective. */
     bool depends_on_time() const
     {
-      return varies;
+      return varies || conditions.depends_on_time();
     }
 
     /** The unknowns in regions and at points. */

@@ -49,6 +49,12 @@ namespace PeriDeal
     /** Loads, or prescribed values of the conditions, change with time. */
     bool depends_on_time() const
     {
+      return varies || values_vary;
+    }
+
+    /** Loads do. */
+    bool vary() const
+    {
       return varies;
     }
 
@@ -97,7 +103,7 @@ namespace PeriDeal
     const Nodes<dim>           &nodes;
     const NodeConstraints<dim> &constraints;
     const Expression           &source;
-    const bool                  varies;
+    const bool                  varies, values_vary;
     std::vector<SideLoad>       fluxes, of_slaves, relaxing;
     Vector                      kept;
     double                      kept_sum = 0.;
