@@ -214,6 +214,51 @@ namespace PeriDeal
   }
 
 
+  bool GrowthGuard::gets_farther(const double now)
+  {
+    const bool farther = farthest_before == 0. || now > farthest_before; // 0: not known
+    farthest_before    = farthest;
+    farthest           = now;
+    return farther;
+  }
+
+
+  void GrowthGuard::forget_suspicion()
+  {
+    n_suspicious    = 0;
+    farthest        = 0.;
+    farthest_before = 0.;
+  }
+
+
+  bool GrowthGuard::grows_by_steps(const DiffusionOperator &op,
+                                   const Vector            &u,
+                                   const double             t,
+                                   const Extent            &now,
+                                   const bool               is_beyond,
+                                   const PlaceOfNode       &place_of,
+                                   Worst                   &worst)
+  {
+    constexpr unsigned int enough = 6;
+    const double           middle = 0.5 * (range.least + range.most);
+    if (!is_beyond && (n_suspicious == 0 || was_within))
+      forget_suspicion();
+    else
+      {
+        const bool farther = gets_farther(std::max(now.most - middle, middle - now.least));
+        if (is_beyond && farther && returns_too_fast(op, u, t, place_of, worst))
+          ++n_suspicious;
+        else if (is_beyond)
+          {
+            forget_suspicion();
+            range = {std::min(range.least, now.least), std::max(range.most, now.most), true};
+          }
+      }
+    was_within = !is_beyond;
+    return is_beyond && n_suspicious >= enough;
+  }
+
+
   Trip GrowthGuard::look(const DiffusionOperator &op,
                          const Vector            &u,
                          const double             t,
@@ -221,9 +266,8 @@ namespace PeriDeal
                          const PlaceOfNode       &place_of,
                          const std::string       &name)
   {
-    constexpr double       least_width = 1e-3; // of the values: differences of others may be noise
-    constexpr unsigned int enough      = 5;
-    const Extent           now         = extent_of(u);
+    constexpr double least_width = 1e-3; // of the values: differences of others may be noise
+    const Extent     now         = extent_of(u);
     if (!now.finite)
       return values_not_finite(u, 1, place_of, name, t);
     if (known && t == last_time) // the same state again
@@ -236,31 +280,14 @@ namespace PeriDeal
     last_time           = t;
     const double width  = std::max(range.width(), least_width * range.size());
     const double beyond = std::max(now.most - range.most, range.least - now.least);
-    if (beyond <= width)
-      {
-        n_suspicious = 0;
-        return {};
-      }
     const double middle = 0.5 * (range.least + range.most);
-    const double before = farthest;
-    farthest            = std::max(now.most - middle, middle - now.least);
-    Worst worst;
+    Worst        worst;
+    if (given ? beyond <= width : !grows_by_steps(op, u, t, now, beyond > width, place_of, worst))
+      return {};
     if (given)
       worst = find_worst(u, 1, place_of, [&](const unsigned int i) {
         return std::abs(u.local_element(i) - middle);
       });
-    else
-      {
-        const bool grows = n_suspicious == 0 || farthest > before;
-        if (!grows || !returns_too_fast(op, u, t, place_of, worst))
-          {
-            n_suspicious = 0;
-            range        = {std::min(range.least, now.least), std::max(range.most, now.most), true};
-            return {};
-          }
-        if (++n_suspicious < enough)
-          return {};
-      }
     Trip trip;
     trip.monitor = given ? "maximum principle" : "growth";
     trip.value   = worst.value;

@@ -136,6 +136,23 @@ namespace PeriDeal
   }
 
 
+  TEST(Guards, slow_growth)
+  {
+    // Waves of the mesh that gain 0.6 to 3 % in a step, change sign each time, and have crests that
+    // lie farther out than their troughs; around a level that is not the middle of any range.
+    const Settings beside_convection =
+      plate + Settings{{"Boundary conditions/Dirichlet", "left: 1"},
+                       {"Boundary conditions/Convection", "top: 40, 2"}};
+    for (const Settings &settings : {heated, beside_convection})
+      for (const double share : {1.007, 1.01, 1.015})
+        {
+          const Outcome run = step_with_euler(settings, share);
+          ASSERT_TRUE(run.stopped) << share;
+          EXPECT_EQ(run.trip.monitor, "growth");
+        }
+  }
+
+
   TEST(Guards, euler_below_its_limit)
   {
     EXPECT_FALSE(step_with_euler(plate, 0.99, &zero_to_one).trip);

@@ -92,23 +92,18 @@ namespace PeriDeal
    *
    * - `maximum principle`: nothing enters but through given values, and these are constant, so that
    *   no value may leave the range of the start;
-   * - `growth`: in several looks on end what is far out gets farther, and is on its way back each
-   *   time at a rate that only the fastest waves of the mesh have, |du/dt| > lambda/4 |u - m|, with
-   *   lambda the largest eigenvalue and m the middle of the range. By its own equation it cannot
-   *   have got there.
+   * - `growth`: in several looks what is far out gets farther, and is on its way back each time at
+   *   a rate that only the fastest waves of the mesh have, |du/dt| > lambda/4 |u - m|, with lambda
+   *   the largest eigenvalue and m the middle of the range. By its own equation it cannot have got
+   *   there. Such waves change sign in each step, and their crests may lie farther out than their
+   *   troughs: a look is compared with the one before the last, and one that is within the range
+   *   between two that are not tells nothing.
    *
    * Values that loads or sources have brought there make a new range.
    */
   class GrowthGuard
   {
   public:
-    /** The range is that of the next look: the state is a new one. */
-    void forget()
-    {
-      known        = false;
-      n_suspicious = 0;
-    }
-
     /**
      * @param u     at time t, distributed or not
      * @param given where nothing enters but through given values, which are constant: the range of
@@ -129,6 +124,23 @@ namespace PeriDeal
     }
 
   private:
+    /** Whether a state that lies so far from the middle is farther out than two looks ago. */
+    bool gets_farther(const double now);
+
+    void forget_suspicion();
+
+    /**
+     * One more look without given values, with the extent @p now, which is beyond the range by as
+     * much again or not.
+     */
+    bool grows_by_steps(const DiffusionOperator &op,
+                        const Vector            &u,
+                        const double             t,
+                        const Extent            &now,
+                        const bool               is_beyond,
+                        const PlaceOfNode       &place_of,
+                        Worst                   &worst);
+
     bool returns_too_fast(const DiffusionOperator &op,
                           const Vector            &u,
                           const double             t,
@@ -138,7 +150,8 @@ namespace PeriDeal
     bool         known = false;
     Extent       range;
     double       last_time    = 0.;
-    unsigned int n_suspicious = 0;  // looks on end
-    double       farthest     = 0.; // from the middle, at the last of them
+    unsigned int n_suspicious = 0;                    // looks
+    bool         was_within   = true;                 // at the last look
+    double       farthest = 0., farthest_before = 0.; // from the middle, at the last two looks
   };
 } // namespace PeriDeal

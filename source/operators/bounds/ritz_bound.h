@@ -32,6 +32,9 @@ namespace PeriDeal
     {
       constexpr double      margin  = 4e-3;
       constexpr std::size_t n_least = 12; // before that a start may not have seen what is stiffest
+      // A residual of the margin is reached while iterations still follow the waves of the whole
+      // mesh, and what a few places are stiffer, as beside a side with convection, is not seen yet.
+      constexpr double small = 1e-3;
       alpha.push_back(new_alpha);
       const Eigen::VectorXd diagonal = Eigen::Map<Eigen::VectorXd>(alpha.data(), alpha.size());
       const Eigen::VectorXd side     = Eigen::Map<Eigen::VectorXd>(beta.data(), beta.size());
@@ -43,7 +46,7 @@ namespace PeriDeal
       // may be a little above it.
       bound = ritz.eigenvalues()[end] + std::max(residual, margin * ritz.eigenvalues()[end]);
       beta.push_back(norm);
-      return residual < margin * bound || norm <= 1e-12 * bound ||
+      return residual < small * bound || norm <= 1e-12 * bound ||
              (bound <= enough && alpha.size() >= n_least);
     }
 
