@@ -47,11 +47,16 @@ namespace PeriDeal
     using Place = std::pair<typename DoFHandler<dim>::active_cell_iterator, Point<dim>>;
 
 
-    /** The first of this process's cells that hold the point. */
+    /**
+     * The first of those of this process's cells that hold the point best. Returns how far outside
+     * it lies, 0 or some round-off: the other side of a crack on faces may be as near. Infinity if
+     * no cell holds it.
+     */
     template <int dim>
-    bool find_place(const CellSearch<dim> &search, const Point<dim> &point, Place<dim> &place)
+    double find_place(const CellSearch<dim> &search, const Point<dim> &point, Place<dim> &place)
     {
       constexpr double                            slack = 1e-8;
+      double                                      least = std::numeric_limits<double>::infinity();
       const MappingQ1<dim>                        mapping;
       std::vector<typename CellSearch<dim>::Cell> near;
       const std::vector<BoundingBox<dim>>         box{{{point, point}}};
@@ -61,15 +66,17 @@ namespace PeriDeal
           try
             {
               const Point<dim> unit = mapping.transform_real_to_unit_cell(cell, point);
-              if (GeometryInfo<dim>::is_inside_unit_cell(unit, slack))
+              const double     outside =
+                GeometryInfo<dim>::distance_to_unit_cell(unit) * cell->minimum_vertex_distance();
+              if (GeometryInfo<dim>::is_inside_unit_cell(unit, slack) && outside < least)
                 {
                   place = {cell, unit};
-                  return true;
+                  least = outside;
                 }
             }
           catch (const typename Mapping<dim>::ExcTransformationFailed &)
             {}
-      return false;
+      return least;
     }
   } // namespace
 
@@ -217,7 +224,7 @@ namespace PeriDeal
     std::vector<unsigned int> here(points.size(), 0), in_body(points.size());
     Place<dim>                place;
     for (unsigned int k = 0; k < points.size(); ++k)
-      here[k] = find_place(search, points[k], place) ? 1 : 0;
+      here[k] = std::isfinite(find_place(search, points[k], place)) ? 1 : 0;
     Utilities::MPI::max(here, communicator, in_body);
     // Ties go to the node that comes first in space, so that the answer does not depend on the
     // partition.
@@ -275,8 +282,12 @@ namespace PeriDeal
     const CellSearch<dim>     search(dofs);
     std::vector<unsigned int> finder(points.size(), nobody), first(points.size());
     std::vector<Place<dim>>   places(points.size());
+    std::vector<double>       outside(points.size()), least(points.size());
     for (unsigned int k = 0; k < points.size(); ++k)
-      if (find_place(search, points[k], places[k]))
+      outside[k] = find_place(search, points[k], places[k]);
+    Utilities::MPI::min(outside, communicator, least);
+    for (unsigned int k = 0; k < points.size(); ++k)
+      if (std::isfinite(outside[k]) && outside[k] == least[k])
         finder[k] = me;
     Utilities::MPI::min(finder, communicator, first);
     n_slots = std::max(dofs.get_fe().n_dofs_per_cell(), cracks.empty() ? 0 : most_shares<dim>);

@@ -5,6 +5,7 @@
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
+#include <functional>
 
 namespace PeriDeal
 {
@@ -88,8 +89,7 @@ namespace PeriDeal
       EntryType::list,
       "",
       "temperature",
-      "Given temperatures: `side: formula of x, y, z, t`, several separated by `;`. Where two "
-      "sides meet, the one named first holds." +
+      "Given temperatures: `side: formula of x, y, z, t`, several separated by `;`. Where two sides meet, the one named first holds." +
         sides);
     for (const TransferKind &kind : transfer_kinds())
       declare(kind.entry, EntryType::list, "", kind.unit, kind.documentation);
@@ -98,9 +98,7 @@ namespace PeriDeal
       EntryType::list,
       "",
       "",
-      "Sides that are symmetry planes, separated by `;` or `,`. Fictitious nodes beyond them "
-      "mirror the "
-      "temperature; on meshes from files leave it out for heat, where a side named nowhere is insulated. With elasticity such a side has no displacement normal to itself.");
+      "Sides that are symmetry planes, separated by `;` or `,`. Fictitious nodes beyond them mirror the temperature; on meshes from files leave it out for heat, where a side named nowhere is insulated. With elasticity such a side has no displacement normal to itself.");
     declare(
       "Displacement",
       EntryType::list,
@@ -115,8 +113,7 @@ namespace PeriDeal
       EntryType::list,
       "",
       "length/time",
-      "Elasticity with `Solver = dynamics`: given velocities, written like `Displacement`. What is held so moves by the integral of the "
-      "velocity from time 0 on. Comes after `Displacement` where sides meet.");
+      "Elasticity with `Solver = dynamics`: given velocities, written like `Displacement`. What is held so moves by the integral of the velocity from time 0 on. Comes after `Displacement` where sides meet.");
     declare(
       "Displacement layer",
       EntryType::text,
@@ -129,8 +126,7 @@ namespace PeriDeal
       EntryType::list,
       "",
       "force/area",
-      "Elasticity: given forces per area, `side: component, component`, several sides separated by `;`; one component per direction, a "
-      "formula of x, y, z, t. A side named nowhere is free.");
+      "Elasticity: given forces per area, `side: component, component`, several sides separated by `;`; one component per direction, a formula of x, y, z, t. A side named nowhere is free.");
     declare(
       "Traction layer",
       EntryType::text,
@@ -153,18 +149,16 @@ namespace PeriDeal
   template <int dim>
   bool BoundaryConditions<dim>::transfers_depend_on_time() const
   {
-    return std::any_of(transfers.begin(), transfers.end(), [](const SurfaceTransfer &transfer) {
-      return transfer.depends_on_time();
-    });
+    const auto varies = std::mem_fn(&SurfaceTransfer::depends_on_time);
+    return std::any_of(transfers.begin(), transfers.end(), varies);
   }
 
 
   template <int dim>
   bool BoundaryConditions<dim>::transfers_fix_level() const
   {
-    return std::any_of(transfers.begin(), transfers.end(), [](const SurfaceTransfer &transfer) {
-      return transfer.fixes_level();
-    });
+    const auto fixes = std::mem_fn(&SurfaceTransfer::fixes_level);
+    return std::any_of(transfers.begin(), transfers.end(), fixes);
   }
 
 

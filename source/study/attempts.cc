@@ -104,6 +104,10 @@ namespace PeriDeal
     template <int dim>
     constexpr double fewest_cells = dim == 1 ? 4. : 3.; // along the longest edge
 
+    /** More cells than wanted, along an edge, are not taken to have cracks on their faces. */
+    template <int dim>
+    constexpr int most_to_fit = dim == 3 ? 12 : 48;
+
 
     double product(const std::vector<double> &numbers)
     {
@@ -169,14 +173,6 @@ namespace PeriDeal
         return k;
     return n;
   }
-
-
-  namespace
-  {
-    /** More cells than wanted, along an edge, are not taken to have cracks on their faces. */
-    template <int dim>
-    constexpr int most_to_fit = dim == 3 ? 12 : 48;
-  } // namespace
 
 
   template <int dim>
@@ -307,11 +303,58 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** Of a point and a segment. */
+    double distance(const std::vector<double>              &point,
+                    const std::vector<std::vector<double>> &segment)
+    {
+      double length = 0., along = 0., square = 0.;
+      for (std::size_t d = 0; d < point.size(); ++d)
+        {
+          const double edge = segment[1][d] - segment[0][d];
+          length += edge * edge;
+          along += edge * (point[d] - segment[0][d]);
+        }
+      const double share = length > 0. ? std::clamp(along / length, 0., 1.) : 0.;
+      for (std::size_t d = 0; d < point.size(); ++d)
+        square += std::pow(point[d] - segment[0][d] - share * (segment[1][d] - segment[0][d]), 2);
+      return std::sqrt(square);
+    }
+
+
+    bool is_inside(const CrackedBox &box, const std::vector<double> &point)
+    {
+      for (unsigned int d = 0; d < box.dim(); ++d)
+        if (point[d] < box.lower[d] || point[d] > box.upper[d])
+          return false;
+      return true;
+    }
+  } // namespace
+
+
+  template <int dim>
+  bool Attempts<dim>::probes_at_ends() const
+  {
+    constexpr double near = 0.05;
+    if (scene.accuracy.measure != AccuracyMeasure::probes || box.dim() == 1)
+      return false;
+    for (const auto &crack : box.cracks)
+      for (const std::vector<double> &end : crack)
+        for (const std::vector<double> &probe : scene.output.probes)
+          if (is_inside(box, end) && distance(probe, {end, end}) < near * longest)
+            return true;
+    return false;
+  }
+
+
   template <int dim>
   double Attempts<dim>::best_order() const
   {
     if (needs.jumps)
       return 1.;
+    if (probes_at_ends())
+      return family == Family::faces && dim < 3 ? 1.5 : 1.;
     switch (family)
       {
         case Family::whole:
@@ -386,42 +429,15 @@ namespace PeriDeal
 
   namespace
   {
-    /** Of a point and a segment. */
-    double distance(const std::vector<double>              &point,
-                    const std::vector<std::vector<double>> &segment)
-    {
-      double length = 0., along = 0., square = 0.;
-      for (std::size_t d = 0; d < point.size(); ++d)
-        {
-          const double edge = segment[1][d] - segment[0][d];
-          length += edge * edge;
-          along += edge * (point[d] - segment[0][d]);
-        }
-      const double share = std::clamp(along / length, 0., 1.);
-      for (std::size_t d = 0; d < point.size(); ++d)
-        square += std::pow(point[d] - segment[0][d] - share * (segment[1][d] - segment[0][d]), 2);
-      return std::sqrt(square);
-    }
-
-
-    bool is_inside(const CrackedBox &box, const std::vector<double> &point)
-    {
-      for (unsigned int d = 0; d < box.dim(); ++d)
-        if (point[d] < box.lower[d] || point[d] > box.upper[d])
-          return false;
-      return true;
-    }
-
-
     /**
      * The smallest distance of an end of a crack in the box to a side or, in two dimensions, to
      * another crack, that it does not touch; infinite if there is none.
      */
-    double narrowest_gap(const CrackedBox &box)
+    double narrowest_gap(const CrackedBox &box, const double longest)
     {
       double     narrowest = std::numeric_limits<double>::infinity();
       const auto see       = [&](const double distance) {
-        const double touching = 1e-6 * (box.upper[0] - box.lower[0]);
+        const double touching = 1e-6 * longest;
         if (distance > touching)
           narrowest = std::min(narrowest, distance);
       };
@@ -468,7 +484,7 @@ namespace PeriDeal
       }
     double least = std::max(fewest_cells<dim>, 0.25 * needs.fineness);
     if (family == Family::pairs || family == Family::zone)
-      least = std::max(least, fineness_at_gaps(narrowest_gap(box) / longest));
+      least = std::max(least, fineness_at_gaps(narrowest_gap(box, longest) / longest));
     return least;
   }
 

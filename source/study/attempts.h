@@ -96,6 +96,12 @@ namespace PeriDeal
                              const LimitOfAttempts limit,
                              const bool            on_faces);
 
+    /**
+     * Values are measured beside an end of a crack, where errors are as the root of the size of
+     * the cells there.
+     */
+    bool probes_at_ends() const;
+
     std::vector<double> first_counts() const;
     CellCounts          counts(const double fineness) const;
     unsigned int with_points_on_planes(const unsigned int direction, const unsigned int n) const;

@@ -11,6 +11,8 @@
 #include <functional>
 #include <vector>
 
+#include "given_values.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -317,9 +319,14 @@ namespace PeriDeal
     template <int dim>
     void see_body(const Scene<dim> &scene, FormulaScan<dim> &scan)
     {
-      using Jumps                     = typename FormulaScan<dim>::Jumps;
-      const InitialAndSource &in_body = scene.initial_and_source;
+      using Jumps                      = typename FormulaScan<dim>::Jumps;
+      const InitialAndSource &in_body  = scene.initial_and_source;
+      const Material         &material = scene.material;
       scan.see(in_body.source, Jumps::do_not_matter);
+      if (scene.deforms ? !scene.elasticity.is_static() : !scene.time.steady)
+        scan.see(material.density);
+      if (!scene.deforms && !scene.time.steady)
+        scan.see(material.heat_capacity);
       if (!scene.time.steady)
         scan.see(in_body.initial_value, Jumps::matter);
       for (const Expression &formula : in_body.body_force)
@@ -327,7 +334,6 @@ namespace PeriDeal
       for (const auto *const list : {&in_body.initial_displacement, &in_body.initial_velocity})
         for (const Expression &formula : *list)
           scan.see(formula, Jumps::matter);
-      const Material &material = scene.material;
       if (!scene.deforms)
         return scan.see(material.conductivity);
       scan.see(material.thermal_expansion);
@@ -379,14 +385,20 @@ namespace PeriDeal
   template <int dim>
   NeedsOfFormulas needs_of_formulas(const Scene<dim> &scene)
   {
-    return scan_of(scene, false).needs();
+    NeedsOfFormulas needs = scan_of(scene, false).needs();
+    needs.fineness        = std::max(needs.fineness, fineness_of_first_layer(scene));
+    needs.jumps           = needs.jumps || given_values_disagree(scene);
+    return needs;
   }
 
 
   template <int dim>
   std::vector<double> needs_along_edges(const Scene<dim> &scene)
   {
-    return scan_of(scene, true).along_edges();
+    std::vector<double> along = scan_of(scene, true).along_edges();
+    for (double &fineness : along)
+      fineness = std::max(fineness, fineness_of_first_layer(scene));
+    return along;
   }
 
 

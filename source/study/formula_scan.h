@@ -22,12 +22,14 @@ namespace PeriDeal
    * powers of two, on which the linear interpolant of each is right to a fifth of its variation in
    * the mean square, cells being as long as wide. Sources, materials, forces and initial fields in
    * the body, what is given on its sides, and the parts that it is given on; what changes with time
-   * is looked at four times. At most as many as are looked at. A solution on coarser cells may have
-   * missed what they describe.
+   * is looked at four times. A layer that grows from the sides needs some cells, too
+   * (fineness_of_first_layer()). At most as many as are looked at. A solution on coarser cells may
+   * have missed what they describe.
    *
    * Jumps are looked for in what makes the solution rough: materials, given values, initial fields,
    * and parts of sides where values are given. Of a function that jumps the interpolant on the
-   * finest raster is wrong by more than half of what it is on one twice as coarse. Not collective.
+   * finest raster is wrong by more than half of what it is on one twice as coarse. Values of sides
+   * that disagree where these meet are jumps, too. Not collective.
    */
   template <int dim>
   NeedsOfFormulas needs_of_formulas(const Scene<dim> &scene);

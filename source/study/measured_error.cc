@@ -57,14 +57,17 @@ namespace PeriDeal
 
 
     /**
-     * One point somewhere in each cell of a mesh, or in one of so many cells that about n are left:
-     * adapted meshes have their cells where errors would be. Chance follows from the places of
-     * cells, so that it does not matter how a mesh is dealt out. Collective.
+     * One point somewhere in each cell of a mesh, several where there are few cells, or in one of
+     * so many cells that about n are left: adapted meshes have their cells where errors would be.
+     * Chance follows from the places of cells, so that it does not matter how a mesh is dealt out.
+     * Collective.
      */
     template <int dim>
     Sample sample_of(const Triangulation<dim> &mesh, const double n)
     {
-      const double        share = std::min(1., n / mesh.n_global_active_cells());
+      constexpr double    least = 400.;
+      const double        cells = mesh.n_global_active_cells(), share = std::min(1., n / cells);
+      const unsigned int  n_points = static_cast<unsigned int>(std::ceil(least / cells));
       std::vector<double> own;
       for (const auto &cell : mesh.active_cell_iterators())
         if (cell->is_locally_owned())
@@ -73,15 +76,18 @@ namespace PeriDeal
             chance.next();
             if (chance.next() > share)
               continue;
-            Point<dim> place; // in coordinates of the cell
-            for (unsigned int d = 0; d < dim; ++d)
-              place[d] = chance.next();
-            Point<dim> p;
-            for (const unsigned int v : cell->vertex_indices())
-              p += GeometryInfo<dim>::d_linear_shape_function(place, v) * cell->vertex(v);
-            own.push_back(cell->measure() / share);
-            for (unsigned int d = 0; d < dim; ++d)
-              own.push_back(p[d]);
+            for (unsigned int k = 0; k < n_points; ++k)
+              {
+                Point<dim> place; // in coordinates of the cell
+                for (unsigned int d = 0; d < dim; ++d)
+                  place[d] = chance.next();
+                Point<dim> p;
+                for (const unsigned int v : cell->vertex_indices())
+                  p += GeometryInfo<dim>::d_linear_shape_function(place, v) * cell->vertex(v);
+                own.push_back(cell->measure() / share / n_points);
+                for (unsigned int d = 0; d < dim; ++d)
+                  own.push_back(p[d]);
+              }
           }
       Sample                           sample;
       std::vector<std::vector<double>> all;
@@ -125,7 +131,9 @@ namespace PeriDeal
     }
 
 
-    /** Largest minus smallest value of a component at the nodes. Collective. */
+    /**
+     * Largest minus smallest value of a component at the nodes; 0 if that is round-off. Collective.
+     */
     template <int dim>
     double range_of(const Problem<dim> &problem, const unsigned int component)
     {
@@ -136,8 +144,12 @@ namespace PeriDeal
           high = std::max(high, u.local_element(i));
           low  = std::min(low, u.local_element(i));
         }
-      const MPI_Comm communicator = problem.dofs().get_communicator();
-      return Utilities::MPI::max(high, communicator) - Utilities::MPI::min(low, communicator);
+      const MPI_Comm   communicator = problem.dofs().get_communicator();
+      constexpr double round_off    = 1e-9; // solvers leave that
+      const double     most         = Utilities::MPI::max(high, communicator),
+                   least            = Utilities::MPI::min(low, communicator);
+      return most - least > round_off * std::max(std::abs(most), std::abs(least)) ? most - least :
+                                                                                    0.;
     }
 
 
@@ -237,6 +249,33 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /**
+     * What stress intensities or flows of a body are about: E |u| / L sqrt(L), or k |u| / L times
+     * volume over L. Collective.
+     */
+    template <int dim>
+    double size_by_range(const Scene<dim> &scene, const Problem<dim> &problem)
+    {
+      double range = 0., longest = 0., volume = 1.;
+      for (unsigned int c = 0; c < problem.n_components(); ++c)
+        range = std::max(range, range_of(problem, c));
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const double edge = scene.domain.upper[d] - scene.domain.lower[d];
+          longest           = std::max(longest, edge);
+          volume *= edge;
+        }
+      const Point<dim> middle =
+        scene.domain.lower + 0.5 * (scene.domain.upper - scene.domain.lower);
+      if (!scene.deforms)
+        return scene.material.conductivity.value(middle) * range * volume / (longest * longest);
+      return scene.material.moduli(middle).young() * range / std::sqrt(longest);
+    }
+  } // namespace
+
+
   template <int dim>
   void MeasuredError<dim>::refuse_forces_at_points(Simulation<dim> &simulation) const
   {
@@ -273,6 +312,7 @@ namespace PeriDeal
   template <int dim>
   MeasuredNumbers MeasuredError<dim>::numbers(Simulation<dim> &simulation) const
   {
+    constexpr double      small   = 0.01;
     const AccuracyMeasure measure = scene.accuracy.measure;
     MeasuredNumbers       numbers;
     if (measure == AccuracyMeasure::flow)
@@ -287,15 +327,19 @@ namespace PeriDeal
                               "Measure",
                               "found 'flow: " + side + "', needs a side with a condition: " +
                                 join_names(names) + "." + did_you_mean(side, names));
-        numbers[side] = flows[side].template get<double>();
+        numbers.values[side] = flows[side].template get<double>();
+        numbers.least = small * std::max(scale_of(all), size_by_range(scene, simulation.problem()));
       }
     else if (measure == AccuracyMeasure::stress_intensity)
       {
         const Json all = simulation.found()["models"]["auto"];
         if (all.contains("stress intensity"))
           for (const auto &[end, k] : all["stress intensity"].items())
-            numbers[end] =
+            numbers.values[end] =
               std::hypot(k["I"].template get<double>(), k["II"].template get<double>());
+        for (const auto &[end, k] : numbers.values)
+          numbers.least = std::max(numbers.least, small * k);
+        numbers.least = std::max(numbers.least, small * size_by_range(scene, simulation.problem()));
       }
     return numbers;
   }
@@ -306,12 +350,12 @@ namespace PeriDeal
     /** The largest relative difference, or nothing, where there was no room around all ends. */
     std::optional<double> difference_of(const MeasuredNumbers &fine, const MeasuredNumbers &coarse)
     {
-      if (fine.empty() || fine.size() != coarse.size())
+      if (fine.values.empty() || fine.values.size() != coarse.values.size())
         return {};
       double worst = 0.;
-      for (const auto &[name, value] : fine)
-        if (const double other = coarse.at(name); other != value)
-          worst = std::max(worst, std::abs(value - other) / std::abs(value));
+      for (const auto &[name, value] : fine.values)
+        if (const double other = coarse.values.at(name); other != value)
+          worst = std::max(worst, std::abs(value - other) / std::max(std::abs(value), fine.least));
       return worst;
     }
 
@@ -341,7 +385,7 @@ namespace PeriDeal
                   ++n;
                 }
             const double found = measure == AccuracyMeasure::probes ? largest : std::sqrt(sum / n);
-            if (found > 0.)
+            if (found > 0. && widest > 0.)
               worst = std::max(worst, found / std::max(fine[k].range, at_rest * widest));
           }
       return worst;

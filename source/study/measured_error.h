@@ -14,7 +14,11 @@
 namespace PeriDeal
 {
   /** A flow, or the size of each stress intensity, by name. */
-  using MeasuredNumbers = std::map<std::string, double>;
+  struct MeasuredNumbers
+  {
+    std::map<std::string, double> values;
+    double least = 0.; // differences of smaller ones are relative to this: they may be zero
+  };
 
 
   /** Of a solution that changes with time, at a time of the output. */

@@ -171,7 +171,8 @@ namespace PeriDeal
             limit = limit_before(family, next);
             if (!limit.empty())
               return require_estimate(family);
-            compute(family, next);
+            if (!compute_if_possible(family))
+              return;
           }
       }
 
@@ -201,13 +202,24 @@ namespace PeriDeal
           classical.set(settings_in_time(tolerance));
           return classical.solve(classical.first());
         };
-        double     tolerance = std::min(1e-3, finer * scene.accuracy.tolerance);
-        Tried<dim> loose = solution(tolerance), strict = solution(finer * tolerance);
+        double             tolerance = std::min(1e-3, finer * scene.accuracy.tolerance);
+        Tried<dim>         loose     = solution(tolerance);
+        std::ostringstream what;
+        what.precision(2);
+        what
+          << "is too small for an estimate of the error, which needs some solutions: one on the coarsest mesh takes "
+          << loose.wall_time << " s.";
+        scene.accuracy.refuse(scene.accuracy.budget > 0. &&
+                                elapsed() + 2. * loose.wall_time > scene.accuracy.budget,
+                              "Budget",
+                              what.str());
+        Tried<dim> strict     = solution(finer * tolerance);
         const auto difference = [&] {
           return *measure.difference(strict.solution(), loose.solution());
         };
         for (time_error = difference();
-             time_error > share * scene.accuracy.tolerance && finer * tolerance > finest;
+             time_error > share * scene.accuracy.tolerance && finer * tolerance > finest &&
+             may_take(2. * strict.wall_time);
              time_error = difference())
           {
             tolerance *= finer;
@@ -238,7 +250,15 @@ namespace PeriDeal
           "room around the ends of cracks for some cells.");
         if (family.n_tried() >= most)
           return std::to_string(most) + " tries";
-        return limit_of(family.expected_time(attempt), family.expected_memory(attempt));
+        // What changes with time is computed again for the results on the way.
+        const double runs = scene.time.steady ? 1. : 2.;
+        return limit_of(runs * family.expected_time(attempt), family.expected_memory(attempt));
+      }
+
+      /** Whether so many seconds leave half of the budget. Collective. */
+      bool may_take(const double seconds) const
+      {
+        return scene.accuracy.budget <= 0. || elapsed() + seconds < 0.5 * scene.accuracy.budget;
       }
 
       /** Whether so many seconds and bytes may still be spent: what forbids it, or nothing. */
@@ -269,6 +289,24 @@ namespace PeriDeal
         scene.accuracy.refuse(limit == "'Memory'", "Memory", what.str());
         throw UserError("Entry 'Tolerance' in section 'Accuracy': " + limit +
                         " did not allow two solutions, which an estimate of the error needs.");
+      }
+
+      /** False where `next` fails, but something is known of the one before. Throws UserError. */
+      bool compute_if_possible(Search<dim> &family)
+      {
+        if (family.error().error < 0.)
+          compute(family, next);
+        else
+          try
+            {
+              compute(family, next);
+            }
+          catch (const UserError &error)
+            {
+              limit = "what can be solved";
+              progress.line("  " + short_name(next) + " cannot be solved: " + error.message());
+            }
+        return limit.empty();
       }
 
       void compute(Search<dim> &family, const Attempt &attempt)
@@ -335,7 +373,7 @@ namespace PeriDeal
                         {"tolerance", scene.accuracy.tolerance},
                         {"estimate", estimate()},
                         {"met", is_met()},
-                        {"budget exhausted", !limit.empty()},
+                        {"budget exhausted", limit == "'Budget'" || limit == "'Memory'"},
                         {"model", to_string(attempt.model)},
                         {"settings", settings_of(attempt)},
                         {"reason", chosen->attempts().reason()},

@@ -10,6 +10,7 @@
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/operators/parts/lumped_mass.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,6 +54,7 @@ namespace PeriDeal
     if (body.peridynamics.scales_beside_cracks() && body.cracks.cut_pairs() &&
         !body.cracks.cracks.empty())
       cells.find_factors(Vector(layout));
+    dealii::Vector<double> lumps(dofs.get_fe().n_dofs_per_cell()), diagonal(lumps.size());
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -65,8 +67,15 @@ namespace PeriDeal
           if (!capacity_is_diagonal())
             hanging.add_to(mass, data.mass, data.indices);
           for (unsigned int a = 0; a < data.indices.size(); ++a)
-            for (unsigned int b = 0; b < data.indices.size(); ++b)
-              capacity(data.indices[a]) += data.mass(a, b);
+            {
+              lumps(a)    = 0.;
+              diagonal(a) = data.mass(a, a);
+              for (unsigned int b = 0; b < data.indices.size(); ++b)
+                lumps(a) += data.mass(a, b);
+            }
+          make_positive(diagonal, lumps);
+          for (unsigned int a = 0; a < data.indices.size(); ++a)
+            capacity(data.indices[a]) += lumps(a);
         }
     if (zone_bonds)
       zone_bonds->add_to(stiffness);

@@ -9,6 +9,7 @@
 #include <perideal/base/matrix_rows.h>
 #include <perideal/operators/bounds/spectrum.h>
 #include <perideal/operators/parts/event_work.h>
+#include <perideal/operators/parts/lumped_mass.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,7 @@ namespace PeriDeal
     data.stiffness              = 0.;
     data.thermal                = 0.;
     data.mass                   = 0.;
+    data.diagonal               = 0.;
     data.volume                 = 0.;
     data.thermal_energy         = 0.;
     for (const unsigned int q : data.values.quadrature_point_indices())
@@ -54,6 +56,8 @@ namespace PeriDeal
             const Tensor<1, dim> &ga = data.values.shape_grad(a, q);
             data.volume(a) += data.values.shape_value(a, q) * JxW;
             data.mass(a) += density * data.values.shape_value(a, q) * JxW;
+            data.diagonal(a) +=
+              density * data.values.shape_value(a, q) * data.values.shape_value(a, q) * JxW;
             for (unsigned int d = 0; d < dim; ++d)
               data.thermal(dim * a + d) += pressure * ga[d] * JxW;
             for (unsigned int b = 0; b < n; ++b)
@@ -168,6 +172,7 @@ namespace PeriDeal
       change_cell(cell, of_cell);
       add_thermal(of_cell, energy);
       hanging.add_to(stiffness, of_cell.stiffness, of_cell.unknowns);
+      make_positive(of_cell.diagonal, of_cell.mass);
       for (unsigned int i = 0; i < of_cell.unknowns.size(); ++i)
         mass(of_cell.unknowns[i]) += of_cell.mass(i / dim);
       for (unsigned int i = 0; i < of_cell.indices.size(); ++i)

@@ -30,6 +30,7 @@ namespace PeriDeal
       , stiffness(dim * fe.n_dofs_per_cell(), dim * fe.n_dofs_per_cell())
       , thermal(dim * fe.n_dofs_per_cell())
       , mass(fe.n_dofs_per_cell())
+      , diagonal(fe.n_dofs_per_cell())
       , volume(fe.n_dofs_per_cell())
       , indices(fe.n_dofs_per_cell())
       , unknowns(dim * fe.n_dofs_per_cell())
@@ -43,11 +44,11 @@ namespace PeriDeal
           unknowns[dim * i + d] = dim * indices[i] + d;
     }
 
-    dealii::FEValues<dim>                        values;
-    dealii::FEFaceValues<dim>                    face_values;
-    dealii::FullMatrix<double>                   stiffness;
-    dealii::Vector<double>                       thermal, mass, volume;
-    double                                       thermal_energy = 0.;
+    dealii::FEValues<dim>      values;
+    dealii::FEFaceValues<dim>  face_values;
+    dealii::FullMatrix<double> stiffness;
+    dealii::Vector<double>     thermal, mass, diagonal, volume; // diagonal: of the mass
+    double                     thermal_energy = 0.;
     std::vector<dealii::types::global_dof_index> indices, unknowns;
   };
 
