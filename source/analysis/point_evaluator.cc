@@ -29,16 +29,15 @@ namespace PeriDeal
 
   namespace
   {
-    /** The point, moved a little to the left of a crack it lies on. */
+    /** The way to the left of the cracks that a point lies on, or nothing. */
     template <int dim>
-    Point<dim> off_cracks(Point<dim>                             p,
-                          const std::vector<CrackGeometry<dim>> &cracks,
-                          const double                           shift)
+    Tensor<1, dim> off_cracks(const Point<dim> &p, const std::vector<CrackGeometry<dim>> &cracks)
     {
+      Tensor<1, dim> way;
       for (const CrackGeometry<dim> &crack : cracks)
         if (crack.contains(p))
-          p += shift * crack.normal();
-      return p;
+          way += crack.normal();
+      return way;
     }
 
 
@@ -48,12 +47,15 @@ namespace PeriDeal
 
 
     /**
-     * The first of those of this process's cells that hold the point best. Returns how far outside
-     * it lies, 0 or some round-off: the other side of a crack on faces may be as near. Infinity if
-     * no cell holds it.
+     * The first of this process's cells that hold the point and whose centre lies the given way, if
+     * any: the cells on both sides of a crack on faces hold what lies on it. Returns 0; 1 if there
+     * are only others that hold it, of which the first is taken; infinity if there is none.
      */
     template <int dim>
-    double find_place(const CellSearch<dim> &search, const Point<dim> &point, Place<dim> &place)
+    double find_place(const CellSearch<dim> &search,
+                      const Point<dim>      &point,
+                      const Tensor<1, dim>  &way,
+                      Place<dim>            &place)
     {
       constexpr double                            slack = 1e-8;
       double                                      least = std::numeric_limits<double>::infinity();
@@ -66,12 +68,11 @@ namespace PeriDeal
           try
             {
               const Point<dim> unit = mapping.transform_real_to_unit_cell(cell, point);
-              const double     outside =
-                GeometryInfo<dim>::distance_to_unit_cell(unit) * cell->minimum_vertex_distance();
-              if (GeometryInfo<dim>::is_inside_unit_cell(unit, slack) && outside < least)
+              const double     rank = way * (cell->center() - point) < 0. ? 1. : 0.;
+              if (GeometryInfo<dim>::is_inside_unit_cell(unit, slack) && rank < least)
                 {
                   place = {cell, unit};
-                  least = outside;
+                  least = rank;
                 }
             }
           catch (const typename Mapping<dim>::ExcTransformationFailed &)
@@ -140,12 +141,15 @@ namespace PeriDeal
     const double shift      = at_centers || cracks.on_faces() ?
                                 1e-7 * GridTools::minimal_cell_diameter(dofs.get_triangulation()) :
                                 0.;
-    std::vector<Point<dim>> points(n_points);
+    std::vector<Point<dim>>     points(n_points);
+    std::vector<Tensor<1, dim>> ways(n_points);
     for (unsigned int k = 0; k < n_points; ++k)
       {
         for (unsigned int d = 0; d < dim; ++d)
           points[k][d] = coordinates[k][d];
-        points[k] = off_cracks(points[k], geometries, shift);
+        if (shift > 0.)
+          ways[k] = off_cracks(points[k], geometries);
+        points[k] += shift * ways[k];
       }
     inner                   = points;
     const bool across_cells = beside == BesideCracks::own_side && !at_centers &&
@@ -155,7 +159,10 @@ namespace PeriDeal
     else if (at_centers && nodes != nullptr)
       locate_nearest(dofs, *nodes, points);
     else
-      locate_in_mesh(dofs, points, across_cells ? geometries : std::vector<CrackGeometry<dim>>());
+      locate_in_mesh(dofs,
+                     points,
+                     ways,
+                     across_cells ? geometries : std::vector<CrackGeometry<dim>>());
     find_gaps(coordinates, entry, outside);
   }
 
@@ -224,7 +231,7 @@ namespace PeriDeal
     std::vector<unsigned int> here(points.size(), 0), in_body(points.size());
     Place<dim>                place;
     for (unsigned int k = 0; k < points.size(); ++k)
-      here[k] = std::isfinite(find_place(search, points[k], place)) ? 1 : 0;
+      here[k] = std::isfinite(find_place(search, points[k], Tensor<1, dim>(), place)) ? 1 : 0;
     Utilities::MPI::max(here, communicator, in_body);
     // Ties go to the node that comes first in space, so that the answer does not depend on the
     // partition.
@@ -275,6 +282,7 @@ namespace PeriDeal
   template <int dim>
   void PointEvaluator<dim>::locate_in_mesh(const DoFHandler<dim>                 &dofs,
                                            const std::vector<Point<dim>>         &points,
+                                           const std::vector<Tensor<1, dim>>     &ways,
                                            const std::vector<CrackGeometry<dim>> &cracks)
   {
     const unsigned int        me     = Utilities::MPI::this_mpi_process(communicator);
@@ -282,12 +290,12 @@ namespace PeriDeal
     const CellSearch<dim>     search(dofs);
     std::vector<unsigned int> finder(points.size(), nobody), first(points.size());
     std::vector<Place<dim>>   places(points.size());
-    std::vector<double>       outside(points.size()), least(points.size());
+    std::vector<double>       rank(points.size()), least(points.size());
     for (unsigned int k = 0; k < points.size(); ++k)
-      outside[k] = find_place(search, points[k], places[k]);
-    Utilities::MPI::min(outside, communicator, least);
+      rank[k] = find_place(search, points[k], ways[k], places[k]);
+    Utilities::MPI::min(rank, communicator, least);
     for (unsigned int k = 0; k < points.size(); ++k)
-      if (std::isfinite(outside[k]) && outside[k] == least[k])
+      if (std::isfinite(rank[k]) && rank[k] == least[k])
         finder[k] = me;
     Utilities::MPI::min(finder, communicator, first);
     n_slots = std::max(dofs.get_fe().n_dofs_per_cell(), cracks.empty() ? 0 : most_shares<dim>);

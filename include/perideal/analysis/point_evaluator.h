@@ -109,9 +109,10 @@ namespace PeriDeal
                                   const Factor      &factor) const;
 
     void locate_on_lattice(const Nodes<dim> &nodes, const std::vector<dealii::Point<dim>> &points);
-    void locate_in_mesh(const dealii::DoFHandler<dim>         &dofs,
-                        const std::vector<dealii::Point<dim>> &points,
-                        const std::vector<CrackGeometry<dim>> &cracks);
+    void locate_in_mesh(const dealii::DoFHandler<dim>             &dofs,
+                        const std::vector<dealii::Point<dim>>     &points,
+                        const std::vector<dealii::Tensor<1, dim>> &ways,
+                        const std::vector<CrackGeometry<dim>>     &cracks);
     void locate_nearest(const dealii::DoFHandler<dim>         &dofs,
                         const Nodes<dim>                      &nodes,
                         const std::vector<dealii::Point<dim>> &points);
