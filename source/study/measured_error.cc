@@ -194,13 +194,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  double MeasuredError<dim>::of_values(const Problem<dim>                     &fine,
-                                       const Problem<dim>                     &coarse,
+  double MeasuredError<dim>::of_values(const MeasuredSolution<dim>            &finer,
+                                       const MeasuredSolution<dim>            &coarser,
                                        const std::vector<std::vector<double>> &points,
                                        const std::vector<double>              &weights) const
   {
-    const PointEvaluator<dim> of_fine   = reader_of(fine, scene.cracks, points),
-                              of_coarse = reader_of(coarse, scene.cracks, points);
+    const Problem<dim> &fine = finer.simulation.problem(), &coarse = coarser.simulation.problem();
+    const PointEvaluator<dim> of_fine   = reader_of(fine, finer.cracks, points),
+                              of_coarse = reader_of(coarse, coarser.cracks, points);
     double worst = 0., range = 0.;
     for (unsigned int c = 0; c < fine.n_components(); ++c)
       {
@@ -394,13 +395,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  SeenValues MeasuredError<dim>::see(const Problem<dim> &problem) const
+  SeenValues MeasuredError<dim>::see(const Problem<dim> &problem, const Cracks<dim> &cracks) const
   {
     const bool at_probes = scene.accuracy.measure == AccuracyMeasure::probes;
     const std::vector<std::vector<double>> points =
       at_probes ? scene.output.probes :
                   points_in(scene.domain.lower, scene.domain.upper, n_points_of_field<dim>);
-    const PointEvaluator<dim> reader = reader_of(problem, scene.cracks, points);
+    const PointEvaluator<dim> reader = reader_of(problem, cracks, points);
     SeenValues                seen;
     for (unsigned int c = 0; c < problem.n_components(); ++c)
       {
@@ -415,8 +416,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<unsigned int> MeasuredError<dim>::constant_directions(
-    const Problem<dim> &problem) const
+  std::vector<unsigned int> MeasuredError<dim>::constant_directions(const Problem<dim> &problem,
+                                                                    const Cracks<dim> &cracks) const
   {
     constexpr double       slack    = 1e-6;
     constexpr unsigned int n_points = 64;
@@ -424,7 +425,7 @@ namespace PeriDeal
     if (dim == 1 || problem.n_components() > 1 || range == 0.)
       return {};
     const auto values = [&](const std::vector<std::vector<double>> &points) {
-      return reader_of(problem, scene.cracks, points).evaluate(problem.state(), 1, 0);
+      return reader_of(problem, cracks, points).evaluate(problem.state(), 1, 0);
     };
     const auto                points = points_in(scene.domain.lower, scene.domain.upper, n_points);
     const auto                before = values(points);
@@ -451,17 +452,16 @@ namespace PeriDeal
   {
     if (!scene.time.steady && scene.accuracy.measure != AccuracyMeasure::flow)
       return difference_of(fine.seen, coarse.seen, scene.accuracy.measure);
-    const Problem<dim> &problem = fine.simulation.problem(), &other = coarse.simulation.problem();
     switch (scene.accuracy.measure)
       {
         case AccuracyMeasure::field:
           {
-            const Sample sample =
-              sample_of(problem.dofs().get_triangulation(), n_points_of_field<dim>);
-            return of_values(problem, other, sample.points, sample.weights);
+            const auto  &mesh   = fine.simulation.problem().dofs().get_triangulation();
+            const Sample sample = sample_of(mesh, n_points_of_field<dim>);
+            return of_values(fine, coarse, sample.points, sample.weights);
           }
         case AccuracyMeasure::probes:
-          return of_values(problem, other, scene.output.probes, {});
+          return of_values(fine, coarse, scene.output.probes, {});
         default:
           return difference_of(fine.numbers, coarse.numbers);
       }

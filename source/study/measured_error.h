@@ -35,6 +35,7 @@ namespace PeriDeal
   struct MeasuredSolution
   {
     Simulation<dim>               &simulation;
+    const Cracks<dim>             &cracks; // of its own scene: on faces or across cells
     const MeasuredNumbers         &numbers;
     const std::vector<SeenValues> &seen;
   };
@@ -52,7 +53,7 @@ namespace PeriDeal
     explicit MeasuredError(const Scene<dim> &scene);
 
     /** What difference() needs of a solution that changes with time, as it is now. */
-    SeenValues see(const Problem<dim> &problem) const;
+    SeenValues see(const Problem<dim> &problem, const Cracks<dim> &cracks) const;
 
     /**
      * Throws UserError where a force or a flow acts at a point, by its reaction in a solution, and
@@ -75,11 +76,12 @@ namespace PeriDeal
      * The directions in which a solution does not vary, to a millionth of its range, seen along
      * lines through some points. None of what has more components than one.
      */
-    std::vector<unsigned int> constant_directions(const Problem<dim> &problem) const;
+    std::vector<unsigned int> constant_directions(const Problem<dim> &problem,
+                                                  const Cracks<dim>  &cracks) const;
 
   private:
-    double of_values(const Problem<dim>                     &fine,
-                     const Problem<dim>                     &coarse,
+    double of_values(const MeasuredSolution<dim>            &finer,
+                     const MeasuredSolution<dim>            &coarser,
                      const std::vector<std::vector<double>> &points,
                      const std::vector<double>              &weights) const;
 

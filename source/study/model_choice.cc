@@ -342,7 +342,8 @@ namespace PeriDeal
 
       void say_constant()
       {
-        constant = measure.constant_directions(chosen->last().simulation->problem());
+        const Tried<dim> &last = chosen->last();
+        constant = measure.constant_directions(last.simulation->problem(), last.scene->cracks);
         std::string axes;
         for (const unsigned int d : constant)
           axes += std::string(axes.empty() ? "" : ", ") + "xyz"[d];

@@ -96,7 +96,7 @@ namespace PeriDeal
     one.simulation = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
     one.simulation->solve([&](const double) {
       if (!scene.time.steady)
-        one.seen.push_back(measure.see(one.simulation->problem()));
+        one.seen.push_back(measure.see(one.simulation->problem(), one.scene->cracks));
     });
     one.numbers = measure.numbers(*one.simulation);
     one.cells   = one.simulation->problem().dofs().get_triangulation().n_global_active_cells();

@@ -27,7 +27,7 @@ namespace PeriDeal
 
     MeasuredSolution<dim> solution() const
     {
-      return {*simulation, numbers, seen};
+      return {*simulation, scene->cracks, numbers, seen};
     }
   };
 
