@@ -133,6 +133,8 @@ def rough():
         "a hard inclusion": elastic("if((x-0.5)^2+(y-0.5)^2 < 0.04, 100, 1)"),
         "two cracks in a solid": elastic("1", "subsection Cracks\n  set Segments = 0.2,0.4 ; 0.5,0.5 ; 0.55,0.6 ; 0.85,0.5\nend\n"),
         "a pulse of heat": heat("  set Dirichlet = left: 0; right: 0", "subsection Initial and source\n  set Source = 50*exp(-((t-0.5)/0.02)^2)*sin(pi*x)\nend\n").replace("set Steady = true", "set End time = 1"),
+        "a strip that stores much": heat("  set Dirichlet = left: 1", "subsection Material\n  set Heat capacity = if(abs(x-0.53) < 0.02, 100, 1)\nend\n").replace("set Steady = true", "set End time = 0.3"),
+        "soon after the start": heat("  set Dirichlet = left: 0; right: 0; bottom: 0; top: 0", "subsection Initial and source\n  set Initial value = 1\nend\n").replace("set Steady = true", "set End time = 1e-3"),
     }
     shares = np.random.default_rng(5).random((400, 2))
     for name, text in scenes.items():
@@ -146,6 +148,36 @@ def rough():
         fine = found["4e-3"]
         check_less(root_mean_square(found["2e-2"] - fine) / widest(fine), 2.4e-2, f"{name}: difference from what is five times as accurate")
     thin_block()
+    on_a_crack()
+    zeros()
+
+
+def on_a_crack():
+    """A point on a crack on faces is read on its left, where cells on the right are many times as large, too."""
+    text = ("set Dimension = 2\nset Models = finite elements\nsubsection Domain\n  set Lower corner = -1, -1\n  set Upper corner = 1, 1\n  set Cells = 1024, 1024\n  set Coarsening = 6\n"
+            "  set Fine where = crack ends\nend\nsubsection Boundary conditions\n  set Dirichlet = bottom: 0; top: 1\nend\nsubsection Cracks\n  set Segments = -0.5,0.25 ; 0.5,0.25\n  set Mesh = faces\nend\n"
+            "subsection Finite elements\n  set Degree = 2\nend\nsubsection Time\n  set Steady = true\nend\nsubsection Output\n  set Fields = none\n  set Probes = 0,0.25 ; 0,0.2501 ; 0,0.2499\nend\n")
+    for ranks in (1, 2, 4):
+        on, left, right = (row["value"] for row in run_scene(text, ranks=ranks).rows("finite elements"))
+        check_close(on, left, absolute=1e-5, what=f"a point on a crack, {ranks} processes")
+        check(left - right > 0.4, f"the crack parts {left} and {right}")
+    auto = text.replace("finite elements", "auto").replace("  set Degree = 2\n", "")
+    for line in ("  set Cells = 1024, 1024\n", "  set Coarsening = 6\n", "  set Fine where = crack ends\n", "  set Mesh = faces\n", " ; 0,0.2501 ; 0,0.2499"):
+        auto = auto.replace(line, "")
+    for ranks in (1, 2):
+        run = run_scene(auto, {"Accuracy/Measure": "probes", "Accuracy/Tolerance": "1e-4"}, ranks=ranks)
+        check(run.summary["accuracy"]["met"], f"a probe on a crack, {ranks} processes: met")
+        check_close(run.rows("auto")[0]["value"], 0.82977, absolute=1e-4, what="a probe on a crack, by 1e-4")
+
+
+def zeros():
+    """What is zero by symmetry is found to be so, on coarse meshes."""
+    flow = "set Dimension = 2\nset Models = auto\nsubsection Boundary conditions\n  set Dirichlet = left: y-0.5; right: 0\nend\nsubsection Time\n  set Steady = true\nend\n"
+    run = run_scene(flow, {"Accuracy/Measure": "flow: left"})
+    check(run.summary["accuracy"]["met"] and len(run.summary["accuracy"]["steps"]) < 4, "a flow that is zero")
+    constant = flow.replace("left: y-0.5; right: 0", "left: 7; right: 7")
+    run = run_scene(constant)
+    check(run.summary["accuracy"]["met"] and len(run.summary["accuracy"]["steps"]) < 4, "a field without any variation")
 
 
 def thin_block():
