@@ -118,7 +118,18 @@ namespace PeriDeal
                      std::vector<double>{0., 0.2, 0.4, 0.49, 0.499, 0.51} :
                    scheme == "exchange" ? std::vector<double>{0., 0.4, 0.51} :
                                           std::vector<double>{0.})
-                list.push_back(point({scheme, zone, contrast, distortion}));
+                {
+                  const CoupledSquare square{scheme, zone, contrast, distortion};
+                  try
+                    {
+                      list.push_back(point(square));
+                    }
+                  catch (const UserError &error)
+                    {
+                      left_out.push_back(scheme + ", zone " + zone.name + ": " +
+                                         mistake_in_overrides(error));
+                    }
+                }
         return list;
       }
 
@@ -196,7 +207,7 @@ namespace PeriDeal
           }
         catch (const UserError &error)
           {
-            if (square.distortion == 0.) // only cells that are inside out are part of the map
+            if (square.distortion < 0.5) // only cells that are inside out are part of the map
               throw;
             point.parameters.emplace_back("fault", mistake_in_overrides(error));
             point.predicted = -std::numeric_limits<double>::infinity();

@@ -134,17 +134,24 @@ namespace PeriDeal
   SceneText StabilityScene::text_of_body(const ModelKind             model,
                                          const std::vector<Setting> &settings) const
   {
+    // The horizon is given by one of two entries.
+    const bool has_horizon =
+      std::any_of(settings.begin(), settings.end(), [](const Setting &setting) {
+        return setting.first == "Peridynamics/Horizon";
+      });
     std::vector<std::string> all = {
       "Dimension=" + std::to_string(facts.dim),
       std::string("Physics=") + (facts.deforms ? "elasticity" : "heat"),
       "Models=" + to_string(model),
       "Domain/Nodes=" + (model == ModelKind::peridynamics ? facts.nodes : "vertices")};
+    std::vector<Setting> of_bonds;
     if (model != ModelKind::finite_elements)
-      for (const Setting &setting :
-           std::vector<Setting>{{"Kernel", facts.kernel},
-                                {"Kernel exponent", std::to_string(facts.kernel_exponent)},
-                                {"Horizon ratio", full_precision(facts.ratio)}})
-        all.push_back("Peridynamics/" + setting.first + "=" + setting.second);
+      of_bonds = {{"Kernel", facts.kernel},
+                  {"Kernel exponent", std::to_string(facts.kernel_exponent)}};
+    if (model != ModelKind::finite_elements && !has_horizon)
+      of_bonds.emplace_back("Horizon ratio", full_precision(facts.ratio));
+    for (const auto &[entry, value] : of_bonds)
+      all.push_back("Peridynamics/" + entry + "=" + value);
     for (const auto &[entry, value] : settings)
       all.push_back(entry + "=" + value);
     return {"stability", apply_overrides("", "stability", all), communicator};

@@ -289,7 +289,15 @@ namespace PeriDeal
         for (const std::string &scheme : schemes)
           for (const double ratio :
                quick ? std::vector<double>{3.} : std::vector<double>{2., 3., 4.})
-            add_points(scheme, ratio, 0.4, quick ? 3 : 10, list);
+            try
+              {
+                add_points(scheme, ratio, 0.4, quick ? 3 : 10, list);
+              }
+            catch (const UserError &error)
+              {
+                left_out.push_back(scheme + ", m = " + Value(ratio).dump() + ": " +
+                                   mistake_in_overrides(error));
+              }
         return list;
       }
 

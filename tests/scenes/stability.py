@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """perideal study stability: limits that are observed beside those predicted, maps confirmed by random points, mistakes, two processes.
 
-    python3 stability.py [limits | motion | maps | solids | certificate | mistakes | ranks] ...     (all without arguments)
+    python3 stability.py [limits | motion | maps | settings | solids | certificate | mistakes | ranks] ...     (all without arguments)
 """
 
 import csv
@@ -157,6 +157,15 @@ def motion():
     check({line["method"] for line in lines} == {"verlet"}, "methods of motion")
 
 
+def settings():
+    """Maps of bodies of their own with another m or a horizon."""
+    plate = write("plate.prm", PLATE)
+    for setting in ("Peridynamics/Horizon ratio=2", "Peridynamics/Horizon=0.16"):
+        _, _, data, lines = study(plate, "--quick", "--maps", "lowest eigenvalue, heat lost by splice", "-s", setting)
+        found = [sum(line["map"] == name for line in lines) for name in ("lowest eigenvalue", "heat lost by splice")]
+        check(found == [20, 9], f"{setting}: {found} points")
+
+
 def maps():
     """All maps of a coupled plate."""
     stdout, _, data, lines = study(write("plate.prm", PLATE), "--quick", "--random", "20")
@@ -252,7 +261,7 @@ def ranks():
 
 
 def main():
-    parts = {part.__name__: part for part in (limits, motion, maps, solids, certificate, mistakes, ranks)}
+    parts = {part.__name__: part for part in (limits, motion, maps, settings, solids, certificate, mistakes, ranks)}
     for name in sys.argv[1:] or parts:
         parts[name]()
     finish(FOLDER)
