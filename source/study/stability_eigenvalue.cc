@@ -120,6 +120,7 @@ namespace PeriDeal
                                           std::vector<double>{0.})
                 {
                   const CoupledSquare square{scheme, zone, contrast, distortion};
+                  write_mesh(square);
                   try
                     {
                       list.push_back(point(square));
@@ -141,6 +142,7 @@ namespace PeriDeal
         square.scheme   = "exchange";
         // At 0.5 of an edge cells are triangles.
         square.distortion = inside ? uniform(random, 0., 0.45) : uniform(random, 0.5, 0.8);
+        write_mesh(square);
         return point(square);
       }
 
@@ -155,12 +157,31 @@ namespace PeriDeal
         return scene.folder + "/.stability_mesh.msh";
       }
 
-      /** Only distorted cells come from a file: bonds of a lattice are calibrated. Collective. */
+      /**
+       * Only distorted cells come from a file: bonds of a lattice are calibrated. An error is
+       * everybody's, and no fault of the square. Collective.
+       */
+      void write_mesh(const CoupledSquare &square) const
+      {
+        if (square.distortion == 0.)
+          return;
+        std::string message;
+        if (is_first())
+          try
+            {
+              write_file(mesh_file(), mesh_text(n, square.distortion));
+            }
+          catch (const UserError &error)
+            {
+              message = error.message();
+            }
+        throw_on_all_if_any(scene.communicator, message);
+      }
+
       std::vector<Setting> settings_of(const CoupledSquare &square) const
       {
-        constexpr unsigned int n     = 16;
-        const double           ratio = std::clamp(scene.facts.ratio, 2., 4.);
-        std::vector<Setting>   settings{
+        const double         ratio = std::clamp(scene.facts.ratio, 2., 4.);
+        std::vector<Setting> settings{
           {"Material/Conductivity", "if(y < 0.5, 1, " + full_precision(square.contrast) + ")"},
           {"Peridynamics/Horizon", full_precision(ratio / n)},
           {"Coupling/Scheme", square.scheme},
@@ -176,9 +197,6 @@ namespace PeriDeal
                              {"Boundary conditions/Dirichlet", "left: 1; right: 0"}});
             return settings;
           }
-        if (is_first())
-          write_file(mesh_file(), mesh_text(n, square.distortion));
-        MPI_Barrier(scene.communicator);
         settings.insert(settings.end(),
                         {{"Domain/Shape", "mesh file"},
                          {"Domain/Mesh file", mesh_file()},
@@ -186,6 +204,7 @@ namespace PeriDeal
         return settings;
       }
 
+      /** The mesh of the square has been written. */
       StabilityPoint point(const CoupledSquare &square) const
       {
         StabilityPoint point;
@@ -225,6 +244,7 @@ namespace PeriDeal
         return point;
       }
 
+      static constexpr unsigned int  n = 16; // cells along an edge
       const StabilityScene          &scene;
       const std::vector<std::string> schemes = {"exchange", "splice", "blending"};
       const std::vector<ZoneShape>   zones   = {

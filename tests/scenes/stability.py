@@ -78,6 +78,22 @@ subsection Output
 end
 """
 
+GRADED = """
+set Title = Graded plate
+set Dimension = 2
+set Models = finite elements, coupled
+subsection Domain
+  set Cells = 64, 64
+  set Coarsening = 2
+end
+subsection Cracks
+  set Segments = 0.3,0.5 ; 0.7, 0.5
+end
+subsection Boundary conditions
+  set Dirichlet = top: 1; bottom: 0
+end
+"""
+
 FOLDER = tempfile.mkdtemp(prefix="perideal_stability_")
 
 
@@ -258,6 +274,10 @@ def ranks():
         check_close(float(b["predicted"]), float(a["predicted"]), relative=1e-9, what=f"predicted: {a}")
         if float(a["observed"]) > 0.5:  # what is damped quickly ends in round-off
             check_close(float(b["observed"]), float(a["observed"]), relative=5e-3, what=f"observed: {a}")
+    # A file that cannot be written ends both, and is no property of a coupling.
+    os.makedirs(os.path.join(FOLDER, "blocked", ".stability_mesh.msh"))
+    _, stderr, _, _ = study(write("graded.prm", GRADED), "--maps", "lowest eigenvalue", "--quick", output="blocked", ranks=2, expect=1)
+    check(stderr.count("perideal: error") == 1 and "cannot write" in stderr, f"one message:\n{stderr}")
 
 
 def main():
