@@ -149,6 +149,19 @@ namespace PeriDeal
         }
       AssertThrow(false, UserError("The scene has none of the maps of stability:" + reasons));
     }
+
+
+    /** That each map has points: one without says nothing. */
+    void require_points(const std::vector<StabilityResult> &results)
+    {
+      std::string reasons;
+      for (const StabilityResult &result : results)
+        if (result.obstacle.empty() && result.points.empty())
+          reasons +=
+            "\n  " + result.name + (result.left_out.empty() ? "" : ": " + result.left_out.front());
+      AssertThrow(reasons.empty(),
+                  UserError("No point of these maps could be computed:" + reasons));
+    }
   } // namespace
 
 
@@ -193,5 +206,6 @@ namespace PeriDeal
     require_a_map(results);
     write_results(folder, file, scene.facts, options, results, communicator);
     say("Results: " + folder);
+    require_points(results);
   }
 } // namespace PeriDeal

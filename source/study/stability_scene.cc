@@ -20,10 +20,14 @@ namespace PeriDeal
     }
 
 
-    /** Cells of the same shape, as far as whole numbers allow; odd counts stay odd. */
-    CellCounts coarse_cells(const CellCounts &cells)
+    /**
+     * Cells of the same shape, as far as whole numbers allow; odd counts stay odd, and those that
+     * are halved @p n_halvings times can be.
+     */
+    CellCounts coarse_cells(const CellCounts &cells, const unsigned int n_halvings)
     {
-      double product = 1.;
+      const unsigned int unit    = 1u << n_halvings;
+      double             product = 1.;
       for (const unsigned int n : cells)
         product *= n;
       const double share =
@@ -35,7 +39,8 @@ namespace PeriDeal
           auto       fewer = static_cast<unsigned int>(share * n);
           if (fewer % 2 != n % 2)
             ++fewer;
-          n = std::clamp(fewer, least, n);
+          fewer = std::max(1u, fewer / unit) * unit;
+          n     = std::clamp(fewer, least, n);
         }
       return coarse;
     }
@@ -81,7 +86,7 @@ namespace PeriDeal
           facts.lower.push_back(scene.domain.lower[d]);
           facts.upper.push_back(scene.domain.upper[d]);
         }
-      facts.coarse = coarse_cells(facts.cells);
+      facts.coarse = coarse_cells(facts.cells, scene.domain.coarsening.times);
       if (scene.peridynamics.horizon > 0.)
         {
           const auto h = scene.domain.spacing();

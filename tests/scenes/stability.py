@@ -174,12 +174,15 @@ def motion():
 
 
 def settings():
-    """Maps of bodies of their own with another m or a horizon."""
+    """Maps of bodies of their own with another m or a horizon; coarse lattices that can be halved."""
     plate = write("plate.prm", PLATE)
     for setting in ("Peridynamics/Horizon ratio=2", "Peridynamics/Horizon=0.16"):
         _, _, data, lines = study(plate, "--quick", "--maps", "lowest eigenvalue, heat lost by splice", "-s", setting)
         found = [sum(line["map"] == name for line in lines) for name in ("lowest eigenvalue", "heat lost by splice")]
         check(found == [20, 9], f"{setting}: {found} points")
+    _, _, data, lines = study(write("graded.prm", GRADED), "--quick", "--maps", "step limit, growth")
+    check(data["cells"] == [20, 20], f"cells that are halved twice: {data['cells']}")
+    check_limits(data, 3)
 
 
 def maps():
@@ -256,6 +259,10 @@ def mistakes():
         check(stderr.count("perideal: error") == 1, f"{what}: one message, found\n{stdout}{stderr}")
         for word in words:
             check(word in stderr, f"{what}: the message does not say {word!r}:\n{stderr}")
+    # A map without points is no success, but the others are there.
+    short = ["-s", "Models=peridynamics", "-s", "Domain/Cells=1", "-s", "Peridynamics/Horizon ratio=1"]
+    stdout, stderr, _, _ = study(write("bar.prm", BAR), "--maps", "growth, error", "--quick", *short, output="mistakes", expect=1)
+    check("error: 18 points" in stdout and "No point" in stderr and "growth: " in stderr and "longer than the body" in stderr, f"no points:\n{stdout}{stderr}")
     for arguments in (["stability"], ["stability", plate, plate], [plate, "--random", "3"], ["work_precision", plate, "--maps", "growth"]):
         status, _, stderr = run_perideal(["study", *arguments])
         check(status == 1 and "stability" in stderr, f"study {arguments}: {stderr}")

@@ -30,8 +30,9 @@ namespace PeriDeal
    * program says beforehand (predicted), what a computation finds (observed), and a verdict.
    * `stability.csv` and `stability.json` in the output directory.
    *
-   * Maps that a scene cannot have are named with the reason. Throws UserError: unknown maps, or
-   * none of those wanted can be had. Collective.
+   * Maps that a scene cannot have are named with the reason. Throws UserError: unknown maps, none
+   * of those wanted can be had, or one of them has no points, which it says when all have been
+   * computed. Collective.
    */
   void run_stability(const StabilityOptions &options, const MPI_Comm communicator);
 } // namespace PeriDeal
