@@ -166,6 +166,8 @@ namespace PeriDeal
 
   void MotionStepper::change_bonds(const Vector &u, const double t)
   {
+    if (leaves_bonds)
+      return;
     // Between two steps: within one, half a step of their force would be lost and with it energy of
     // order dt.
     const bool grown = op.grow_cracks(u, t);

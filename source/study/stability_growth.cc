@@ -6,7 +6,7 @@
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/mapping_q.h>
 
-#include <perideal/base/user_error.h>
+#include <perideal/base/diverged.h>
 #include <perideal/operators/bounds/spectrum.h>
 
 #include <algorithm>
@@ -65,13 +65,35 @@ namespace PeriDeal
       difference -= b;
       return difference.l2_norm();
     }
+
+
+    /** A run of `verlet` that ends only where numbers are no longer finite. */
+    struct Motion
+    {
+      Motion(ElasticOperator &op, const Vector &start, const double step)
+        : step(step)
+        , u(start)
+        , v(start)
+      {
+        StepperOptions options;
+        options.time_step = step;
+        stepper           = make_verlet(op, options);
+        stepper->findings().let_wait(); // energy from nowhere, which is what is to be seen here
+        v = 0.;
+        op.distribute(u, 0.);
+      }
+
+      /** The step with this number, which begins at 1. */
+      void advance(const unsigned int k)
+      {
+        stepper->advance(u, v, (k - 1) * step, k * step);
+      }
+
+      const double                   step;
+      Vector                         u, v;
+      std::unique_ptr<MotionStepper> stepper;
+    };
   } // namespace
-
-
-  std::string ExplicitMethod::text() const
-  {
-    return n_stages > 0 ? name + ", " + std::to_string(n_stages) + " stages" : name;
-  }
 
 
   template <int dim>
@@ -124,7 +146,7 @@ namespace PeriDeal
               half = now; // what is damped has gone
           }
       }
-    catch (const UserError &) // no longer finite
+    catch (const Diverged &) // no longer finite
       {
         return {std::numeric_limits<double>::infinity(), true};
       }
@@ -133,45 +155,48 @@ namespace PeriDeal
   }
 
 
-  Trajectory run_verlet(ElasticOperator &op, const Vector &start, const double step)
+  Growth growth_of_motion(ElasticOperator &op, const Vector &disturbance, const double step)
   {
-    StepperOptions options;
-    options.time_step  = step;
-    const auto stepper = make_verlet(op, options);
-    Vector     u(start), v(start);
-    v = 0.;
-    op.distribute(u, 0.);
-    Trajectory trajectory{u};
-    try
-      {
-        for (unsigned int k = 0; k < n_spans; ++k)
-          {
-            stepper->advance(u, v, k * steps_of_span * step, (k + 1) * steps_of_span * step);
-            trajectory.push_back(u);
-          }
-      }
-    catch (const UserError &) // the stepper sees that it grows
-      {}
-    return trajectory;
+    constexpr double much = 4.; // more than waves that oscillate ever add up to
+    Vector           at_rest(disturbance);
+    at_rest = 0.;
+    Motion plain(op, at_rest, step), disturbed(op, disturbance, step);
+    disturbed.stepper->leave_bonds();
+    const double first = distance(plain.u, disturbed.u);
+    double       size  = 1.;
+    Vector       before(disturbance);
+    for (unsigned int k = 1; k <= n_spans * steps_of_span; ++k)
+      try
+        {
+          before = disturbed.u;
+          before -= plain.u;
+          disturbed.advance(k);
+          const auto n_broken = op.n_broken_bonds();
+          plain.advance(k);
+          if (op.n_broken_bonds() != n_broken || op.has_growing_cracks())
+            disturbed.stepper->restart();
+          if (k % steps_of_span != 0)
+            continue;
+          before += plain.u;
+          size = 0.5 * distance(disturbed.u, before) / first;
+          if (!(size < much))
+            return {std::pow(size, 1. / k), true};
+        }
+      catch (const Diverged &) // no longer finite
+        {
+          return {std::numeric_limits<double>::infinity(), true};
+        }
+    return {std::min(1., std::pow(size, 1. / (n_spans * steps_of_span))), false};
   }
 
 
-  Growth growth_of_motion(const Trajectory &undisturbed, const Trajectory &disturbed)
+  void load_body(ElasticOperator &op, const double step)
   {
-    constexpr double much     = 4.; // more than waves that oscillate ever add up to
-    const double     first    = distance(undisturbed[0], disturbed[0]);
-    const auto       n        = std::min(undisturbed.size(), disturbed.size()) - 1;
-    double           per_step = 1.;
-    for (std::size_t k = 1; k <= n; ++k)
-      {
-        const double size = distance(undisturbed[k], disturbed[k]) / first;
-        per_step          = std::pow(size, 1. / (k * steps_of_span));
-        if (!(size < much))
-          return {per_step, true};
-      }
-    if (n < n_spans)
-      return {std::numeric_limits<double>::infinity(), true};
-    return {std::min(1., per_step), false};
+    Vector at_rest;
+    op.initialize_vector(at_rest);
+    Motion motion(op, at_rest, step);
+    for (unsigned int k = 1; k <= n_spans * steps_of_span; ++k)
+      motion.advance(k);
   }
 
 

@@ -18,8 +18,6 @@ namespace PeriDeal
   {
     std::string  name;         // as in scenes
     unsigned int n_stages = 0; // of rkc2; 0: as many as a step needs
-
-    std::string text() const;
   };
 
 
@@ -49,14 +47,16 @@ namespace PeriDeal
                              const ExplicitMethod &method,
                              const double          step);
 
-  /** The displacements of a run of `verlet` from rest, at some times; it ends where it fails. */
-  using Trajectory = std::vector<Vector>;
+  /**
+   * The same of the steps of `verlet` from rest, by the change of the difference in a step: parts
+   * that have come loose drift apart at a constant rate. Both runs have the bonds that the
+   * undisturbed one leaves, since one bond more that breaks changes more than any disturbance.
+   * Breaks bonds of @p op. Collective.
+   */
+  Growth growth_of_motion(ElasticOperator &op, const Vector &disturbance, const double step);
 
-  /** Collective. */
-  Trajectory run_verlet(ElasticOperator &op, const Vector &start, const double step);
-
-  /** As growth_of_diffusion(), of two runs. Collective. */
-  Growth growth_of_motion(const Trajectory &undisturbed, const Trajectory &disturbed);
+  /** So long a run from rest without a disturbance: breaks the bonds that the load breaks. */
+  void load_body(ElasticOperator &op, const double step);
 
   /**
    * The step at which growth begins, by bisection in logarithms around @p predicted, to 1/1000.

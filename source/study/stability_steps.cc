@@ -39,6 +39,14 @@ namespace PeriDeal
         return model != ModelKind::finite_elements;
       }
 
+      /** For readers. */
+      std::string text() const
+      {
+        return to_string(model) +
+               (has_bonds() ? ", kernel " + kernel + ", m = " + Value(ratio).dump() : "") +
+               (bonds.empty() ? "" : ", bonds " + bonds);
+      }
+
       std::vector<Setting> settings() const
       {
         std::vector<Setting> list;
@@ -81,6 +89,17 @@ namespace PeriDeal
     {
       double whole = 0., left = 0.;
     };
+
+
+    /** What the program predicts the longest stable step of each method from, and what steps do. */
+    struct Stepping
+    {
+      LargestEigenvalues                                                     eigenvalues;
+      std::function<Growth(const ExplicitMethod &method, const double step)> run;
+      bool allows_chebyshev = false;
+    };
+
+    using SteppingAction = std::function<void(const Stepping &stepping)>;
 
 
     /** Numbers that grow until bonds break, some hundredths of them. Collective. */
@@ -151,7 +170,8 @@ namespace PeriDeal
         return list;
       }
 
-      std::vector<ExplicitMethod> methods(const bool quick, const bool with_all) const
+      /** @param with_chebyshev which has no limit, and is not for every operator */
+      std::vector<ExplicitMethod> methods(const bool quick, const bool with_chebyshev) const
       {
         if (scene.facts.moves)
           return {{"verlet", 0}};
@@ -161,7 +181,7 @@ namespace PeriDeal
             for (const unsigned int n :
                  quick ? std::vector<unsigned int>{5} : std::vector<unsigned int>{2, 3, 5, 10})
               list.push_back({name, n});
-          else if (with_all || std::isfinite(stability_limit(name)))
+          else if (with_chebyshev || name != "chebyshev")
             list.push_back({name, 0});
         return list;
       }
@@ -193,16 +213,8 @@ namespace PeriDeal
         return list;
       }
 
-      /**
-       * Build a body and call action(eigenvalues, run): what the program predicts the longest
-       * stable step of each method from, and what steps do.
-       */
-      void with_steps(
-        const SteppedBody &body,
-        const std::function<
-          void(const LargestEigenvalues &eigenvalues,
-               const std::function<Growth(const ExplicitMethod &method, const double step)> &run)>
-          &action) const
+      /** Build a body and call action(stepping). Throws UserError where it cannot be had. */
+      void with_steps(const SteppedBody &body, const SteppingAction &action) const
       {
         if (scene.facts.moves)
           return move(body, action);
@@ -214,48 +226,42 @@ namespace PeriDeal
       const StabilityScene &scene;
 
     private:
-      template <int dim, typename Action>
-      void diffuse(const Problem<dim> &problem, const Action &action) const
+      template <int dim>
+      static void diffuse(const Problem<dim> &problem, const SteppingAction &action)
       {
-        with_formulas(scene.communicator, [&] {
+        with_formulas(problem.dofs().get_communicator(), [&] {
           Operator    &op    = problem.op();
           const Vector field = fast_field(problem), start = problem.state();
           const double eigenvalue = op.spectrum().sharp;
-          action({eigenvalue, eigenvalue}, [&](const ExplicitMethod &method, const double step) {
+          const auto   run        = [&](const ExplicitMethod &method, const double step) {
             return growth_of_diffusion(op, start, field, method, step);
-          });
+          };
+          action({{eigenvalue, eigenvalue}, run, choose_stepper(op) == "chebyshev"});
         });
       }
 
       /** A body breaks in a run: each run has its own. */
-      template <typename Action>
-      void move(const SteppedBody &body, const Action &action) const
+      void move(const SteppedBody &body, const SteppingAction &action) const
       {
         LargestEigenvalues eigenvalues;
-        with_mover(body, [&](ElasticOperator &op, const Vector &field, const double) {
+        with_mover(body, [&](ElasticOperator &op, const Vector &) {
           eigenvalues.whole = eigenvalues.left = op.spectrum().sharp;
           if (body.bonds != may)
             return;
-          Vector at_rest(field);
-          at_rest = 0.;
-          run_verlet(op, at_rest, predicted_step({"verlet", 0}, eigenvalues.whole));
+          load_body(op, predicted_step({"verlet", 0}, eigenvalues.whole));
           eigenvalues.left = op.spectrum().sharp;
         });
-        const auto run = [&](const double step, const bool disturbed) {
-          Trajectory result;
-          with_mover(body, [&](ElasticOperator &op, const Vector &field, const double spacing) {
-            Vector start(field);
-            start *= disturbed ? 1e-7 * spacing : 0.;
-            result = run_verlet(op, start, step);
+        const auto run = [&](const ExplicitMethod &, const double step) {
+          Growth growth;
+          with_mover(body, [&](ElasticOperator &op, const Vector &disturbance) {
+            growth = growth_of_motion(op, disturbance, step);
           });
-          return result;
+          return growth;
         };
-        action(eigenvalues, [&](const ExplicitMethod &, const double step) {
-          return growth_of_motion(run(step, false), run(step, true));
-        });
+        action({eigenvalues, run, false});
       }
 
-      /** Call action(op, field, spacing) of a body that has just been built. */
+      /** Call action(op, disturbance) of a body that has just been built. */
       template <typename Action>
       void with_mover(const SteppedBody &body, const Action &action) const
       {
@@ -264,10 +270,11 @@ namespace PeriDeal
             auto        &op      = dynamic_cast<ElasticOperator &>(problem.op());
             const auto   h       = parsed.domain.spacing();
             const double spacing = *std::min_element(h.begin_raw(), h.end_raw());
-            const Vector field   = fast_field(problem);
+            Vector       field   = fast_field(problem);
             if (body.bonds == broken)
               break_some(op, field, spacing);
-            action(op, field, spacing);
+            field *= 1e-7 * spacing;
+            action(op, field);
           });
         });
       }
@@ -304,15 +311,18 @@ namespace PeriDeal
         for (const SteppedBody &body : all)
           try
             {
-              with_steps(body, [&](const LargestEigenvalues &eigenvalues, const auto &run) {
-                for (const ExplicitMethod &method : methods(quick, true))
-                  list.push_back(point(body, method, eigenvalues, run));
+              with_steps(body, [&](const Stepping &stepping) {
+                for (const ExplicitMethod &method : methods(quick, stepping.allows_chebyshev))
+                  list.push_back(point(body, method, stepping));
+                if (!stepping.allows_chebyshev && !scene.facts.moves)
+                  left_out.push_back(
+                    to_string(body.model) +
+                    ", chebyshev: it needs loads and values at sides that do not change with time, and a symmetric operator");
               });
             }
           catch (const UserError &error)
             {
-              left_out.push_back(to_string(body.model) + ", kernel " + body.kernel + ", m = " +
-                                 Value(body.ratio).dump() + ": " + mistake_in_overrides(error));
+              left_out.push_back(body.text() + ": " + mistake_in_overrides(error));
             }
         return list;
       }
@@ -323,16 +333,15 @@ namespace PeriDeal
       }
 
     private:
-      template <typename Run>
-      static StabilityPoint point(const SteppedBody        &body,
-                                  const ExplicitMethod     &method,
-                                  const LargestEigenvalues &eigenvalues,
-                                  const Run                &run)
+      static StabilityPoint point(const SteppedBody    &body,
+                                  const ExplicitMethod &method,
+                                  const Stepping       &stepping)
       {
-        StabilityPoint point;
+        const LargestEigenvalues &eigenvalues = stepping.eigenvalues;
+        StabilityPoint            point;
         point.parameters = parameters_of(body, method);
         point.predicted  = predicted_step(method, eigenvalues.left);
-        const auto grows = [&](const double step) { return run(method, step); };
+        const auto grows = [&](const double step) { return stepping.run(method, step); };
         if (std::isfinite(point.predicted))
           point.observed = observed_limit(point.predicted, grows);
         else
@@ -379,16 +388,15 @@ namespace PeriDeal
                             std::vector<double>{2., 2.5, 3., 3.5, 4., 5., 6.}))
           try
             {
-              with_steps(body, [&](const LargestEigenvalues &eigenvalues, const auto &run) {
+              with_steps(body, [&](const Stepping &stepping) {
                 for (const ExplicitMethod &method : methods(true, false))
                   for (const double share : shares)
-                    list.push_back(point(body, method, eigenvalues, share, run));
+                    list.push_back(point(body, method, share, stepping));
               });
             }
           catch (const UserError &error)
             {
-              left_out.push_back(to_string(body.model) + ", m = " + Value(body.ratio).dump() +
-                                 ": " + mistake_in_overrides(error));
+              left_out.push_back(body.text() + ": " + mistake_in_overrides(error));
             }
         return list;
       }
@@ -405,29 +413,28 @@ namespace PeriDeal
         // The limit of the program is up to 3 % on the safe side.
         const double   share = inside ? uniform(random, 0.1, 1.) : uniform(random, 1.03, 2.);
         StabilityPoint result;
-        with_steps(body, [&](const LargestEigenvalues &eigenvalues, const auto &run) {
-          result = point(body, method, eigenvalues, share, run);
+        with_steps(body, [&](const Stepping &stepping) {
+          result = point(body, method, share, stepping);
         });
         return result;
       }
 
     private:
-      template <typename Run>
-      static StabilityPoint point(const SteppedBody        &body,
-                                  const ExplicitMethod     &method,
-                                  const LargestEigenvalues &eigenvalues,
-                                  const double              share,
-                                  const Run                &run)
+      static StabilityPoint point(const SteppedBody    &body,
+                                  const ExplicitMethod &method,
+                                  const double          share,
+                                  const Stepping       &stepping)
       {
         StabilityPoint point;
         point.parameters        = parameters_of(body, method);
-        const double eigenvalue = share > 1. ? eigenvalues.left : eigenvalues.whole;
+        const double eigenvalue = share > 1. ? stepping.eigenvalues.left :
+                                               stepping.eigenvalues.whole;
         const double step       = share * predicted_step(method, eigenvalue);
         point.parameters.emplace_back("step", step);
         point.parameters.emplace_back("step over limit", share);
         const double z = method.name == "verlet" ? step * std::sqrt(eigenvalue) : step * eigenvalue;
         point.predicted     = std::max(1., amplification(method.name, z, method.n_stages));
-        const Growth growth = run(method, step);
+        const Growth growth = stepping.run(method, step);
         point.observed      = growth.per_step;
         point.verdict       = growth.grows ? "fails" : "safe";
         return point;

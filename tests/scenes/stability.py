@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """perideal study stability: limits that are observed beside those predicted, maps confirmed by random points, mistakes, two processes.
 
-    python3 stability.py [limits | motion | maps | settings | solids | certificate | mistakes | ranks] ...     (all without arguments)
+    python3 stability.py [limits | motion | breaks | maps | settings | solids | certificate | mistakes | ranks] ...     (all without arguments)
 """
 
 import csv
@@ -94,6 +94,51 @@ subsection Boundary conditions
 end
 """
 
+# Pulled apart: bonds break at many places at once, and parts come loose.
+TORN = """
+set Title = Torn bar
+set Physics = elasticity
+set Dimension = 1
+set Models = peridynamics
+subsection Elasticity
+  set Solver = dynamics
+end
+subsection Material
+  set Young modulus = 100
+  set Density = 1
+  set Critical stretch = 0.01
+end
+subsection Domain
+  set Cells = 80
+end
+subsection Boundary conditions
+  set Velocity = left: -1; right: 1
+end
+"""
+
+# Some of its bonds are broken, and nothing moves it but round-off.
+FULL = """
+set Title = Plate that turns far
+set Physics = elasticity
+set Dimension = 2
+set Models = peridynamics
+subsection Elasticity
+  set Solver = dynamics
+  set Kinematics = full
+end
+subsection Material
+  set Young modulus = 100
+  set Density = 1
+  set Poisson ratio = 0.3
+end
+subsection Domain
+  set Cells = 10, 10
+end
+subsection Boundary conditions
+  set Displacement = left: 0, 0
+end
+"""
+
 FOLDER = tempfile.mkdtemp(prefix="perideal_stability_")
 
 
@@ -173,8 +218,15 @@ def motion():
     check({line["method"] for line in lines} == {"verlet"}, "methods of motion")
 
 
+def breaks():
+    """Neither bonds that break at once at many places nor round-off in bodies that are bent far are taken for steps that grow."""
+    for text, n in ((TORN, 6), (FULL, 4)):
+        _, _, data, lines = study(write("breaks.prm", text), "--maps", "step limit", "--quick")
+        check_limits(data, n)
+
+
 def settings():
-    """Maps of bodies of their own with another m or a horizon; coarse lattices that can be halved."""
+    """Maps of bodies of their own with another m or a horizon; coarse lattices that can be halved; methods that a load does not allow."""
     plate = write("plate.prm", PLATE)
     for setting in ("Peridynamics/Horizon ratio=2", "Peridynamics/Horizon=0.16"):
         _, _, data, lines = study(plate, "--quick", "--maps", "lowest eigenvalue, heat lost by splice", "-s", setting)
@@ -183,6 +235,11 @@ def settings():
     _, _, data, lines = study(write("graded.prm", GRADED), "--quick", "--maps", "step limit, growth")
     check(data["cells"] == [20, 20], f"cells that are halved twice: {data['cells']}")
     check_limits(data, 3)
+    stdout, _, data, lines = study(write("bar.prm", BAR.replace("left: 0", "left: sin(t)")), "--quick", "--maps", "step limit")
+    check_limits(data, 9)
+    check({line["method"] for line in lines} == {"euler", "rk4", "rkc2"}, "methods for loads that change")
+    left_out = map_of(data, "step limit")["left out"]
+    check(len(left_out) == 2 and all("chebyshev" in text and "m = 0" not in text for text in left_out), f"left out: {left_out}")
 
 
 def maps():
@@ -288,7 +345,7 @@ def ranks():
 
 
 def main():
-    parts = {part.__name__: part for part in (limits, motion, maps, settings, solids, certificate, mistakes, ranks)}
+    parts = {part.__name__: part for part in (limits, motion, breaks, maps, settings, solids, certificate, mistakes, ranks)}
     for name in sys.argv[1:] or parts:
         parts[name]()
     finish(FOLDER)

@@ -67,6 +67,15 @@ namespace PeriDeal
     /** Let the step follow the body, or refuse one that has been given and no longer is stable. */
     void set_limit(std::unique_ptr<StepLimit> limit);
 
+    /**
+     * Another stepper of the same operator breaks its bonds and lets its cracks grow, and tells
+     * this one to restart().
+     */
+    void leave_bonds()
+    {
+      leaves_bonds = true;
+    }
+
     /** Forget the past: operator, displacement or velocity have changed abruptly. */
     void restart();
 
@@ -134,7 +143,7 @@ namespace PeriDeal
     StepSpan                   span;
     double                     longest, shortest;
     std::unique_ptr<StepLimit> limit; // null: none
-    bool                       fresh = true;
+    bool                       fresh = true, leaves_bonds = false;
     Vector                     change; // of a step
     MotionAccount              account;
   };
