@@ -52,8 +52,10 @@ namespace PeriDeal
     if (peridynamics.nodal_volume != NodalVolume::partial)
       return {peridynamics.where("Nodal volume"), "is 'full'; use 'partial'"};
     if (!deforms && material.depends_on_temperature())
-      return {material.where("Conductivity"),
-              "or the heat capacity depends on T, which bonds beside elements do not follow"};
+      return {material.where(material.conductivity.depends_on_temperature()  ? "Conductivity" :
+                             material.heat_capacity.depends_on_temperature() ? "Heat capacity" :
+                                                                               "Density"),
+              "depends on T, which bonds beside elements do not follow"};
     return {};
   }
 

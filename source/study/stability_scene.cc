@@ -74,7 +74,6 @@ namespace PeriDeal
       facts.steady          = scene.time.steady;
       facts.is_box          = scene.domain.is_box() && !scene.domain.has_extra_layers();
       facts.breaks          = scene.material.fracture_energy || scene.material.critical_stretch;
-      facts.has_heat        = scene.heat != nullptr;
       facts.depends_on_solution = scene.material.depends_on_temperature();
       facts.lumped              = !scene.finite_elements.consistent_capacity;
       facts.models              = scene.general.models;

@@ -24,8 +24,7 @@ namespace PeriDeal
     unsigned int           dim = 0, kernel_exponent = 0;
     double                 ratio   = 0.; // m
     bool                   deforms = false, moves = false, steady = false, is_box = false;
-    bool                   breaks = false, has_heat = false, depends_on_solution = false;
-    bool                   lumped = true;
+    bool                   breaks = false, depends_on_solution = false, lumped = true;
     std::vector<ModelKind> models;
     CellCounts             cells; // of the scene, and those with which maps are computed
     CellCounts             coarse;

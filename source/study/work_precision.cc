@@ -28,6 +28,11 @@ namespace PeriDeal
     {
       const std::string who = "work_precision: ";
       AssertThrow(
+        scene.domain.holes.listed.empty(),
+        UserError(
+          who +
+          "'Holes' in section 'Domain' has to be empty: a body with holes changes with the lattice."));
+      AssertThrow(
         scene.domain.shape == Shape::box,
         UserError(
           who +
@@ -333,32 +338,76 @@ namespace PeriDeal
       throw_on_all_if_any(communicator, message);
       return report;
     }
+
+
+    /** With settings that are stronger than those of the scene. */
+    std::vector<std::string> with_settings(std::vector<std::string>    overrides,
+                                           const std::vector<Setting> &settings)
+    {
+      for (const Setting &setting : settings)
+        overrides.push_back(setting.first + "=" + setting.second);
+      return overrides;
+    }
+
+
+    /** Of the scene, whichever models its rows have. Collective. */
+    WorkScene read_work_scene(const std::string              &scene,
+                              const std::vector<std::string> &overrides,
+                              const MPI_Comm                  communicator)
+    {
+      WorkScene facts;
+      with_scene(read_scene(scene, overrides, communicator),
+                 [&](const auto &parsed) { facts = facts_of(parsed); });
+      return facts;
+    }
+
+
+    std::string folder_of(const std::string &output, const WorkMeasure measure)
+    {
+      return output + "_work_precision" +
+             (measure == WorkMeasure::opening          ? "_opening" :
+              measure == WorkMeasure::stress_intensity ? "_intensity" :
+                                                         "");
+    }
+
+
+    /** The rows of a plan in place of those that there were. */
+    void set_rows(Study                          &study,
+                  const WorkScene                &scene,
+                  const WorkPlan                 &plan,
+                  const std::string              &file,
+                  const std::vector<std::string> &overrides)
+    {
+      study.rows.clear();
+      add_to(study, scene, plan, file);
+      override_rows(study, overrides);
+      for (std::size_t k = 0; k < plan.rows.size(); ++k)
+        if (plan.rows[k].role != Role::method) // a tolerance in time is that of the methods
+          for (const Setting &own : own_settings(scene, plan, plan.rows[k]))
+            study.rows[k].settings = merged(std::move(study.rows[k].settings), own);
+    }
   } // namespace
 
 
   void run_work_precision(const WorkPrecisionOptions &options, const MPI_Comm communicator)
   {
-    Study                    study     = sweep_of_scenes({options.scene}, {}, communicator);
-    const std::string        scene     = study.rows.front().scene;
-    std::vector<std::string> overrides = options.overrides;
-    overrides.push_back("Models=finite elements"); // those of the rows may be others
-    overrides.push_back("Peridynamics/Surface correction=none");
-    for (const Setting &setting : settings_of_output())
-      overrides.push_back(setting.first + "=" + setting.second);
-    WorkScene facts;
-    with_scene(read_scene(scene, overrides, communicator),
-               [&](const auto &parsed) { facts = facts_of(parsed); });
-    study.varied = decided_entries(facts.comparison);
+    Study                    study = sweep_of_scenes({options.scene}, {}, communicator);
+    const std::string        scene = study.rows.front().scene;
+    std::vector<std::string> overrides =
+      with_settings(options.overrides,
+                    {{"Models", "finite elements"}, // those of the rows may be others
+                     {"Peridynamics/Surface correction", "none"}});
+    overrides       = with_settings(overrides, settings_of_output());
+    WorkScene facts = read_work_scene(scene, overrides, communicator);
+    study.varied    = decided_entries(facts.comparison);
     override_rows(study, options.overrides); // for its errors
-    for (const Setting &setting : common_settings(facts.comparison))
-      overrides.push_back(setting.first + "=" + setting.second);
+    overrides = with_settings(overrides, common_settings(facts.comparison));
     if (options.picks)
       {
-        std::vector<std::string> choosing = options.overrides;
-        choosing.insert(choosing.end(), {"Models=auto", "Peridynamics/Horizon="});
-        for (const Setting &setting : settings_of_output())
-          choosing.push_back(setting.first + "=" + setting.second);
-        facts.no_choice = no_choice_for(read_scene(scene, choosing, communicator));
+        const auto choosing =
+          with_settings(options.overrides, {{"Models", "auto"}, {"Peridynamics/Horizon", ""}});
+        facts.no_choice = no_choice_for(
+          read_scene(scene, with_settings(choosing, settings_of_output()), communicator));
       }
     WorkPlan plan = plan_work(facts,
                               {options.cells,
@@ -367,20 +416,9 @@ namespace PeriDeal
                                options.picks,
                                parse_measure(options.measure)});
     leave_out_impossible(plan, scene, overrides, communicator);
-    study.rows.clear();
     study.title  = facts.title + ": work and precision";
-    study.output = options.output.empty() ?
-                     study.output + "_work_precision" +
-                       (plan.measure == WorkMeasure::opening          ? "_opening" :
-                        plan.measure == WorkMeasure::stress_intensity ? "_intensity" :
-                                                                        "") :
-                     options.output;
-    add_to(study, facts, plan, scene);
-    override_rows(study, options.overrides);
-    for (std::size_t k = 0; k < plan.rows.size(); ++k)
-      if (plan.rows[k].role != Role::method) // a tolerance in time is that of the methods
-        for (const Setting &own : own_settings(facts, plan, plan.rows[k]))
-          study.rows[k].settings = merged(std::move(study.rows[k].settings), own);
+    study.output = options.output.empty() ? folder_of(study.output, plan.measure) : options.output;
+    set_rows(study, facts, plan, scene, options.overrides);
     print_line(communicator,
                options.study.quiet,
                study.title + ": " + std::to_string(plan.rows.size()) + " rows, " +

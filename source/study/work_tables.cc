@@ -175,9 +175,11 @@ namespace PeriDeal
       return (reference.cracked ? "Errors against finite elements with the cracks on cell faces, " :
                                   "Errors against finite elements of degree 2, ") +
              lattices + " cells, extrapolated" +
-             formatted(" with order %.3g (observed: %.2f); own error %.1e.",
+             formatted(" with order %.3g (observed: %s); own error %.1e.",
                        reference.order,
-                       reference.observed_order,
+                       std::isfinite(reference.observed_order) ?
+                         formatted("%.2f", reference.observed_order).c_str() :
+                         "none",
                        reference.own_error);
     }
 
@@ -418,7 +420,8 @@ namespace PeriDeal
       });
     if (n_uncertain > 0)
       text += "Less than three times that are the errors of " + std::to_string(n_uncertain) +
-              " settings, which are uncertain: --reference takes finer lattices.\n";
+              (n_uncertain == 1 ? " setting, which is" : " settings, which are") +
+              " uncertain: --reference takes finer lattices.\n";
     for (const std::string &sentence : plan.left_out)
       text += "Left out: " + sentence + "\n";
     for (const std::string &name : results.without)

@@ -263,6 +263,7 @@ def scene_mistakes(folder):
                                    "Models": "peridynamics", "Peridynamics/Surface correction": "energy"},
          ["'Surface correction = energy'", "no bond left", "in y"]),
         ("harmonic rule with T", {"Material/Conductivity": "1 + T", "Material/Interface rule": "harmonic"}, ["'Interface rule'", "arithmetic"]),
+        ("bonds beside elements with T", {"Models": "coupled", "Material/Heat capacity": "1 + T"}, ["'Heat capacity'", ": depends on T, which bonds"]),
         ("material id of no mesh", {"Material/Phases/Regions": "a: mesh(1)", "Material/Phases/Conductivity": "a: 2"},
          ["'Regions'", "mesh file"]),
         ("3D points in 2D", {"Output/Probes": "0.5,0.5,0.5"}, ["'Probes'", "needs 2 coordinates, found 3"]),

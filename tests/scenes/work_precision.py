@@ -317,6 +317,7 @@ def mistakes():
     oblique = PLATE.replace("-0.5,0 ; 0.5,0", "-0.5,-0.2 ; 0.5,0.3")
     for what, scene, options, words in (
             ("no box", PLATE.replace("subsection Domain", "subsection Domain\n  set Shape = plate with hole"), [], ["'Shape'", "box"]),
+            ("a hole", PLATE.replace("subsection Domain", "subsection Domain\n  set Holes = circle: 0, 0.6, 0.2"), [], ["'Holes'", "has to be empty"]),
             ("nothing to compare with", oblique, [], ["'Solution'", "along the axes"]),
             ("a crack on no lattice", PLATE.replace("-0.5,0 ; 0.5,0", "-0.5,0 ; 0.4142135623,0"), [], ["'Solution'", "ends of all cracks"]),
             ("a share of bonds", PLATE.replace("0.5,0\n", "0.5,0\n  set Transmission = 0.5\n"), [], ["'Transmission'", "'Contact conductance'"]),
