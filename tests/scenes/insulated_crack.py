@@ -225,6 +225,14 @@ def conducting():
                         size[kind, conductance, correction, cells, name] = abs(error)
     print_table("Heat through a plate with a crack of contact conductance H (kappa 1, sides 2), error in %",
                 ("crack", "H", "correction", "cells", *kinds), rows)
+    # Where everything passes nothing is missing, at nodes beside an end either from which nothing crosses.
+    flows = []
+    for correction in ("none", "crack scaling"):
+        run = run_scene(SCENE, settings(20, True, Models="coupled", Domain__Cells="20, 20", Material__Conductivity="1", Boundary_conditions__Dirichlet="top: 1; bottom: -1",
+                                        Cracks__Segments="-0.5,0.03 ; 0.5,0.03", Output__Probes="", Cracks__Transmission=1, Peridynamics__Surface_correction=correction,
+                                        Coupling__Zone="0.3000001 - sqrt(max(abs(x) - 0.5, 0)^2 + (y - 0.03)^2)"))
+        flows.append(run.model("coupled")["boundary flux"]["top"])
+    check_close(flows[1], flows[0], relative=1e-9, what="a crack that lets everything through, with crack scaling")
     for (kind, conductance, correction, cells, name), error in size.items():
         what = f"{name}, crack through {kind}, H = {conductance}, {cells} cells, {correction}: error in %"
         if correction == "none":

@@ -54,6 +54,12 @@ namespace PeriDeal
     factors.find({0, 1}, sums);
     EXPECT_NEAR(factors.at(0), 1. + 0.25 * (5. / 3. - 1.), 1e-15);
     EXPECT_EQ(factors.at(1), factors.at(0));
+    // From the second node nothing crosses: it has lost nothing.
+    sums.crossing_whole.local_element(1) = sums.crossing.local_element(1) = 0.;
+    sums.leave_out_uncrossed({0, 1});
+    factors.find({0, 1}, sums);
+    EXPECT_NEAR(factors.at(0), 1. + 0.25 * (5. / 3. - 1.), 1e-15);
+    EXPECT_EQ(factors.at(1), 1.);
     sums.clear({0, 1});
     EXPECT_EQ(sums.crossing.linfty_norm() + sums.crossing_whole.linfty_norm(), 0.);
   }

@@ -136,6 +136,8 @@ namespace PeriDeal
     sums.compress();
     if (bonds != nullptr)
       bonds->add_traces(nodes, sums);
+    if (cut_by_cracks.conducts())
+      sums.leave_out_uncrossed(nodes);
     factors.find(nodes, sums);
   }
 

@@ -67,6 +67,14 @@ namespace PeriDeal
   }
 
 
+  void CrackSideFactors::Sums::leave_out_uncrossed(const std::vector<unsigned int> &nodes)
+  {
+    for (const unsigned int i : nodes)
+      if (!(crossing_whole.local_element(i) > 0.))
+        marked.local_element(i) = 0.;
+  }
+
+
   void CrackSideFactors::Sums::clear(const std::vector<unsigned int> &nodes)
   {
     for (Vector *v : {&marked, &trace, &expected, &crossing, &crossing_whole})

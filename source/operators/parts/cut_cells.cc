@@ -93,6 +93,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool CutCells<dim>::conducts() const
+  {
+    return rule.contact < 0. ? transmission > 0. : rule.contact > 0.;
+  }
+
+
+  template <int dim>
   double CutCells<dim>::kept_fraction(const Cell                                &cell,
                                       const unsigned int                         a,
                                       const unsigned int                         b,

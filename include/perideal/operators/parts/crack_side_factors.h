@@ -90,6 +90,12 @@ namespace PeriDeal
       /** Add what nodes have on other processes. Collective. */
       void compress();
 
+      /**
+       * Of cracks that conduct: those of the owned nodes lose nothing that nothing leaves through a
+       * crack. The sums have been compressed. Not collective.
+       */
+      void leave_out_uncrossed(const std::vector<unsigned int> &nodes);
+
       /** Set owned nodes to zero, and all ghosts. Not collective. */
       void clear(const std::vector<unsigned int> &nodes);
 

@@ -65,6 +65,9 @@ namespace PeriDeal
 
     bool removes() const;
 
+    /** Cracks let something through. */
+    bool conducts() const;
+
     /**
      * k_ab.
      *
