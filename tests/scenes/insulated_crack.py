@@ -232,6 +232,7 @@ def conducting():
                                         Cracks__Segments="-0.5,0.03 ; 0.5,0.03", Output__Probes="", Cracks__Transmission=1, Peridynamics__Surface_correction=correction,
                                         Coupling__Zone="0.3000001 - sqrt(max(abs(x) - 0.5, 0)^2 + (y - 0.03)^2)"))
         flows.append(run.model("coupled")["boundary flux"]["top"])
+    check_close(flows[0], 2.0, relative=1e-9, what="a crack that lets everything through")
     check_close(flows[1], flows[0], relative=1e-9, what="a crack that lets everything through, with crack scaling")
     for (kind, conductance, correction, cells, name), error in size.items():
         what = f"{name}, crack through {kind}, H = {conductance}, {cells} cells, {correction}: error in %"

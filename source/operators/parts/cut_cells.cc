@@ -154,6 +154,7 @@ namespace PeriDeal
     if (rule.removes && !(broken && damaged[cell->active_cell_index()]))
       return;
     std::vector<std::pair<unsigned int, int>> crossed;
+    bool                                      is_whole = true, has_positive = false;
     for (const unsigned int a : cell->vertex_indices())
       for (unsigned int b = 0; b < a; ++b)
         {
@@ -162,12 +163,17 @@ namespace PeriDeal
                        whole = std::max(0., -original(a, b)), w = whole * kept;
           if (separated != nullptr && (!crossed.empty() || kept < 1.))
             separated->push_back({a, b, w, whole});
-          stiffer = stiffer || original(a, b) > 1e-12 * original(a, a);
+          is_whole     = is_whole && kept >= 1.;
+          has_positive = has_positive || original(a, b) > 1e-12 * original(a, a);
           stiffness(a, b) -= w;
           stiffness(b, a) -= w;
           stiffness(a, a) += w;
           stiffness(b, b) += w;
         }
+    if (is_whole) // with its positive entries
+      stiffness = original;
+    else
+      stiffer = stiffer || has_positive;
   }
 
 
