@@ -17,17 +17,92 @@ namespace PeriDeal
                           const bool               cut_at_tips,
                           const double             contact_conductance,
                           const Domain<dim>       *voids,
-                          const double             transmission_of_broken)
+                          const double             transmission_of_broken,
+                          const bool               in_part_at_tips)
     : neighbors(neighbors)
     , past(history)
     , cut_at_tips(cut_at_tips)
     , contact_conductance(contact_conductance)
     , voids(voids)
+    , in_part(in_part_at_tips)
     , time(past.representative(0.))
     , cracks(make_crack_geometries(past.pieces(time, cut_at_tips)))
     , transmission(past.transmission(time))
     , broken_bonds(transmission_of_broken)
-  {}
+  {
+    if (in_part)
+      make_soft_cracks();
+  }
+
+
+  template <int dim>
+  double CrackSet<dim>::spacing_along(const CrackPiece<dim> &piece) const
+  {
+    const Nodes<dim> &nodes = neighbors.nodes();
+    if (!nodes.lattice())
+      return nodes.smallest_spacing();
+    Tensor<1, dim> along = piece.corners[1] - piece.corners[0];
+    along /= along.norm();
+    double most = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      most = std::max(most, std::abs(along[d]) / nodes.lattice()->spacing[d]);
+    return 1. / most;
+  }
+
+
+  template <int dim>
+  void CrackSet<dim>::make_soft_cracks()
+  {
+    // Where tips that are touched cut nothing, the sides of the crack are too soft, and it is as
+    // good as longer by this part of a cell (doc/theory.md).
+    const double                 shift  = cut_at_tips ? 0. : 0.2;
+    std::vector<CrackPiece<dim>> pieces = past.pieces(time, false);
+    const auto                   whole  = make_crack_geometries(pieces);
+    for (std::size_t k = 0; k < pieces.size(); ++k)
+      {
+        widths.push_back(spacing_along(pieces[k]));
+        const Tensor<1, dim> way = whole[k].corners()[1] - whole[k].corners()[0];
+        for (unsigned int end = 0; end < 2; ++end)
+          if (!whole[k].is_closed_near(whole[k].corners()[end]))
+            pieces[k].corners[end] +=
+              (end == 0 ? 1. : -1.) * std::min(0.25, shift * widths[k] / way.norm()) * way;
+      }
+    soft_cracks = make_crack_geometries(pieces);
+  }
+
+
+  template <int dim>
+  bool CrackSet<dim>::is_near_soft(const std::size_t  k,
+                                   const unsigned int node,
+                                   const double       distance) const
+  {
+    // Bonds are cut up to half a spacing ahead of a tip.
+    return soft_cracks[k].is_near(neighbors.position(node), distance + 0.5 * widths[k]);
+  }
+
+
+  template <int dim>
+  double CrackSet<dim>::kept_part(const unsigned int node, const unsigned int neighbor) const
+  {
+    if (!in_part || !neighbors.is_real(neighbor))
+      return cuts(node, neighbor) ? 0. : 1.;
+    if (kept_of_broken(node, neighbor) < 1. || leaves_body(node, neighbor))
+      return 0.;
+    const Point<dim> &a = neighbors.nodes().crack_point(node),
+                     &b = neighbors.nodes().crack_point(neighbor);
+    double kept         = 1.;
+    for (std::size_t k = 0; k < soft_cracks.size();)
+      {
+        // Several pieces of a crack are one crossing.
+        double             part  = 0.;
+        const unsigned int crack = soft_cracks[k].crack;
+        for (; k < soft_cracks.size() && soft_cracks[k].crack == crack; ++k)
+          if (is_near_soft(k, node, neighbors.weights().reach()))
+            part = std::max(part, soft_cracks[k].cut_part(a, b, widths[k]));
+        kept *= (1. - part) / (1. + 0.5 * part);
+      }
+    return kept;
+  }
 
 
   template <int dim>
@@ -210,10 +285,14 @@ namespace PeriDeal
     // Bonds that have broken are the node's own; who asks farther away has to look everywhere.
     const bool near_broken = !broken_bonds.empty() && (distance > neighbors.weights().reach() ||
                                                        broken_bonds.touch(global(node)));
-    return voids != nullptr || near_broken ||
-           std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
-             return crack.is_near(neighbors.position(node), distance);
-           });
+    if (voids != nullptr || near_broken)
+      return true;
+    for (std::size_t k = 0; k < soft_cracks.size(); ++k)
+      if (is_near_soft(k, node, distance))
+        return true;
+    return std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
+      return crack.is_near(neighbors.position(node), distance);
+    });
   }
 
 

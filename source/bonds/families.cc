@@ -25,7 +25,8 @@ namespace PeriDeal
     template <int dim>
     bool cuts_at_tips(const BodyParameters<dim> &body, const HaloAround halo)
     {
-      if (body.deforms && body.cracks.through_tips == ThroughTips::automatic)
+      const ThroughTips choice = body.cracks.through_tips;
+      if (body.deforms && (choice == ThroughTips::automatic || choice == ThroughTips::in_part))
         return halo == HaloAround::nodes || !body.coupling.exchanges() ||
                body.peridynamics.scales_beside_cracks();
       return body.cracks.cuts_bonds_at_tips(body.peridynamics.surface_correction);
@@ -86,7 +87,8 @@ namespace PeriDeal
                 body.peridynamics.across_voids == BondsAcrossVoids::cut && body.domain.has_voids() ?
                   &body.domain :
                   nullptr,
-                body.broken_bonds_conduct)
+                body.broken_bonds_conduct,
+                body.cuts_in_part_at_tips())
   {
     const bool unique = topology.has_unique_sites();
     // A symmetry plane of an elastic body holds its nodes, and families end at it.
@@ -165,7 +167,7 @@ namespace PeriDeal
     topology.for_each(node, [&](const unsigned int neighbor, const double w) {
       members.push_back({neighbor,
                          topology.volume(node) * topology.volume(neighbor) * w,
-                         crack_set.cuts(node, neighbor)});
+                         crack_set.kept_part(node, neighbor)});
     });
   }
 

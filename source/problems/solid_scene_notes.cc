@@ -82,7 +82,8 @@ namespace PeriDeal
       {
         const auto &cracks = scene.cracks;
         if (!runs(scene, ModelKind::finite_elements) || cracks.mesh != CrackMesh::removed ||
-            scene.domain.shape != Shape::box || !cracks.tips.empty())
+            scene.domain.shape != Shape::box || !cracks.tips.empty() ||
+            scene.cuts_in_part_at_tips())
           return;
         const Tensor<1, 2> h     = scene.domain.spacing();
         const Point<2>     lower = scene.domain.lower, upper = scene.domain.upper;

@@ -61,6 +61,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool BodyParameters<dim>::cuts_in_part_at_tips() const
+  {
+    return dim == 2 && deforms && cracks.through_tips == ThroughTips::in_part;
+  }
+
+
+  template <int dim>
   CrackHistory<dim> BodyParameters<dim>::crack_history() const
   {
     double step = cracks.growth_step;

@@ -134,6 +134,33 @@ namespace PeriDeal
 
 
   template <int dim>
+  double CrackGeometry<dim>::cut_part(const Point<dim> &a,
+                                      const Point<dim> &b,
+                                      const double      width) const
+  {
+    if (dim != 2)
+      return separates(a, b) ? 1. : 0.;
+    const double at_a = signed_distance(a), at_b = signed_distance(b);
+    if ((at_a > 0.) == (at_b > 0.))
+      return 0.;
+    const bool        from_a = at_a > 0.;
+    const Point<dim> &start = from_a ? a : b, &end = from_a ? b : a;
+    const double      at_start = from_a ? at_a : at_b, at_end = from_a ? at_b : at_a;
+    const Point<dim>  crossing = start + at_start / (at_start - at_end) * (end - start);
+    const double      along = (crossing - corner_points[0]) * first_axis, margin = edge * size;
+    double            part = 1.;
+    for (unsigned int e = 0; e < 2; ++e)
+      {
+        const double behind = e == 0 ? along : content - along;
+        part                = std::min(part,
+                        closed[e] ? (behind >= -margin ? 1. : 0.) :
+                                                   std::clamp(behind / width + 0.5, 0., 1.));
+      }
+    return part;
+  }
+
+
+  template <int dim>
   bool CrackGeometry<dim>::contains(const Point<dim> &p) const
   {
     const double distance = (p - corner_points[0]) * unit_normal;

@@ -59,8 +59,10 @@ namespace PeriDeal
       "",
       "Whether a bond that only touches a crack's tip is cut. `auto`: not with `Surface correction = energy`, else it is; each "
       "was measured to be the more accurate there. With `Physics = elasticity` bonds of `Scheme = exchange` without crack scaling are "
-      "kept, all others cut. Finite elements always cut such pairs.",
-      {"auto", "cut", "keep"});
+      "kept, all others cut. `in part`: bonds and removed cells about a tip lose a part of their stiffness, so that the crack is as long as "
+      "given wherever in its cell its tip lies; with `Physics = elasticity` in 2D only, not on `faces` and not where cracks grow, heal or bonds break. "
+      "Finite elements that diffuse always cut such pairs.",
+      {"auto", "cut", "keep", "in part"});
     declare(
       "Growth step",
       EntryType::text,

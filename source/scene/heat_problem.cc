@@ -43,6 +43,8 @@ namespace PeriDeal
       heat.cracks       = scene.cracks;
       heat.peridynamics = scene.peridynamics;
       heat.cracks.set("Mesh", scene.cracks.on_faces() ? "faces" : "removed");
+      if (scene.cracks.through_tips == ThroughTips::in_part) // that is for elastic bonds
+        heat.cracks.set("Bonds through tips", "auto");
       heat.cracks.parse(Physics::heat);
       // Corrections of elastic bonds are none of those that conduct.
       if (!scene.peridynamics.scales_beside_cracks())

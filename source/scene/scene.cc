@@ -266,12 +266,39 @@ namespace PeriDeal
                              pd.self_term == SelfTerm::none && !scene.domain.has_voids());
       return complete || !runs(scene, ModelKind::peridynamics);
     }
+
+
+    /** What `Bonds through tips = in part` cannot be given with. */
+    template <int dim>
+    void check_tips_in_part(const Scene<dim> &scene)
+    {
+      const Cracks<dim> &cracks = scene.cracks;
+      if (cracks.through_tips != ThroughTips::in_part)
+        return;
+      const auto refuse = [&](const bool fault, const std::string &what) {
+        if (fault)
+          entry_error(cracks.where("Bonds through tips"),
+                      "'in part' " + what + "; use 'auto', 'cut' or 'keep'.");
+      };
+      refuse(!scene.deforms, "is for 'Physics = elasticity'");
+      refuse(dim != 2, "is for 'Dimension = 2'");
+      refuse(!scene.domain.has_lattice(),
+             "is for bodies on a lattice; in one of a mesh file any end of a crack may lie on the "
+             "surface");
+      refuse(cracks.on_faces(),
+             "is for bonds and cells that cracks cut; with 'Mesh = faces' they cut none");
+      refuse(cracks.change(), "is for cracks that lie still; here cracks grow or change with time");
+      refuse(scene.material.fracture_energy || scene.material.critical_stretch,
+             "is for bonds that do not break; section 'Material' has 'Fracture energy' or "
+             "'Critical stretch'");
+    }
   } // namespace
 
 
   template <int dim>
   void Scene<dim>::validate()
   {
+    check_tips_in_part(*this);
     if (domain.has_lattice())
       {
         cracks.set_box(domain.lower, domain.upper);

@@ -288,7 +288,10 @@ namespace PeriDeal
     set("Cracks/Nodes on cracks", "left");
     set("Finite elements/Degree", on_cells ? "2" : "1");
     if (!scene.cracks.cracks.empty())
-      set("Cracks/Mesh", family == Family::faces ? "faces" : "auto");
+      {
+        set("Cracks/Mesh", family == Family::faces ? "faces" : "auto");
+        set("Cracks/Bonds through tips", "auto");
+      }
     if (family == Family::zone)
       attempt.model = ModelKind::coupled;
     set("Coupling/Zone", "cracks: 1");

@@ -40,6 +40,7 @@ end
 
 STEADY = {"Time/Steady": "true"}
 CRACK = {"Cracks/Segments": "0.25,0.5 ; 0.75,0.5"}
+IN_PART = {"Cracks/Bonds through tips": "in part"}
 ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "200", "Material/Poisson ratio": "0.3", "Boundary conditions/Dirichlet": "",
            "Boundary conditions/Displacement": "left: 0, 0"}
 PARTS, DIRICHLET = "Boundary conditions/Parts", "Boundary conditions/Dirichlet"
@@ -248,6 +249,11 @@ def scene_mistakes(folder):
         ("disc without a radius", {**BLOCK, "Cracks/Polygons": "disc: 0.5,0.5,0.5, 0,0,1"}, ["'Polygons'", "disc", "7 numbers"]),
         ("3D side in 2D", {"Boundary conditions/Flux": "front: 3"}, ["'Flux'", "'front'", "left, right, bottom, top"]),
         # cracks and points
+        ("tips in part of a crack that grows", {**ELASTIC, **CRACK, **IN_PART, "Cracks/Growth": "2: 0, 0.1,0"}, ["'Bonds through tips'", "'in part'", "lie still"]),
+        ("tips in part on faces", {**ELASTIC, **CRACK, **IN_PART, "Cracks/Mesh": "faces"}, ["'Bonds through tips'", "'in part'", "'Mesh = faces'"]),
+        ("tips in part where bonds break", {**ELASTIC, **CRACK, **IN_PART, "Models": "peridynamics", "Material/Fracture energy": "1"},
+         ["'Bonds through tips'", "'in part'", "'Fracture energy'"]),
+        ("tips in part of what diffuses", {**CRACK, **IN_PART}, ["'Bonds through tips'", "'in part'", "'Physics = elasticity'"]),
         ("crack outside", {"Cracks/Segments": "2,2 ; 3,3"}, ["'Segments'", "outside the body"]),
         ("crack of one point", {"Cracks/Segments": "0.2,0.2"}, ["'Segments'", "two points"]),
         ("crack of no length", {"Cracks/Segments": "0.2,0.2 ; 0.2,0.2"}, ["'Segments'", "no length"]),

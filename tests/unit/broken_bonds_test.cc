@@ -60,7 +60,7 @@ namespace
   {
     const auto &layout = *families.nodes().partitioner();
     return damage_of(families, [&](const unsigned int i, const auto &bond) {
-      return bond.cut && layout.local_to_global(i) < layout.local_to_global(bond.neighbor);
+      return bond.kept == 0. && layout.local_to_global(i) < layout.local_to_global(bond.neighbor);
     });
   }
 

@@ -30,16 +30,28 @@ namespace PeriDeal
      *                             transmission
      * @param voids                that bonds must not cross, or nullptr
      * @param transmission_of_broken what bonds let through that another physics breaks
+     * @param in_part_at_tips      in 2D kept_part() goes from 1 to 0 over a spacing about each tip
      */
     CrackSet(const Neighbors<dim>    &neighbors,
              const CrackHistory<dim> &history,
              const bool               cut_at_tips,
              const double             contact_conductance,
              const Domain<dim>       *voids,
-             const double             transmission_of_broken = 1.);
+             const double             transmission_of_broken = 1.,
+             const bool               in_part_at_tips        = false);
 
     /** Whether a bond crosses some crack. */
     bool cuts(const unsigned int node, const unsigned int neighbor) const;
+
+    /**
+     * What the cracks leave of an elastic bond, the product over those that it crosses of 0 or 1;
+     * with in_part_at_tips (1 - p)/(1 + p/2), p of CrackGeometry::cut_part() over one spacing along
+     * the crack. A bond of half the stiffness bears more than half of its force, and
+     * with this law the crack is as good as longer by p spacings. Where tips that are touched cut
+     * nothing (not @p cut_at_tips) the crack is taken to be shorter by a fifth of a spacing at
+     * each tip.
+     */
+    double kept_part(const unsigned int node, const unsigned int neighbor) const;
 
     /** Whether some crack, wherever it is, lies between two points. */
     bool separate(const dealii::Point<dim> &a, const dealii::Point<dim> &b) const;
@@ -84,11 +96,14 @@ namespace PeriDeal
 
   private:
     template <typename Test>
-    void test_crossings(const unsigned int        node,
-                        const unsigned int        neighbor,
-                        const CrackGeometry<dim> &crack,
-                        const Test               &test) const;
-    bool leaves_body(const unsigned int node, const unsigned int neighbor) const;
+    void   test_crossings(const unsigned int        node,
+                          const unsigned int        neighbor,
+                          const CrackGeometry<dim> &crack,
+                          const Test               &test) const;
+    void   make_soft_cracks();
+    double spacing_along(const CrackPiece<dim> &piece) const; // of the nodes, along a crack
+    bool   is_near_soft(const std::size_t k, const unsigned int node, const double distance) const;
+    bool   leaves_body(const unsigned int node, const unsigned int neighbor) const;
 
     /** What is left of a bond that may have broken. */
     double kept_of_broken(const unsigned int node, const unsigned int neighbor) const;
@@ -104,8 +119,11 @@ namespace PeriDeal
     const bool                      cut_at_tips;
     const double                    contact_conductance;
     const Domain<dim>              *voids;
+    const bool                      in_part;
     double                          time; // the representative one
     std::vector<CrackGeometry<dim>> cracks;
+    std::vector<CrackGeometry<dim>> soft_cracks; // if they cut in part at tips
+    std::vector<double>             widths;      // of their tips
     double                          transmission;
     BrokenBonds                     broken_bonds;
   };

@@ -37,7 +37,7 @@ namespace PeriDeal
     {
       unsigned int neighbor;
       double       weight; // V_i V_j w(xi)
-      bool         cut;    // some crack separates the nodes
+      double       kept;   // what cracks leave of it, 0 to 1
     };
 
     /** Whether the node at a place has bonds at all, now or later. */

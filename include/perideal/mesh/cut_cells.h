@@ -6,6 +6,7 @@
 #include <perideal/scene/crack_geometry.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace PeriDeal
@@ -107,5 +108,56 @@ namespace PeriDeal
           return true;
       }
     return false;
+  }
+
+
+  /**
+   * What is left of the stiffness of a cell in 2D where cracks remove cells in part at their tips:
+   * the product over the cracks of (1 - p)/(1 + 2 p), p = clamp(s/w + 1/2, 0, 1), where the middle
+   * of what the crack's line cuts out of the cell lies a distance s behind the tip and w is the
+   * cell's width along the crack. The cell bears more than 1 - p of its force with 1 - p of its
+   * stiffness; with this law the crack is as good as longer by p cells (doc/coupling.md). 0 where a
+   * crack goes on, meets another one or ends on a side, as is_removed() has it.
+   *
+   * @param cracks from make_crack_geometries(), whose tips are not closed
+   */
+  template <int dim, typename Cell>
+  double kept_of_cell(const Cell &cell, const std::vector<CrackGeometry<dim>> &cracks)
+  {
+    const double same = 1e-6 * cell->diameter();
+    double       kept = 1.;
+    for (const CrackGeometry<dim> &crack : cracks)
+      {
+        if (!crack.is_near(cell->center(), cell->diameter()))
+          continue;
+        const dealii::Point<dim>    &start = crack.corners()[0];
+        const dealii::Tensor<1, dim> way   = crack.corners()[1] - start;
+        // Of the section, in parts of the crack.
+        double low = std::numeric_limits<double>::max(), high = -low;
+        for (unsigned int v = 0; v < cell->n_vertices(); ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const unsigned int w    = v | (1u << d);
+              const double       at_v = crack.signed_distance(cell->vertex(v)),
+                           at_w       = crack.signed_distance(cell->vertex(w));
+              if (w == v || (at_v > 0.) == (at_w > 0.))
+                continue;
+              const dealii::Point<dim> p =
+                cell->vertex(v) + at_v / (at_v - at_w) * (cell->vertex(w) - cell->vertex(v));
+              low  = std::min(low, (p - start) * way / way.norm_square());
+              high = std::max(high, (p - start) * way / way.norm_square());
+            }
+        const double length = way.norm(), middle = 0.5 * (low + high);
+        const bool   whole = low >= high || (high - low) * length <= same ||
+                           crack.is_closed_near(start + middle * way);
+        double most = 0.; // cells per length of the crack
+        for (unsigned int d = 0; d < dim; ++d)
+          most = std::max(most, std::abs(way[d]) / length / cell->extent_in_direction(d));
+        const double part =
+          whole ? (is_removed<dim>(cell, {crack}) ? 1. : 0.) :
+                  std::clamp(std::min(middle, 1. - middle) * length * most + 0.5, 0., 1.);
+        kept *= (1. - part) / (1. + 2. * part);
+      }
+    return kept;
   }
 } // namespace PeriDeal

@@ -50,6 +50,9 @@ namespace PeriDeal
      */
     double horizon() const;
 
+    /** Ends of cracks cut bonds and cells in part (solids in 2D; check_tips_in_part()). */
+    bool cuts_in_part_at_tips() const;
+
     /**
      * The entry that bonds which share nodes with finite elements (`coupled`, and the treatment
      * `exchange`) cannot have, and why; empty if there is none.

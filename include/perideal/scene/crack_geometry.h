@@ -36,6 +36,17 @@ namespace PeriDeal
     bool separates(const dealii::Point<dim> &a, const dealii::Point<dim> &b) const;
 
     /**
+     * The part of a bond between two points that the crack cuts, if it does so in part near its
+     * ends in 2D: clamp(s/w + 1/2, 0, 1), where the bond passes the line of the crack a distance s
+     * behind an end. Ends that are closed, and those of other dimensions, cut bonds as a whole
+     * (separates()).
+     * @param width w
+     */
+    double cut_part(const dealii::Point<dim> &a,
+                    const dealii::Point<dim> &b,
+                    const double              width) const;
+
+    /**
      * Signed distance to the crack's line or plane, positive on the left side; points on it count
      * as positive.
      */

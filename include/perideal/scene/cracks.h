@@ -33,7 +33,8 @@ namespace PeriDeal
   {
     automatic,
     cut,
-    keep
+    keep,
+    in_part // elastic bodies in 2D only
   };
 
 

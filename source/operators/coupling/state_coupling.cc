@@ -241,10 +241,10 @@ namespace PeriDeal
     for (const auto &member : members)
       {
         const unsigned int j = member.neighbor;
-        if (member.weight == 0. || (member.cut && !intact))
+        if (member.weight == 0. || (member.kept == 0. && !intact))
           continue;
         const Tensor<1, dim> xi = own_families.neighbors().bond_vector(own, j);
-        double               w  = member.weight;
+        double               w  = intact ? member.weight : member.kept * member.weight;
         if (extension && !extension->is_inside(site_of(j)) && extension->find(site_of(j), site))
           w *= site.volume /
                own_families.nodes().volume(j); // with what is missing of a node on a side

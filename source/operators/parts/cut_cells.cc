@@ -41,6 +41,12 @@ namespace PeriDeal
     cracks       = rule.in_mesh ? std::vector<CrackGeometry<dim>>() : make_crack_geometries(pieces);
     transmission = new_transmission;
     const auto open = make_open_geometries(pieces);
+    if (rule.in_part && !rule.in_mesh)
+      {
+        kept.resize(cut.size(), 1.);
+        for (const Cell &cell : cells)
+          kept[cell->active_cell_index()] = kept_of_cell(cell, cracks);
+      }
     if (broken)
       damaged.resize(cut.size(), false);
     for (const Cell &cell : cells)
@@ -75,6 +81,13 @@ namespace PeriDeal
   bool CutCells<dim>::is_cut(const Cell &cell) const
   {
     return cut[cell->active_cell_index()];
+  }
+
+
+  template <int dim>
+  double CutCells<dim>::kept_of_removed(const Cell &cell) const
+  {
+    return !kept.empty() ? kept[cell->active_cell_index()] : is_cut(cell) ? 0. : 1.;
   }
 
 

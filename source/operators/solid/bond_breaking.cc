@@ -426,7 +426,7 @@ namespace PeriDeal
                 continue;
               }
             all += volume;
-            left += state.is_whole(k) ? volume : 0.;
+            left += state.is_whole(k) ? bond.kept * volume : 0.;
             ++k;
           }
         if (bonds.beyond)

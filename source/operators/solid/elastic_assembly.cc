@@ -97,7 +97,7 @@ namespace PeriDeal
         data.stiffness.vmult(data.thermal, free);
         data.thermal_energy = 0.5 * (free * data.thermal);
       }
-    double factor = cut_by_cracks.is_cut(cell) ? 0. : 1.;
+    double factor = cut_by_cracks.kept_of_removed(cell);
     factor *= crack_factors.of_cell(data.indices);
     if (factor == 1.)
       return;

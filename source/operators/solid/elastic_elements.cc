@@ -48,13 +48,15 @@ namespace PeriDeal
                     {body.cracks.on_faces(),
                      true,
                      body.cracks.contact_conductance,
-                     [&body] { return body.horizon(); }})
+                     [&body] { return body.horizon(); },
+                     body.cuts_in_part_at_tips()})
     , condition_faces(dofs, body.boundary_conditions)
     , hanging(dofs, *nodes, dim)
   {
     find_positions();
     find_conditions();
-    cut_by_cracks.set(this->history.pieces(this->cracks_of), 0.);
+    // Where tips cut in part, ends on sides are none.
+    cut_by_cracks.set(this->history.pieces(this->cracks_of, !body.cuts_in_part_at_tips()), 0.);
     assemble();
     this->keep_constant_loads();
   }

@@ -120,7 +120,7 @@ namespace PeriDeal
       }
     for (const Bond &bond : rows.bonds)
       {
-        if (bond.cut && factors != nullptr)
+        if (bond.weight == 0. && factors != nullptr)
           continue;
         n += 0.5 * multiple;
         const double factor =
@@ -230,7 +230,7 @@ namespace PeriDeal
         coupled->bonds_of(i, bonds);
         for (const Bond &bond : bonds)
           {
-            if (bond.cut)
+            if (bond.weight == 0.)
               continue;
             const Tensor<1, dim> xi   = nodes().position(bond.neighbor) - nodes().position(i);
             const double         mean = 0.5 * (strain(i) + strain(bond.neighbor));
@@ -261,12 +261,13 @@ namespace PeriDeal
       {
         coupled->bonds_of(i, bonds);
         for (const Bond &bond : bonds)
-          if (bond.cut)
-            sums.marked.local_element(i) = 1.;
-          else
-            sums.trace.local_element(i) +=
-              0.5 * bond.weight *
-              std::pow((nodes().position(bond.neighbor) - nodes().position(i)).norm_square(), 2);
+          {
+            const double square =
+              (nodes().position(bond.neighbor) - nodes().position(i)).norm_square();
+            sums.trace.local_element(i) += 0.5 * bond.weight * square * square;
+            if (bond.cut)
+              sums.marked.local_element(i) = 1.;
+          }
       }
   }
 

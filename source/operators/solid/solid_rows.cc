@@ -83,7 +83,7 @@ namespace PeriDeal
             if (leave_out)
               on_lattice[i] = !changing[i] &&
                               std::none_of(family.begin(), family.end(), [](const auto &bond) {
-                                return bond.cut || bond.weight == 0.;
+                                return bond.kept < 1. || bond.weight == 0.;
                               });
             store(i, family, message);
           }
@@ -172,7 +172,8 @@ namespace PeriDeal
     const bool stored = !is_on_lattice(i);
     for (const auto &bond : family)
       {
-        if (bond.cut || bond.weight == 0.)
+        const double weight = bond.kept * bond.weight;
+        if (weight == 0.)
           continue;
         AssertIndexRange(bond.neighbor, families.nodes().n_local()); // no fictitious nodes
         n_whole += 0.5;                                              // at each end
@@ -180,8 +181,8 @@ namespace PeriDeal
           continue;
         const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
         neighbors.push_back(bond.neighbor);
-        moments.push_back(bond.weight * xi);
-        springs.push_back(bond.weight * xi.norm_square());
+        moments.push_back(weight * xi);
+        springs.push_back(weight * xi.norm_square());
       }
     laws.weighted.local_element(i) = weight_of(i, family, message);
   }
@@ -196,11 +197,11 @@ namespace PeriDeal
     SymmetricTensor<2, dim> shape;
     double                  q = 0.;
     for (const auto &bond : family)
-      if (!bond.cut && bond.weight != 0.)
+      if (const double weight = bond.kept * bond.weight; weight != 0.)
         {
           const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
-          q += bond.weight * xi.norm_square() / nodes.volume(i);
-          shape += bond.weight * symmetrize(outer_product(xi, xi));
+          q += weight * xi.norm_square() / nodes.volume(i);
+          shape += weight * symmetrize(outer_product(xi, xi));
         }
     if (!message.empty())
       return q;

@@ -157,8 +157,9 @@ namespace PeriDeal
     /** 0 or 1: faces of a crack bear nothing. */
     double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const
     {
-      cut = families.cracks().cuts(node, neighbor);
-      return cut ? 0. : 1.;
+      const double kept = families.cracks().kept_part(node, neighbor);
+      cut               = kept < 1.;
+      return kept;
     }
 
     static constexpr bool has_form = false;

@@ -39,6 +39,7 @@ namespace PeriDeal
       bool                    removes; // cut cells carry nothing
       double                  contact; // conductance per area of a crack; negative: transmission
       std::function<double()> horizon; // asked only where a transmission lies between 0 and 1
+      bool                    in_part = false; // ends of cracks remove cells in part
     };
 
     /** No cell is cut yet. The dofs must outlive this. */
@@ -59,6 +60,12 @@ namespace PeriDeal
 
     /** A cell of this process or a ghost. */
     bool is_cut(const Cell &cell) const;
+
+    /**
+     * What is left of a cell's stiffness where cut cells are removed: 1, 0 if it is cut, or where
+     * tips remove in part that of kept_of_cell().
+     */
+    double kept_of_removed(const Cell &cell) const;
 
     /** Of all cells, by active cell index; false for artificial ones. */
     const std::vector<bool> &flags() const;
@@ -111,6 +118,7 @@ namespace PeriDeal
     const Rule                      rule;
     std::vector<CrackGeometry<dim>> cracks;
     double                          transmission = 0.;
+    std::vector<double>             kept;         // if ends remove in part, else empty
     std::vector<bool>               cut, damaged; // the latter empty without damage
     const BrokenBonds              *broken  = nullptr;
     mutable bool                    stiffer = false;
