@@ -157,7 +157,7 @@ namespace PeriDeal
   void SolidProblem<dim>::begin_motion(const RunContext &context)
   {
     Timings::Scope scope(this->timings, "stepper");
-    set_start();
+    with_formulas(this->dofs().get_communicator(), [&] { set_start(); });
     op().linearize(displacement);
     stepper     = make_motion_stepper(scene.time.stepper, op(), stepper_options());
     stable_step = stable_motion_step(op());
@@ -261,10 +261,12 @@ namespace PeriDeal
     if (scene.warms_slowly() && !loading->is_inside_step())
       take_temperature();
     Timings::Scope scope(this->timings, "solving");
-    if (loading->is_inside_step())
-      loading->go_on(displacement, context.after_step);
-    else
-      loading->step(displacement, to, context.after_step);
+    with_formulas(this->dofs().get_communicator(), [&] {
+      if (loading->is_inside_step())
+        loading->go_on(displacement, context.after_step);
+      else
+        loading->step(displacement, to, context.after_step);
+    });
     n_iterations = loading->n_iterations();
     tell_first_break(*this, to, context);
     damage->tell(*this);
@@ -423,7 +425,7 @@ namespace PeriDeal
   void SolidProblem<dim>::begin_loading(const RunContext &context)
   {
     Timings::Scope scope(this->timings, "solving");
-    loading->begin(displacement, 0.);
+    with_formulas(this->dofs().get_communicator(), [&] { loading->begin(displacement, 0.); });
     n_iterations = loading->n_iterations();
     tell_first_break(*this, 0., context);
     damage->tell(*this);
