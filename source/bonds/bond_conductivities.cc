@@ -4,9 +4,10 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/base/worst_trip.h>
 #include <perideal/bonds/bond_conductivities.h>
 #include <perideal/laws/interface.h>
-#include <perideal/scene/lists.h>
+#include <perideal/scene/not_positive.h>
 
 namespace PeriDeal
 {
@@ -42,17 +43,15 @@ namespace PeriDeal
     if (!depend_on_temperature())
       return;
     const Nodes<dim> &nodes = neighbors.nodes();
-    std::string       message;
+    Trip              worst;
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
         const double T = u.local_element(i);
         values[i]      = material.conductivity.value(nodes.position(i), T);
-        if (!(values[i] > 0.) && message.empty())
-          message = "'Conductivity' in section 'Material' is " + number_text(values[i]) +
-                    " at T = " + number_text(T) +
-                    "; it must be positive at every temperature that the run reaches.";
+        if (!(values[i] > 0.))
+          keep_lower(worst, not_positive("'Conductivity'", values[i], T, nodes.position(i)));
       }
-    throw_on_all_if_any(nodes.communicator(), message);
+    throw_lowest_if_any(nodes.communicator(), worst);
   }
 
 

@@ -16,6 +16,8 @@ namespace PeriDeal
       }
     catch (Diverged &diverged) // on all processes
       {
+        if (diverged.trip.monitor == "formulas") // where what is not positive is no number
+          errors.throw_if_any(communicator);
         if (diverged.trip.cause.empty())
           diverged.trip.cause = errors.first(communicator);
         throw;

@@ -3,7 +3,11 @@
 
 // What the guards of a run find, and how soon; and what they leave alone.
 
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/worst_trip.h>
 #include <perideal/problems/guards.h>
+#include <perideal/scene/not_positive.h>
 #include <perideal/scene/with_formulas.h>
 #include <perideal/solvers/motion_stepper.h>
 #include <perideal/solvers/stepper.h>
@@ -258,6 +262,32 @@ namespace PeriDeal
     catch (const Diverged &diverged)
       {
         EXPECT_EQ(diverged.trip.monitor, "formulas");
+      }
+  }
+
+
+  TEST(Guards, the_lowest_of_all_processes)
+  {
+    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD),
+                       n    = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+    Trip own;
+    EXPECT_NO_THROW(throw_lowest_if_any(MPI_COMM_WORLD, own)); // nothing has been found
+    // Of equal ones that whose place comes first, which is the last process's.
+    for (const double y : {0.5, 0.25, 0.75})
+      if (rank + 1 == n || y == 0.5)
+        keep_lower(own,
+                   not_positive("'Conductivity'", -0.125, 0.5625, Point<2>(1. - rank / 8., y)));
+    try
+      {
+        throw_lowest_if_any(MPI_COMM_WORLD, own);
+        FAIL();
+      }
+    catch (const Diverged &error)
+      {
+        EXPECT_EQ(error.trip.monitor, "formulas");
+        EXPECT_EQ(error.trip.value, -0.125);
+        EXPECT_EQ(error.trip.place, (std::vector<double>{1. - (n - 1) / 8., 0.25}));
+        expect_parts(error.message(), {"'Conductivity'", "-0.125", "0.25), T = 0.5625"});
       }
   }
 

@@ -6,13 +6,16 @@
 
 #include <perideal/base/node_loops.h>
 #include <perideal/base/user_error.h>
+#include <perideal/base/worst_trip.h>
 #include <perideal/bonds/fictitious_nodes.h>
 #include <perideal/operators/diffusion/bond_operator.h>
 #include <perideal/operators/diffusion/heat_content.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/not_positive.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -78,7 +81,7 @@ namespace PeriDeal
   void BondOperator<dim>::find_capacity(const Vector *u)
   {
     const Nodes<dim> &nodes = bonds.nodes();
-    std::string       message;
+    Trip              worst;
     if (body.steady) // it only sets a scale then
       {
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
@@ -91,13 +94,15 @@ namespace PeriDeal
                                  u->local_element(i) :
                                  body.initial_and_source.initial_value.value(nodes.position(i));
         const double storage = body.material.storage(nodes.position(i), T);
-        if (!(storage > 0.) && message.empty())
-          message =
-            "'Density' times 'Heat capacity' in section 'Material' is " + std::to_string(storage) +
-            " at a node; it must be positive everywhere in the body, at every temperature that the run reaches.";
+        if (!(storage > 0.))
+          keep_lower(worst,
+                     not_positive("'Density' times 'Heat capacity'",
+                                  storage,
+                                  u != nullptr ? T : std::numeric_limits<double>::quiet_NaN(),
+                                  nodes.position(i)));
         capacity.local_element(i) = storage * nodes.volume(i);
       }
-    throw_on_all_if_any(nodes.communicator(), message);
+    throw_lowest_if_any(nodes.communicator(), worst);
   }
 
 

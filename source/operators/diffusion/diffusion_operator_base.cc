@@ -3,9 +3,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/place_text.h>
 #include <perideal/operators/diffusion/diffusion_operator_base.h>
-
-#include <sstream>
 
 namespace PeriDeal
 {
@@ -107,9 +106,7 @@ namespace PeriDeal
   template <int dim>
   std::string DiffusionOperatorBase<dim>::place_of(const unsigned int local_index) const
   {
-    std::ostringstream out;
-    out << "(" << position(local_index) << ")";
-    return out.str();
+    return place_text(position(local_index));
   }
 
 

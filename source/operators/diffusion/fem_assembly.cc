@@ -4,13 +4,17 @@
 // The matrix, and how it changes with cracks and temperatures.
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
+#include <perideal/base/worst_trip.h>
 #include <perideal/operators/diffusion/fem_operator.h>
 #include <perideal/operators/parts/lumped_mass.h>
+#include <perideal/scene/not_positive.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +32,41 @@ namespace PeriDeal
       IndexSet        relevant;
       DoFTools::extract_locally_relevant_dofs(dofs, relevant);
       return TrilinosWrappers::SparsityPattern(owned, owned, relevant, dofs.get_communicator());
+    }
+
+
+    /** Of the cells of this process; empty if all is positive. Collective. */
+    template <int dim>
+    Trip lowest_material(const DoFHandler<dim> &dofs,
+                         const Material        &material,
+                         const bool             steady,
+                         const Vector          &u)
+    {
+      FEValues<dim>       values(dofs.get_fe(),
+                           QGauss<dim>(dofs.get_fe().degree + 1),
+                           update_values | update_quadrature_points);
+      std::vector<double> temperatures(values.n_quadrature_points);
+      Vector              with_ghosts(u);
+      with_ghosts.update_ghost_values();
+      Trip worst;
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            values.reinit(cell);
+            values.get_function_values(with_ghosts, temperatures);
+            for (const unsigned int q : values.quadrature_point_indices())
+              {
+                const Point<dim> &p       = values.quadrature_point(q);
+                const double      T       = temperatures[q];
+                const double      kappa   = material.conductivity.value(p, T);
+                const double      storage = steady ? 1. : material.storage(p, T);
+                if (!(kappa > 0.))
+                  keep_lower(worst, not_positive("'Conductivity'", kappa, T, p));
+                if (!(storage > 0.))
+                  keep_lower(worst, not_positive("'Density' times 'Heat capacity'", storage, T, p));
+              }
+          }
+      return worst;
     }
   } // namespace
 
@@ -112,6 +151,9 @@ namespace PeriDeal
             this->place_of(i) +
             "; they must be positive at every temperature that the run reaches.";
       }
+    if (Utilities::MPI::max(message.empty() ? 0 : 1, dofs.get_communicator()) > 0)
+      throw_lowest_if_any(dofs.get_communicator(),
+                          lowest_material(dofs, body.material, body.steady, u));
     throw_on_all_if_any(dofs.get_communicator(), message);
     find_gershgorin();
   }
