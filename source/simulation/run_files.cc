@@ -183,9 +183,10 @@ namespace PeriDeal
 
   bool RunFiles::end_early(const std::string &message, const bool diverged, const Json &more)
   {
-    // A run that has diverged on its way has that to tell, if nothing else.
-    const bool on_its_way = more.contains("guard") && more["guard"]["step"] > 0;
-    if (!has_results && diverged && on_its_way)
+    // A run that has diverged has that to tell, if nothing else; not one whose scene has been found
+    // wrong while it was built, when there is no time yet.
+    const bool has_begun = more.contains("guard") && more["guard"]["time"] >= 0.;
+    if (!has_results && diverged && has_begun)
       {
         folder.commit();
         has_results = true;
