@@ -13,6 +13,8 @@
 #include <sstream>
 #include <utility>
 
+#include "inversion_error.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -119,11 +121,7 @@ namespace PeriDeal
       return;
     const Inversion now = op.inverted(u);
     if (now.n_nodes > 0)
-      found.add(Diverged("Before t = " + number(t) + " " + inverted_text(now),
-                         "inversion",
-                         now.n_nodes,
-                         0.,
-                         t),
+      found.add(inversion_error("Before t = " + number(t) + " " + inverted_text(now), now, t),
                 spent.steps);
   }
 

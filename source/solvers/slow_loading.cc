@@ -14,6 +14,8 @@
 #include <sstream>
 #include <utility>
 
+#include "inversion_error.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -99,7 +101,7 @@ namespace PeriDeal
     std::ostringstream message;
     message << "In the equilibrium that '" << solver->name() << "' has found at t = " << t << ' '
             << inverted_text(inverted);
-    found.add(Diverged(message.str(), "inversion", inverted.n_nodes, 0., t), steps);
+    found.add(inversion_error(message.str(), inverted, t), steps);
   }
 
 
