@@ -16,6 +16,7 @@
 #include "diffusion_parts.h"
 #include "diffusion_summary.h"
 #include "diffusion_totals.h"
+#include "steps_with_formulas.h"
 
 namespace PeriDeal
 {
@@ -316,10 +317,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  void DiffusionProblem<dim>::advance_through_events(const double     t_end,
-                                                     const AfterStep &after_step)
+  void DiffusionProblem<dim>::advance_through_events(const double t_end, const AfterStep &then)
   {
-    with_formulas(this->dofs().get_communicator(), [&] {
+    const auto steps = [&](const AfterStep &after_step) {
       while (reached < t_end)
         {
           double to = stepper->end_of_span();
@@ -341,10 +341,11 @@ namespace PeriDeal
               stepper->advance(solution, reached, to, after_step);
             }
           reached = to;
-          if (after_step && reached < t_end)
+          if (reached < t_end)
             after_step(reached);
         }
-    });
+    };
+    steps_with_formulas(this->dofs().get_communicator(), reached, then, steps);
   }
 
 

@@ -23,6 +23,7 @@
 #include "solid_sides.h"
 #include "solid_summary.h"
 #include "solid_totals.h"
+#include "steps_with_formulas.h"
 
 namespace PeriDeal
 {
@@ -285,13 +286,13 @@ namespace PeriDeal
     StepSpan &span = moving.span;
     while (span.n_done < span.n_steps)
       {
-        const double next = moving.next();
-        with_formulas(this->dofs().get_communicator(), [&] {
-          if (stepper->is_inside_span())
-            stepper->go_on(displacement, velocity, context.after_step);
-          else
-            stepper->advance(displacement, velocity, span.now, next, context.after_step);
-        });
+        const double next  = moving.next();
+        const auto   steps = [&](const AfterStep &after_step) {
+          stepper->is_inside_span() ?
+            stepper->go_on(displacement, velocity, after_step) :
+            stepper->advance(displacement, velocity, span.now, next, after_step);
+        };
+        steps_with_formulas(this->dofs().get_communicator(), span.now, context.after_step, steps);
         span.now = next;
         ++span.n_done;
         if (op().brittle())

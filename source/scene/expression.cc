@@ -346,8 +346,11 @@ namespace PeriDeal
     std::string point;
     for (unsigned int d = 0; d < dim; ++d)
       point += (d == 0 ? "" : ", ") + number_text(p[d]);
+    // Properties of a temperature are asked for without a time.
+    const bool hides_time = compiled->uses_temperature && !compiled->uses_time;
     report_formula_error((where.empty() ? "The" : "Entry " + where + ": the") + " value of '" +
-                         formula + "' is not finite at (" + point + "), t = " + number_text(t) +
+                         formula + "' is not finite at (" + point + ")" +
+                         (hides_time ? "" : ", t = " + number_text(t)) +
                          (compiled->uses_temperature ? ", T = " + number_text(temperature) : "") +
                          ". Change the formula so that it is a number everywhere.");
   }
