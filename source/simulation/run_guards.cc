@@ -27,11 +27,12 @@ namespace PeriDeal
 
 
     template <int dim>
-    std::string message_of(const Problem<dim> &problem, const Trip &trip)
+    std::string message_of(const Problem<dim> &problem, const bool steady, const Trip &trip)
     {
-      return problem.name() + ", t = " + number_text(trip.time) + ", after " +
-             std::to_string(trip.n_steps) + (trip.n_steps == 1 ? " step" : " steps") + ": " +
-             with_full_stop(trip.found) +
+      const std::string when = ", t = " + number_text(trip.time) + ", after " +
+                               std::to_string(trip.n_steps) +
+                               (trip.n_steps == 1 ? " step" : " steps");
+      return problem.name() + (steady ? "" : when) + ": " + with_full_stop(trip.found) +
              (trip.cause.empty() ? "" : " Cause: " + with_full_stop(trip.cause));
     }
   } // namespace
@@ -39,10 +40,12 @@ namespace PeriDeal
 
   template <int dim>
   RunGuards<dim>::RunGuards(const GuardControl &control,
+                            const bool          steady,
                             const Progress     &progress,
                             ResultRecord       &record,
                             Timings            &timings)
     : control(control)
+    , steady(steady)
     , progress(progress)
     , record(record)
     , timings(timings)
@@ -100,7 +103,7 @@ namespace PeriDeal
     told[trip.monitor] = true;
     if (trip.n_steps == 0) // else a solver has found it some steps ago
       trip.n_steps = steps_of(problem.describe_solving());
-    const std::string note = message_of(problem, trip) +
+    const std::string note = message_of(problem, steady, trip) +
                              " 'Action = stop' in section 'Guards' would have ended the run there.";
     progress.note(note);
     record.notes.push_back(note);
@@ -144,12 +147,14 @@ namespace PeriDeal
         if (diverged.of_guard)
           {
             trip.cause = trip.cause.empty() ? no_cause : trip.cause;
-            throw Diverged("The run was stopped: " + message_of(problem, trip), trip);
+            throw Diverged("The run was stopped: " + message_of(problem, steady, trip), trip);
           }
-        const bool says_more = !trip.cause.empty() && trip.cause != trip.found &&
-                               trip.monitor != "time step";
-        throw Diverged(trip.found + (says_more ? " Cause: " + with_full_stop(trip.cause) : ""),
-                       trip);
+        if (trip.cause.empty() && trip.monitor == "formulas")
+          trip.cause = trip.found;
+        Trip told = trip;
+        if (trip.cause == trip.found || trip.monitor == "time step")
+          told.cause.clear();
+        throw Diverged(message_of(problem, steady, told), trip);
       }
   }
 

@@ -23,8 +23,9 @@ namespace PeriDeal
   class RunGuards
   {
   public:
-    /** All are referred to. */
+    /** All are referred to. @param steady nothing has a time */
     RunGuards(const GuardControl &control,
+              const bool          steady,
               const Progress     &progress,
               ResultRecord       &record,
               Timings            &timings);
@@ -57,6 +58,7 @@ namespace PeriDeal
     void act_on(const Problem<dim> &problem, Trip trip);
 
     const GuardControl &control;
+    const bool          steady;
     const Progress     &progress;
     ResultRecord       &record;
     Timings            &timings;

@@ -46,7 +46,11 @@ namespace PeriDeal
     , progress(communicator, quiet)
     , record(std::make_unique<ResultRecord>())
     , output(std::make_unique<RunOutput<dim>>(scene, *record))
-    , guards(std::make_unique<RunGuards<dim>>(scene.guards, progress, *record, timings))
+    , guards(std::make_unique<RunGuards<dim>>(scene.guards,
+                                              scene.time.steady,
+                                              progress,
+                                              *record,
+                                              timings))
   {}
 
 

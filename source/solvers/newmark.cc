@@ -62,7 +62,7 @@ namespace PeriDeal
                   solver.operator_changed();
               }
             change = 0.;
-            spent.iterations += solver.solve(factor, 1., change, residual);
+            solve_for_change(factor, t, dt);
             u += change;
             op.distribute(u, t + dt); // for unknowns that follow from others
             op.unbalanced(unbalanced, u, t + dt);
@@ -90,6 +90,27 @@ namespace PeriDeal
       }
 
     private:
+      /** What is left of the residual by the change. */
+      void solve_for_change(const double factor, const double t, const double dt)
+      {
+        try
+          {
+            spent.iterations += solver.solve(factor, 1., change, residual);
+          }
+        catch (const Diverged &failure)
+          {
+            // The mass holds every part: what is not solved is a tangent far from the solution.
+            if (!op.nonlinear() || failure.trip.monitor != "solver")
+              throw;
+            std::ostringstream message;
+            message << "Newton's iterations of the stepper 'newmark' did not converge at t = " << t
+                    << ": their linear solver got to a relative residual of " << failure.trip.value
+                    << " only. The body turns or deforms too much within a step of " << dt
+                    << ": choose a smaller 'Time step' in section 'Time', or 'Stepper = verlet'.";
+            throw Diverged(message.str(), "solver", failure.trip.value, failure.trip.bound, t);
+          }
+      }
+
       /** Forces less M a. */
       void find_residual(const Vector &u, const double factor)
       {
