@@ -10,6 +10,7 @@
 #include <perideal/operators/bounds/spectrum.h>
 #include <perideal/operators/parts/element_layout.h>
 #include <perideal/operators/solid/elastic_elements.h>
+#include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <cmath>
@@ -169,7 +170,15 @@ namespace PeriDeal
           message =
             "The node at " + this->place_of(i) + fault +
             " Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
-        else if (!(stiffness_diagonal.local_element(i) > 1e-13 * largest))
+        else if (const double own = stiffness_diagonal.local_element(i);
+                 own > 0. && !(own > 1e-13 * largest) && body.cracks.cracks.empty())
+          message =
+            "What holds the node at " + this->place_of(i) + " to others is " +
+            rounded_text(own / largest) +
+            " of the most that holds any, and disappears in its round-off: 'Young modulus' "
+            "or what else gives the stiffness in section 'Material' differs too much. Beyond a thousand times "
+            "hardly anything changes but that: choose values that differ less, or leave out what is so soft, as a hole.";
+        else if (!(own > 1e-13 * largest))
           message =
             "The node at " + this->place_of(i) +
             " is isolated: cracks cut all cells around it, and no bond holds it. Use " +
