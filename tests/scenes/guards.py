@@ -2,7 +2,8 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Runs that become unstable on their way: each is stopped soon after it begins to, says where and why, and keeps what it had.
 
-Arguments: parts. `stopped`: each run, on one process and on two. `actions`: warn, off. `share`: the time that guards take, printed.
+Arguments: parts. `stopped`: each run, on one process and on two. `actions`: warn, off. `share`: the time that guards take, printed. `told`: what
+a message and summary.json say of time, place and model, also where another run has left its results.
 """
 
 import glob
@@ -170,6 +171,62 @@ end
 LESS_CAPACITY = WARMING.replace("Conductivity = 1 + 10*T", "Heat capacity = 1 - 0.9*T").replace("Time step = 4e-4", "Time step = 1.1e-3")
 
 
+# A displacement that has no value after half of the load steps.
+PULL_ENDS = BODY.replace("Models  = peridynamics", "Models  = finite elements, peridynamics") + """
+end
+subsection Domain
+  set Cells = 20, 20
+end
+subsection Boundary conditions
+  set Displacement = left: 0, 0; right: sqrt(0.5 - t), 0
+end
+subsection Time
+  set End time  = 1
+  set Time step = 0.1
+end
+"""
+
+# What conducts less the warmer it is, and nothing at 0.5, which the left side has at t = 0.5.
+CONDUCTS_NO_MORE = PLATE.replace("left: 0;", "left: t;") + """
+subsection Material
+  set Conductivity = 1 - 2*T
+end
+subsection Time
+  set End time = 2
+end
+"""
+
+STEADY = PLATE.replace("left: 0;", "left: 1;").replace("Models = peridynamics", "Models = finite elements, peridynamics") + """
+subsection Time
+  set Steady = true
+end
+"""
+
+# Pushed down so fast that it folds.
+FOLDED = BODY + """
+end
+subsection Domain
+  set Cells = 20, 20
+end
+subsection Initial and source
+  set Body force = 0, -50*if(t < 0.2, 1, 0)
+end
+subsection Boundary conditions
+  set Displacement = left: 0, 0
+end
+subsection Elasticity
+  set Solver     = dynamics
+  set Kinematics = full
+end
+subsection Time
+  set End time = 1
+end
+"""
+
+# The support jumps by a hundredth of the body.
+JUMPING = FOLDED.replace("set Body force = 0, -50*if(t < 0.2, 1, 0)", "").replace("left: 0, 0", "left: if(t < 0.3, 0, 0.01), 0")
+
+
 def step_of(run, model="peridynamics"):
     """The mean length of the steps."""
     guard = run.summary["guard"]
@@ -306,6 +363,51 @@ def check_told(notes, words, what):
     check(len(notes) == len(words) and all(word in note for word, note in zip(words, notes)), f"{what}: {notes}")
 
 
+def check_told_of(what, run, monitor, words, first=0, last=math.inf):
+    """The run has ended between two times, and says so in its summary; returns the guard."""
+    check(run.summary["status"] == "diverged", f"{what}: {run.summary['status']}")
+    guard = run.summary.get("guard", {})
+    check(guard.get("monitor") == monitor, f"{what}: {guard}, {run.stderr}")
+    for word in words:
+        check(word in run.stderr, f"{what}: {word!r} is not in {run.stderr}")
+    check(first <= guard.get("time", -1) <= last, f"{what}: {guard}")
+    return guard
+
+
+def told():
+    # a formula that fails on one process only, in the load steps of a body at rest
+    messages = [run_scene(PULL_ENDS, {"Output/Fields": "none", **more}, ranks, expect_error=True)
+                for more, ranks in (({}, 1), ({}, 2), ({"Models": "peridynamics"}, 2))]
+    for run in messages:
+        check_told_of("pull without a value", run, "finite values", ["'Displacement'", "sqrt(0.5 - t)", "t = 0.6"], 0.59, 0.61)
+    check(messages[0].stderr == messages[1].stderr, f"{messages[0].stderr} on two processes: {messages[1].stderr}")
+    # a material that is none any more, with and without results before that
+    for model in ("finite elements", "peridynamics"):
+        for more in ({}, {"Output/Write at": "0.2"}, {"Time/Stepper": "sdirk2"}):
+            run = run_scene(CONDUCTS_NO_MORE, {"Models": model, "Output/Fields": "none", **more}, expect_error=True)
+            guard = check_told_of(f"conducts no more, {model}", run, "formulas", [f"{model}, t = 0.", "'Conductivity'", "T = 0.5", "at (0"], 0.45, 0.7)
+            check(guard["value"] is not None and -0.2 < guard["value"] <= 0 and guard["place"][0] < 0.05, f"conducts no more, {model}: {guard}")
+    run = run_scene(CONDUCTS_NO_MORE, {"Material/Conductivity": "sqrt(0.5 - T)", "Output/Fields": "none"}, expect_error=True)
+    check_told_of("root of the temperature", run, "formulas", ["peridynamics, t = 0.", "sqrt(0.5 - T)", "T = 0.5"], 0.45, 0.7)
+    check("t = 0," not in run.stderr, f"a time that is none: {run.stderr}")
+    # a solver that does not converge, behind another run
+    run = run_scene(STEADY)
+    again = ["run", os.path.join(os.path.dirname(run.folder), "scene.prm"), "-s", f"Output directory={run.folder}"]
+    for entry, is_mistake in (("Material/Conductivity=x - 0.5", True), ("Material/Conductivity=if((x-0.5)^2+(y-0.5)^2<0.04,1e12,1e-12)", False)):
+        failed = Run(run.folder, *run_perideal(again + ["-s", entry, "-s", "Solver/Direct solver up to=10"]))
+        check(failed.returncode == 1, f"{entry}: {failed.returncode}")
+        check(failed.summary["status"] == ("complete" if is_mistake else "diverged"), f"{entry}: {failed.summary['status']}")
+    check_told_of("steady contrast", failed, "solver", ["peridynamics: The linear solver", "1e+12"])
+    # the place of the message
+    run = run_scene(FOLDED, {"Output/Fields": "none"}, expect_error=True)
+    guard = check_told_of("folded", run, "inversion", ["worst at (" + ", ".join(f"{x:g}" for x in run.summary["guard"]["place"]) + ")"])
+    check(len(guard["place"]) == 2, f"folded: {guard}")
+    # a jump whose work is none
+    for stepper, step in (("verlet", "0.003"), ("newmark", "0.003")):
+        run = run_scene(JUMPING, {"Output/Fields": "none", "Time/Stepper": stepper, "Time/Time step": step})
+        check(run.summary["status"] == "complete", f"jump with {stepper}: {run.summary['status']}")
+
+
 def share():
     """Of the wall time; printed, since timings are no tests. That the guards looked is one."""
     rows = []
@@ -320,8 +422,8 @@ def share():
 
 
 def main():
-    for part in sys.argv[1:] or ("stopped", "actions", "share"):
-        {"stopped": stopped, "actions": actions, "share": share}[part]()
+    for part in sys.argv[1:] or ("stopped", "actions", "share", "told"):
+        {"stopped": stopped, "actions": actions, "share": share, "told": told}[part]()
     finish()
 
 
