@@ -120,11 +120,12 @@ namespace PeriDeal
   std::vector<double> Attempts<dim>::first_counts() const
   {
     constexpr double    most = dim == 3 ? 1e4 : 1e5, longest_cell = 32.; // times as long as wide
-    std::vector<double> shares, n(dim);
+    std::vector<double> shares(dim), n(dim);
     for (unsigned int d = 0; d < dim; ++d)
-      shares.push_back((box.upper[d] - box.lower[d]) / longest);
-    for (unsigned int d = 0; d < dim; ++d)
-      n[d] = std::max(2., std::max(fewest_cells<dim>, 0.25 * needs.fineness) * shares[d]);
+      {
+        shares[d] = (box.upper[d] - box.lower[d]) / longest;
+        n[d]      = std::max(2., std::max(fewest_cells<dim>, 0.25 * needs.fineness) * shares[d]);
+      }
     if (product(n) <= most)
       return n;
     // What varies across a thin body does not need short cells along it.
@@ -417,8 +418,8 @@ namespace PeriDeal
           return "The cracks run along the axes: quadratic finite elements with the cracks on faces "
                  "of cells, fine at their ends.";
         case Family::pairs:
-          return std::string("The cracks ") +
-                 (scene.cracks.change() ? "grow" : "lie across cells") +
+          return std::string(scene.cracks.change() ? "The cracks grow" :
+                                                     "The cracks lie across cells") +
                  ": finite elements, fine along the cracks, with the pairs of nodes that they do not "
                  "part in the cells that they cut.";
         case Family::zone:
@@ -440,8 +441,7 @@ namespace PeriDeal
     {
       double     narrowest = std::numeric_limits<double>::infinity();
       const auto see       = [&](const double distance) {
-        const double touching = 1e-6 * longest;
-        if (distance > touching)
+        if (distance > 1e-6 * longest) // else it touches
           narrowest = std::min(narrowest, distance);
       };
       for (const auto &crack : box.cracks)
