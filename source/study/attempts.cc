@@ -340,13 +340,12 @@ namespace PeriDeal
   template <int dim>
   bool Attempts<dim>::probes_at_ends() const
   {
-    constexpr double near = 0.05;
     if (scene.accuracy.measure != AccuracyMeasure::probes || box.dim() == 1)
       return false;
     for (const auto &crack : box.cracks)
       for (const std::vector<double> &end : crack)
         for (const std::vector<double> &probe : scene.output.probes)
-          if (is_inside(box, end) && distance(probe, {end, end}) < near * longest)
+          if (is_inside(box, end) && distance(probe, {end, end}) < 0.05 * longest)
             return true;
     return false;
   }
