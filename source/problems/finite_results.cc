@@ -3,7 +3,7 @@
 
 #include "finite_results.h"
 
-#include <perideal/base/user_error.h>
+#include <perideal/solvers/step_tools.h>
 
 #include <cmath>
 #include <sstream>
@@ -22,7 +22,7 @@ namespace PeriDeal
         std::ostringstream message;
         message << "The run ends since a result of model '" << model << "' is not finite: the "
                 << name << " at t = " << t << " is " << value << ". " << remedy;
-        AssertThrow(false, UserError(message.str()));
+        throw not_finite(message.str(), t); // which summary.json has as a guard
       }
   }
 } // namespace PeriDeal

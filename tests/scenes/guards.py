@@ -398,6 +398,8 @@ def told():
         check(failed.returncode == 1, f"{entry}: {failed.returncode}")
         check(failed.summary["status"] == ("complete" if is_mistake else "diverged"), f"{entry}: {failed.summary['status']}")
     check_told_of("steady contrast", failed, "solver", ["peridynamics: The linear solver", "1e+12"])
+    run = run_scene(PULL_ENDS, {"Boundary conditions/Displacement": "left: 0, 0", "Boundary conditions/Traction": "right: 1e300, 0"}, expect_error=True)
+    check_told_of("results beyond all numbers", run, "finite values", ["1e308"])
     # the place of the message
     run = run_scene(FOLDED, {"Output/Fields": "none"}, expect_error=True)
     guard = check_told_of("folded", run, "inversion", ["worst at (" + ", ".join(f"{x:g}" for x in run.summary["guard"]["place"]) + ")"])
