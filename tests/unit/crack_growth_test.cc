@@ -358,7 +358,7 @@ namespace PeriDeal
             model);
           grow(problem.op());
         }),
-        {"node at (0.6 0.5)", "'Cracks'"});
+        {"node at (0.6, 0.5)", "'Cracks'"});
     // A node between cracks has no bond upwards or downwards.
     SceneTests::expect_parts(
       message_of([] {

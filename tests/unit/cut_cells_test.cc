@@ -134,6 +134,10 @@ namespace PeriDeal
     matrix       = square_matrix();
     matrix(1, 0) = matrix(0, 1) = 0.1;
     pairs.cut_matrix(cell, not_asked, matrix);
+    EXPECT_EQ(matrix(1, 0), 0.1); // nothing is held back: the cell as it was
+    EXPECT_FALSE(pairs.pairs_are_stiffer());
+    pairs.set(through, 0.);
+    pairs.cut_matrix(cell, not_asked, matrix);
     EXPECT_EQ(matrix(1, 0), 0.);
     EXPECT_TRUE(pairs.pairs_are_stiffer());
     CutCells<2> removed(body.dofs, {false, true, -1., not_asked});

@@ -123,7 +123,7 @@ namespace PeriDeal
     EXPECT_EQ(y.local_element(4), 6.);
     EXPECT_EQ(op.diagonal().local_element(1), 4.);
     EXPECT_EQ(op.noise().local_element(1), 0.5);
-    EXPECT_EQ(op.place_of(3), "(0.25 3)");
+    EXPECT_EQ(op.place_of(3), "(0.25, 3)");
     EXPECT_EQ(op.size().unknowns, u.size());
 
     // Flows of all processes; what is prescribed stores nothing.

@@ -155,6 +155,6 @@ namespace PeriDeal
                    "0.45,0.45 ; 0.55,0.45 ; 0.55,0.45 ; 0.55,0.55 ; 0.55,0.55 ; 0.45,0.55 ; "
                    "0.45,0.55 ; 0.45,0.45"}});
     });
-    SceneTests::expect_parts(message, {"(0.5 0.5)", "isolated", "'Cracks'"});
+    SceneTests::expect_parts(message, {"(0.5, 0.5)", "isolated", "'Cracks'"});
   }
 } // namespace PeriDeal
