@@ -98,7 +98,7 @@ namespace PeriDeal
                   unit[other.side / 2] == other.side % 2)
                 worst = std::max(worst, std::abs(value - other.value->value(p, t)));
           }
-    return worst > small * (most - least);
+    return worst > 0. && worst > small * (most - least); // without any: no range
   }
 
 
