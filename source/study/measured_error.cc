@@ -65,7 +65,7 @@ namespace PeriDeal
     template <int dim>
     Sample sample_of(const Triangulation<dim> &mesh, const double n)
     {
-      constexpr double    least = 400.;
+      constexpr double    least = 200.;
       const double        cells = mesh.n_global_active_cells(), share = std::min(1., n / cells);
       const unsigned int  n_points = static_cast<unsigned int>(std::ceil(least / cells));
       std::vector<double> own;
