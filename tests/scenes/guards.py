@@ -95,6 +95,24 @@ subsection Material
   set Density       = 1.0
 """
 
+
+
+def held_motion(kinematics, end_time):
+    """The motion of a body that is held on the left."""
+    return f"""
+subsection Boundary conditions
+  set Displacement = left: 0, 0
+end
+subsection Elasticity
+  set Solver     = dynamics
+  set Kinematics = {kinematics}
+end
+subsection Time
+  set End time = {end_time}
+end
+"""
+
+
 # Half of a strip flies away from the half that is held.
 FLYING = BODY + """
   set Fracture energy = 0.001
@@ -106,16 +124,7 @@ end
 subsection Initial and source
   set Initial velocity = if(x > 1, 2, 0), 0
 end
-subsection Boundary conditions
-  set Displacement = left: 0, 0
-end
-subsection Elasticity
-  set Solver     = dynamics
-  set Kinematics = linear
-end
-subsection Time
-  set End time = 15
-end
+""" + held_motion("linear", 15) + """
 subsection Output
   set Write every = 1
 end
@@ -211,17 +220,7 @@ end
 subsection Initial and source
   set Body force = 0, -50*if(t < 0.2, 1, 0)
 end
-subsection Boundary conditions
-  set Displacement = left: 0, 0
-end
-subsection Elasticity
-  set Solver     = dynamics
-  set Kinematics = full
-end
-subsection Time
-  set End time = 1
-end
-"""
+""" + held_motion("full", 1)
 
 # The support jumps by a hundredth of the body.
 JUMPING = FOLDED.replace("set Body force = 0, -50*if(t < 0.2, 1, 0)", "").replace("left: 0, 0", "left: if(t < 0.3, 0, 0.01), 0")
