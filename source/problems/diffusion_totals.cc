@@ -42,7 +42,54 @@ namespace PeriDeal
       return std::max(Utilities::MPI::sum(apart, communicator),
                       least * Utilities::MPI::sum(all, communicator));
     }
+    /** Since the start; for the guards, too. @param imbalance the name of its row */
+    template <int dim>
+    nlohmann::ordered_json add_since_start(DiffusionProblem<dim> &problem,
+                                           const Balance         &balance,
+                                           const std::string     &imbalance,
+                                           const double           t,
+                                           const RunContext      &context)
+    {
+      const std::string      &quantity = names_of(problem.scene.general.physics).quantity;
+      const CumulativeBalance since_start =
+        problem.ledger.balance(problem.stepper->entered(),
+                               balance.content,
+                               problem.dofs().get_communicator());
+      problem.ledger.keep(since_start,
+                          heat_apart(problem.op(), problem.solution, problem.ledger.at_start()),
+                          balance.throughput(),
+                          t);
+      const auto row = [&](const std::string &name, const double value) {
+        context.record.add_row(problem.name(), name, value, t);
+      };
+      row(quantity + " entered since start", since_start.entered);
+      row(quantity + " stored since start", since_start.stored);
+      row(imbalance, since_start.imbalance());
+      return {{"entered", since_start.entered},
+              {"stored", since_start.stored},
+              {"imbalance", since_start.imbalance()},
+              {"scale", problem.ledger.most_moved()}};
+    }
   } // namespace
+
+
+  template <int dim>
+  void add_heat_totals_of_solid(DiffusionProblem<dim> &heat,
+                                const double           t,
+                                const RunContext      &context)
+  {
+    if (!heat.stepper)
+      return;
+    Balance balance;
+    with_formulas(heat.dofs().get_communicator(),
+                  [&] { balance = heat.op().balance(heat.solution, t, false); });
+    const std::string &flow = names_of(heat.scene.general.physics).flow;
+    for (const auto &[side, value] : balance.sides)
+      context.record.add_row(heat.name(), flow + " through " + side, value, t);
+    context.record.balances[heat.name()]["heat balance"] = {
+      {"throughput", balance.throughput()},
+      {"cumulative", add_since_start(heat, balance, "heat imbalance since start", t, context)}};
+  }
 
 
   template <int dim>
@@ -81,23 +128,7 @@ namespace PeriDeal
     row("throughput", balance.throughput());
     row("imbalance", balance.imbalance());
     if (problem.stepper)
-      {
-        const CumulativeBalance since_start =
-          problem.ledger.balance(problem.stepper->entered(),
-                                 balance.content,
-                                 problem.dofs().get_communicator());
-        problem.ledger.keep(since_start,
-                            heat_apart(problem.op(), problem.solution, problem.ledger.at_start()),
-                            balance.throughput(),
-                            t);
-        row(names.quantity + " entered since start", since_start.entered);
-        row(names.quantity + " stored since start", since_start.stored);
-        row("cumulative imbalance", since_start.imbalance());
-        cumulative = {{"entered", since_start.entered},
-                      {"stored", since_start.stored},
-                      {"imbalance", since_start.imbalance()},
-                      {"scale", problem.ledger.most_moved()}};
-      }
+      cumulative = add_since_start(problem, balance, "cumulative imbalance", t, context);
     for (std::size_t crack = 0; crack < balance.cracks.size(); ++crack)
       row(names.flow + " through crack " + std::to_string(crack + 1), balance.cracks[crack]);
     record.balances[problem.name()] = {
@@ -115,6 +146,9 @@ namespace PeriDeal
   }
 
 
+  template void add_heat_totals_of_solid(DiffusionProblem<1> &, const double, const RunContext &);
+  template void add_heat_totals_of_solid(DiffusionProblem<2> &, const double, const RunContext &);
+  template void add_heat_totals_of_solid(DiffusionProblem<3> &, const double, const RunContext &);
   template void add_diffusion_totals(DiffusionProblem<1> &, const double, const RunContext &);
   template void add_diffusion_totals(DiffusionProblem<2> &, const double, const RunContext &);
   template void add_diffusion_totals(DiffusionProblem<3> &, const double, const RunContext &);

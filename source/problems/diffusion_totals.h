@@ -16,4 +16,13 @@ namespace PeriDeal
   void add_diffusion_totals(DiffusionProblem<dim> &problem,
                             const double           t,
                             const RunContext      &context);
+
+  /**
+   * Of the heat that a solid has its temperature from: what flows through the sides, and what has
+   * entered and is stored since the start, beside the solid's own rows. Collective.
+   */
+  template <int dim>
+  void add_heat_totals_of_solid(DiffusionProblem<dim> &heat,
+                                const double           t,
+                                const RunContext      &context);
 } // namespace PeriDeal

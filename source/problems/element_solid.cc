@@ -153,6 +153,12 @@ namespace PeriDeal
         list.add_stress(stress);
         list.add_strain(strain);
         list.add_temperature(elements->temperature_change(), scene);
+        if (const std::vector<double> damage = elements->damage(); !damage.empty())
+          {
+            list.add("damage", [&](const unsigned int i) { return damage[i]; });
+            list.add("zone",
+                     [&](const unsigned int i) { return elements->bonds().in_zone(i) ? 1. : 0.; });
+          }
         return list.take();
       }
 

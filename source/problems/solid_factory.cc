@@ -45,7 +45,7 @@ namespace PeriDeal
       material.refuse(
         none && (material.fracture_energy || material.critical_stretch),
         material.fracture_energy ? "Fracture energy" : "Critical stretch",
-        "has no effect: finite elements do not break. Add 'peridynamics' to 'Models', or leave the entry out.");
+        "has no effect: finite elements do not break. Add 'peridynamics' or 'coupled' to 'Models', or leave the entry out.");
       if (bonds)
         return;
       pd.refuse(

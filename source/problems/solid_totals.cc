@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "diffusion_totals.h"
 #include "finite_results.h"
 #include "solid_sides.h"
 #include "solid_summary.h"
@@ -120,7 +121,10 @@ namespace PeriDeal
           }
     stress["von mises"]         = von_mises(mean);
     nlohmann::ordered_json ends = nlohmann::ordered_json::object();
-    for (const StressIntensity &end : problem.stress_intensities(t))
+    // Where bonds have broken cracks end elsewhere.
+    const bool grown = problem.op().n_broken_bonds() > 0;
+    for (const StressIntensity &end :
+         grown ? std::vector<StressIntensity>() : problem.stress_intensities(t))
       {
         row("J-integral at " + end.name, end.j);
         row("stress intensity I at " + end.name, end.mode_1);
@@ -146,6 +150,8 @@ namespace PeriDeal
       }
     if (!ends.empty())
       context.record.balances[problem.name()]["stress intensity"] = ends;
+    if (problem.heat != nullptr)
+      add_heat_totals_of_solid(*problem.heat, t, context);
   }
 
 

@@ -25,7 +25,14 @@ namespace PeriDeal
       "",
       "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; or a formula of "
       "x, y, z, in the zone where it is greater than 0. `adaptive`: as `cracks: 1`, on a mesh that follows the cracks and the solution as the run goes "
-      "on (`Coarsening` in section `Domain` says how large its cells may be).");
+      "on (`Coarsening` in section `Domain` says how large its cells may be). `follow`, with elasticity and bonds that break: one horizon around cracks, broken bonds, "
+      "and wherever the body is stretched by more than `Zone share` of the critical stretch.");
+    declare(
+      "Zone share",
+      EntryType::number,
+      "0.5",
+      "1",
+      "With `Zone = follow`: bonds appear where the largest principal strain of a cell, thermal strain taken off, reaches this share of the critical stretch.");
     declare(
       "Adaptive tolerance",
       EntryType::number,
@@ -58,6 +65,13 @@ namespace PeriDeal
     adaptive_tolerance = positive_number("Adaptive tolerance");
     if (is_given("Adaptive tolerance") && trimmed(text("Zone")) != "adaptive")
       error("Adaptive tolerance", "is for 'Zone = adaptive'; 'Zone' is '" + text("Zone") + "'.");
+    zone_share = positive_number("Zone share");
+    refuse(zone_share > 0.9,
+           "Zone share",
+           "found " + text("Zone share") +
+             ", needs more than 0 and at most 0.9: bonds have to be there before they break.");
+    if (is_given("Zone share") && trimmed(text("Zone")) != "follow")
+      error("Zone share", "is for 'Zone = follow'; 'Zone' is '" + text("Zone") + "'.");
     refuse(overlap < 0., "Overlap", "found " + text("Overlap") + ", needs 0 or more horizons.");
     parse_zone();
     if (is_adaptive() && !exchanges())
@@ -90,6 +104,8 @@ namespace PeriDeal
       zone = ZoneKind::everywhere;
     else if (given == "adaptive")
       zone = ZoneKind::adaptive;
+    else if (given == "follow")
+      zone = ZoneKind::follow;
     else if (colon != std::string::npos && head == "cracks")
       {
         zone  = ZoneKind::near_cracks;
@@ -100,7 +116,11 @@ namespace PeriDeal
       error(
         "Zone",
         "found '" + given +
-          "', needs 'cracks: c' with a number of horizons c, 'everywhere', 'adaptive', or a formula of x, y and z.");
+          "', needs 'cracks: c' with a number of horizons c, 'everywhere', 'adaptive', 'follow', or a formula of x, y and z.");
+    else if (const std::string near =
+               nearest_name(given, std::vector<std::string>{"everywhere", "adaptive", "follow"});
+             !near.empty())
+      error("Zone", "found '" + given + "'; did you mean '" + near + "'?");
     else
       {
         zone    = ZoneKind::formula;

@@ -214,7 +214,13 @@ namespace PeriDeal
   template <int dim>
   bool Zone<dim>::follows_cracks() const
   {
-    return kind == ZoneKind::near_cracks || kind == ZoneKind::adaptive;
+    return kind == ZoneKind::near_cracks || kind == ZoneKind::adaptive || kind == ZoneKind::follow;
+  }
+
+  template <int dim>
+  bool Zone<dim>::follows_stretches() const
+  {
+    return kind == ZoneKind::follow;
   }
 
   template <int dim>

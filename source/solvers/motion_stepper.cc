@@ -190,8 +190,9 @@ namespace PeriDeal
       return;
     // Between two steps: within one, half a step of their force would be lost and with it energy of
     // order dt.
-    const bool grown = op.grow_cracks(u, t);
-    if (op.break_bonds(u, t) == 0 && !grown)
+    const bool grown   = op.grow_cracks(u, t);
+    const bool widened = op.widen_zone(u);
+    if (op.break_bonds(u, t) == 0 && !grown && !widened)
       return;
     const double before = account.kept_back(unbalanced);
     operator_changed();

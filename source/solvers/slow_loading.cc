@@ -112,7 +112,10 @@ namespace PeriDeal
       return;
     if (!breaking.is_open)
       breaking = {t, op.energy(u), false, true};
-    for (bool grown = op.grow_cracks(u, t); grown || op.break_bonds(u, t, share) > 0; grown = false)
+    // Nodes join a zone until none does; only then bonds break.
+    for (bool grown = op.grow_cracks(u, t);
+         grown || op.widen_zone(u) || op.break_bonds(u, t, share) > 0;
+         grown = false)
       {
         breaking.any = true;
         solver->operator_changed();

@@ -22,11 +22,11 @@ YOUNG, ENERGY = 200, 0.01
 BROKEN, DISSIPATED = "broken bonds", "energy dissipated"
 
 
-def history(run, *quantities):
+def history(run, *quantities, model=PD):
     """Rows (time, value of each quantity) of all load steps."""
     times = {}
     for row in run.totals:
-        if row["model"] == PD:
+        if row["model"] == model:
             times.setdefault(row["time"], {})[row["quantity"]] = row["value"]
     return [(t, *(times[t][q] for q in quantities)) for t in sorted(times)]
 

@@ -8,7 +8,8 @@
     resume.py signals                               stopped by SIGTERM and SIGKILL at random moments, on 1 and 2 processes (long)
 
 On the same number of processes all is the same to the last bit, also with solvers, whose preconditioner is made for what it was made for; there 1e-12 of
-the largest value of a column is allowed (5e-14 seen by hand: `newmark` beside a growing crack, which is cut out of the matrix in one go).
+the largest value of a column is allowed (5e-14 seen by hand: `newmark` beside a growing crack, which is cut out of the matrix in one go; a zone that follows
+cracks is put into the matrix anew).
 """
 
 import csv
@@ -44,8 +45,10 @@ SCENES = {
                ("coupling/adaptive_zone.prm", {"Domain/Cells": "24, 24"}, 0)],
     "motion": [("fracture/branching_crack.prm", {"Domain/Cells": "60, 24"}, 0),
                ("fracture/branching_crack.prm", {"Domain/Cells": "61, 25", "Domain/Nodes": "cell centers", "Elasticity/Kinematics": "full"}, 0),
+               ("fracture/branching_crack.prm", {"Models": "coupled", "Domain/Cells": "60, 25", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"}, IMPLICIT),
                ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],
-    "loading": [("fracture/centre_crack.prm", {"Domain/Cells": "30, 60", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/thermal_stress.prm", {}, IMPLICIT),
+    "loading": [("fracture/following_zone.prm", {"Domain/Cells": "25, 37", "Solver/Tolerance": "1e-13"}, IMPLICIT),
+                ("fracture/centre_crack.prm", {"Domain/Cells": "30, 60", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/thermal_stress.prm", {}, IMPLICIT),
                 ("elasticity/growing_crack.prm", {"Domain/Cells": "66, 11", "Solver/Tolerance": "1e-13"}, IMPLICIT),
                 ("fracture/branching_crack.prm", {"Domain/Cells": "60, 24", "Time/Stepper": "newmark", "Time/Time step": "2e-7", "Solver/Tolerance": "1e-13"}, IMPLICIT)],
 }

@@ -22,6 +22,7 @@ namespace PeriDeal
     near_cracks,
     everywhere,
     adaptive,
+    follow,
     formula
   };
 
@@ -39,7 +40,8 @@ namespace PeriDeal
     double         overlap     = 0.; // in horizons
     bool           certificate = true;
     double         adaptive_tolerance =
-      0.02; // of the zone `adaptive`: relative error of the flux, by recovery
+      0.02;                  // of the zone `adaptive`: relative error of the flux, by recovery
+    double zone_share = 0.5; // of the zone `follow`: of the critical stretch
 
     /**
      * Throws UserError for a zone that is none, a width or an overlap below 0, contradicting
@@ -67,6 +69,12 @@ namespace PeriDeal
     bool is_adaptive() const
     {
       return zone == ZoneKind::adaptive;
+    }
+
+    /** The zone grows around what is stretched and what has broken. */
+    bool follows_stretches() const
+    {
+      return zone == ZoneKind::follow;
     }
 
     /** The entries `Zone` and `Scheme` as given. */

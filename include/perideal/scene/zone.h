@@ -61,6 +61,9 @@ namespace PeriDeal
     /** The zone changes with the cracks. */
     bool follows_cracks() const;
 
+    /** All of the body may join the zone. */
+    bool follows_stretches() const;
+
     /** Distance from a crack that is still in the zone. */
     double width() const;
 

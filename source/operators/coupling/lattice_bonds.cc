@@ -71,6 +71,19 @@ namespace PeriDeal
               passages.push_back(passage);
             }
         }
+    for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell; ++v)
+      for (unsigned int w = v + 1; w < GeometryInfo<dim>::vertices_per_cell; ++w)
+        {
+          Site start{}, between{};
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              start[d]   = (v >> d) & 1;
+              between[d] = static_cast<int>((w >> d) & 1) - start[d];
+            }
+          for (unsigned int k = 0; k < offsets.size(); ++k)
+            if (offsets[k].site == between)
+              vertex_pairs.emplace_back(start, k);
+        }
   }
 
 
@@ -113,6 +126,8 @@ namespace PeriDeal
     Zone<dim>                at_end  = zone;
     at_end.set_cracks(history.pieces(last));
     zone.set_cracks(history.pieces(history.representative(0.)));
+    // What diffuses takes broken bonds out of its cells, and needs no more bonds for it.
+    const bool              follows = zone.follows_stretches() && body.deforms;
     const std::vector<bool> hanging = hanging_nodes(nodes);
     std::vector<bool>       candidates(nodes.n_local());
     double                  n_in_zone = 0.;
@@ -120,11 +135,12 @@ namespace PeriDeal
       {
         // Beside larger cells a node has more volume than a cell of the lattice.
         candidates[i] = !hanging[i] && nodes.volume(i) < lattice.cell_volume() * (1. + 1e-9) &&
-                        at_end.contains(nodes.position(i));
+                        (follows || at_end.contains(nodes.position(i)));
         n_in_zone += i < nodes.n_owned() && candidates[i];
       }
-    // A mesh that follows the cracks may have no fine cell before the first of them.
-    if (!body.coupling.is_adaptive())
+    // A mesh that follows the cracks may have no fine cell before the first of them; a body without
+    // cracks has no bonds before it is stretched.
+    if (!body.coupling.is_adaptive() && !zone.follows_stretches())
       throw_if_zone_empty(n_in_zone, nodes.communicator());
     set_table_around(candidates);
     stays = true;
@@ -206,9 +222,10 @@ namespace PeriDeal
     neighbors.clear();
     if (stays)
       {
-        for_each_bond(node, [&](const unsigned int neighbor, const auto &, const double) {
-          neighbors.push_back(neighbor);
-        });
+        for_each_bond(node,
+                      [&](const unsigned int neighbor, const auto &, const double, const bool) {
+                        neighbors.push_back(neighbor);
+                      });
         return;
       }
     const Site      site = site_of(node);
@@ -268,6 +285,70 @@ namespace PeriDeal
 
 
   template <int dim>
+  void LatticeBonds<dim>::mark_broken(const unsigned int a, const unsigned int b)
+  {
+    const Site at_a = site_of(a), at_b = site_of(b);
+    Site       forth{}, back{};
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        forth[d] = at_b[d] - at_a[d];
+        back[d]  = -forth[d];
+      }
+    if (broken.empty())
+      broken.resize(sites.size() * offsets.size());
+    for (const Offset &offset : offsets)
+      if (offset.site == forth || offset.site == back)
+        broken[number_of(*at(offset.site == forth ? at_a : at_b), offset)] = true;
+  }
+
+
+  template <int dim>
+  bool LatticeBonds<dim>::is_parted(const Site &cell) const
+  {
+    if (!any_broken())
+      return false;
+    for (const auto &[start, k] : vertex_pairs)
+      if (const SiteData *data = at(cell + start);
+          data != nullptr && broken[number_of(*data, offsets[k])])
+        return true;
+    return false;
+  }
+
+
+  template <int dim>
+  void LatticeBonds<dim>::find_joining(const Point<dim>          &place,
+                                       const double               distance,
+                                       std::vector<unsigned int> &list) const
+  {
+    if (sites.empty())
+      return;
+    const Lattice<dim> &lattice = *families.nodes().lattice();
+    const double        within  = distance * (1. + 1e-9);
+    Site                first, last;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double middle = (place[d] - lattice.position(Site{})[d]) / lattice.spacing[d],
+                     half   = within / lattice.spacing[d];
+        first[d]            = std::max<int>(std::ceil(middle - half), corner[d]);
+        last[d]             = std::min<int>(std::floor(middle + half), corner[d] + extent[d] - 1);
+      }
+    for_each_site(first, last, [&](const Site &site) {
+      const SiteData &data = *at(site);
+      if (data.may_join && !data.in_zone && lattice.position(site).distance(place) <= within)
+        list.push_back(data.node);
+    });
+  }
+
+
+  template <int dim>
+  void LatticeBonds<dim>::join_nodes(const std::vector<unsigned int> &list)
+  {
+    for (const unsigned int node : list)
+      own(site_of(node)).in_zone = true;
+  }
+
+
+  template <int dim>
   bool LatticeBonds<dim>::is_of_lattice(
     const typename DoFHandler<dim>::active_cell_iterator &cell) const
   {
@@ -294,7 +375,7 @@ namespace PeriDeal
   std::size_t LatticeBonds<dim>::memory_consumption() const
   {
     return families.memory_consumption() + sites.capacity() * sizeof(SiteData) +
-           passages.capacity() * sizeof(Passage);
+           broken.capacity() / 8 + passages.capacity() * sizeof(Passage);
   }
 
 

@@ -30,13 +30,14 @@ namespace PeriDeal
   {
     list.clear();
     const bool near_crack = bonds.families.near_crack(node);
-    bonds.for_each_bond(node,
-                        [&](const unsigned int neighbor, const auto &, const double strength) {
-                          Bond bond{neighbor, strength, strength, false};
-                          if (near_crack)
-                            bond.weight *= law.kept_fraction(node, neighbor, bond.cut);
-                          list.push_back(bond);
-                        });
+    bonds.for_each_bond(
+      node,
+      [&](const unsigned int neighbor, const auto &, const double strength, const bool broken) {
+        Bond bond{neighbor, broken ? 0. : strength, strength, broken};
+        if (near_crack && !broken)
+          bond.weight *= law.kept_fraction(node, neighbor, bond.cut);
+        list.push_back(bond);
+      });
   }
 
 
@@ -78,6 +79,24 @@ namespace PeriDeal
       for (unsigned int j = 0; j < n; ++j)
         stiffness(i, j) -= taken[std::max(i, j) * n + std::min(i, j)];
     return true;
+  }
+
+
+  template <int dim, typename Law>
+  bool LatticeExchange<dim, Law>::finish_cell(const Cell &cell, FullMatrix<double> &stiffness) const
+  {
+    if (!parts_cell(cell))
+      return false;
+    stiffness = 0.;
+    return true;
+  }
+
+
+  template <int dim, typename Law>
+  bool LatticeExchange<dim, Law>::parts_cell(const Cell &cell) const
+  {
+    return bonds.any_broken() && bonds.is_of_lattice(cell) &&
+           bonds.is_parted(bonds.families.nodes().lattice()->index(cell->vertex(0)));
   }
 
 

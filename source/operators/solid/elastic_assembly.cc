@@ -23,61 +23,6 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  void ElasticElements<dim>::assemble_cell(CellData &data) const
-  {
-    const unsigned int n        = data.indices.size();
-    const Vector      &at_nodes = this->temperature_change();
-    data.stiffness              = 0.;
-    data.thermal                = 0.;
-    data.mass                   = 0.;
-    data.diagonal               = 0.;
-    data.volume                 = 0.;
-    data.thermal_energy         = 0.;
-    for (const unsigned int q : data.values.quadrature_point_indices())
-      {
-        const Point<dim> &p      = data.values.quadrature_point(q);
-        const double      JxW    = data.values.JxW(q);
-        const Moduli      moduli = body.material.moduli(p);
-        // A bar has E alone.
-        const double lambda = dim == 1 ? 0. : lambda_of(moduli, dim, body.elasticity.plane),
-                     mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear;
-        double change       = 0.; // of the temperature
-        if (at_nodes.size() == 0)
-          change = body.elasticity.temperature_change.value(p);
-        else
-          for (unsigned int a = 0; a < n; ++a)
-            change += at_nodes(data.indices[a]) * data.values.shape_value(a, q);
-        const double strain   = this->thermal_strain(p, change);
-        const double pressure = (dim * lambda + 2. * mu) * strain;
-        const double density  = body.elasticity.is_static() ? 1. : body.material.density.value(p);
-        data.thermal_energy += 0.5 * dim * pressure * strain * JxW;
-        for (unsigned int a = 0; a < n; ++a)
-          {
-            const Tensor<1, dim> &ga = data.values.shape_grad(a, q);
-            data.volume(a) += data.values.shape_value(a, q) * JxW;
-            data.mass(a) += density * data.values.shape_value(a, q) * JxW;
-            data.diagonal(a) +=
-              density * data.values.shape_value(a, q) * data.values.shape_value(a, q) * JxW;
-            for (unsigned int d = 0; d < dim; ++d)
-              data.thermal(dim * a + d) += pressure * ga[d] * JxW;
-            for (unsigned int b = 0; b < n; ++b)
-              {
-                const Tensor<1, dim> &gb      = data.values.shape_grad(b, q);
-                const double          product = mu * (ga * gb) * JxW;
-                for (unsigned int d = 0; d < dim; ++d)
-                  {
-                    data.stiffness(dim * a + d, dim * b + d) += product;
-                    for (unsigned int e = 0; e < dim; ++e)
-                      data.stiffness(dim * a + d, dim * b + e) +=
-                        (lambda * ga[d] * gb[e] + mu * ga[e] * gb[d]) * JxW;
-                  }
-              }
-          }
-      }
-  }
-
-
-  template <int dim>
   void ElasticElements<dim>::change_cell(const Cell &cell, CellData &data) const
   {
     if (zone_bonds && zone_bonds->leave_remainder(cell, data.stiffness))
@@ -158,8 +103,8 @@ namespace PeriDeal
   {
     cell_data                                 = std::make_unique<CellData>(dofs.get_fe());
     TrilinosWrappers::SparsityPattern pattern = element_pattern();
-    if (zone_bonds)
-      zone_bonds->add_pattern(pattern);
+    if (zone_bonds && !breaking)
+      zone_bonds->add_pattern(pattern, true);
     pattern.compress();
     stiffness.reinit(pattern);
     if (scales_beside_cracks())
@@ -178,7 +123,9 @@ namespace PeriDeal
       for (unsigned int i = 0; i < of_cell.indices.size(); ++i)
         volumes(of_cell.indices[i]) += of_cell.volume(i);
     });
-    if (zone_bonds)
+    if (breaking)
+      set_all_bonds();
+    else if (zone_bonds)
       n_bonds = zone_bonds->add_to(stiffness, crack_factors);
     finish_thermal(energy);
     stiffness.compress(VectorOperation::add);
@@ -198,6 +145,19 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** Nodes that nothing holds any more have a diagonal like others. */
+    void hold_loose(Vector &diagonal)
+    {
+      const double largest = diagonal.linfty_norm();
+      for (double &value : diagonal)
+        if (!(value > 1e-13 * largest))
+          value = largest;
+    }
+  } // namespace
+
+
   template <int dim>
   void ElasticElements<dim>::find_diagonal()
   {
@@ -205,8 +165,13 @@ namespace PeriDeal
       if (column == unknowns->local_to_global(i))
         stiffness_diagonal.local_element(i) = value;
     });
+    if (breaking)
+      breaking->bonds.add_diagonal(stiffness_diagonal);
     conditions->mask(stiffness_diagonal, 1.);
-    throw_if_isolated();
+    if (breaking && breaking->n_broken_pairs() > 0)
+      hold_loose(stiffness_diagonal);
+    else
+      throw_if_isolated();
   }
 
 
@@ -220,12 +185,14 @@ namespace PeriDeal
         {
           cell_data->values.reinit(cell);
           cell_data->set_indices(cell);
-          assemble_cell(*cell_data);
+          cell_data->assemble(*this);
           change_cell(cell, *cell_data);
           cell_data->stiffness *= multiple;
           hanging.add_to(stiffness, cell_data->stiffness, cell_data->unknowns);
         }
-    if (zone_bonds)
+    if (breaking)
+      breaking->bonds.set_rows(of_nodes, crack_factors);
+    else if (zone_bonds)
       n_bonds += zone_bonds->add_to(stiffness, crack_factors, of_nodes, multiple);
   }
 
@@ -286,6 +253,8 @@ namespace PeriDeal
       if (zone_bonds)
         zone_bonds->apply_change(change);
     });
+    if (!parted.empty())
+      note_parted({dofs.begin_active(), dofs.end()});
     find_diagonal();
     this->keep_constant_loads();
   }
@@ -313,7 +282,20 @@ namespace PeriDeal
   void ElasticElements<dim>::finish_thermal(const double energy)
   {
     thermal_energy = Utilities::MPI::sum(energy, dofs.get_communicator());
-    if (zone_bonds && any_thermal())
+    if (breaking && any_thermal())
+      {
+        std::vector<double> strains(positions.size());
+        for (unsigned int i = 0; i < strains.size(); ++i)
+          strains[i] = this->thermal_strain_at(i);
+        breaking->set_thermal(std::move(strains));
+        thermal_energy +=
+          Utilities::MPI::sum(breaking->bonds.add_thermal(thermal_loads,
+                                                          breaking->bonds.nodes(),
+                                                          breaking->thermal_strains(),
+                                                          1.),
+                              dofs.get_communicator());
+      }
+    else if (zone_bonds && any_thermal())
       thermal_energy +=
         Utilities::MPI::sum(zone_bonds->add_thermal(thermal_loads,
                                                     crack_factors,
@@ -440,11 +422,13 @@ namespace PeriDeal
   void ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &matrix,
                                              const bool                      with_bonds) const
   {
-    if (with_bonds)
+    if (with_bonds && !breaking)
       matrix.reinit(stiffness);
     else
       {
         TrilinosWrappers::SparsityPattern pattern = element_pattern();
+        if (with_bonds)
+          zone_bonds->add_pattern(pattern, false);
         pattern.compress();
         matrix.reinit(pattern);
       }

@@ -44,6 +44,12 @@ namespace PeriDeal
           unknowns[dim * i + d] = dim * indices[i] + d;
     }
 
+    /** What a cell has without bonds and cracks; values and indices are those of the cell. */
+    void assemble(const ElasticElements &of);
+
+    /** At a state u, whose ghosts are up to date. */
+    double energy(const Vector &u) const;
+
     dealii::FEValues<dim>      values;
     dealii::FEFaceValues<dim>  face_values;
     dealii::FullMatrix<double> stiffness;
@@ -66,7 +72,7 @@ namespace PeriDeal
         {
           cell_data->values.reinit(cell);
           cell_data->set_indices(cell);
-          assemble_cell(*cell_data);
+          cell_data->assemble(*this);
           visit(cell, *cell_data);
         }
   }

@@ -9,15 +9,18 @@
 #include <perideal/base/user_error.h>
 #include <perideal/operators/bounds/spectrum.h>
 #include <perideal/operators/parts/element_layout.h>
+#include <perideal/operators/parts/event_work.h>
 #include <perideal/operators/solid/elastic_elements.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "elastic_cell_data.h"
 #include "inversion.h"
+#include "looseness_text.h"
 
 namespace PeriDeal
 {
@@ -54,6 +57,8 @@ namespace PeriDeal
     , condition_faces(dofs, body.boundary_conditions)
     , hanging(dofs, *nodes, dim)
   {
+    if (zone_bonds && (body.material.fracture_energy || body.material.critical_stretch))
+      breaking = std::make_unique<ZoneBreaking<dim>>(zone_bonds->breakable(), dofs, body);
     find_positions();
     find_conditions();
     // Where tips cut in part, ends on sides are none.
@@ -166,26 +171,16 @@ namespace PeriDeal
       {
         const std::string fault =
           families != nullptr && i % dim == 0 ? families->fault_of(i / dim) : "";
-        if (!fault.empty())
+        const double own = stiffness_diagonal.local_element(i);
+        if (!fault.empty() || !(own > 1e-13 * largest))
           message =
-            "The node at " + this->place_of(i) + fault +
-            " Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
-        else if (const double own = stiffness_diagonal.local_element(i);
-                 own > 0. && !(own > 1e-13 * largest) && body.cracks.cracks.empty())
-          message =
-            "What holds the node at " + this->place_of(i) + " to others is " +
-            rounded_text(own / largest) +
-            " of the most that holds any, and disappears in its round-off: 'Young modulus' "
-            "or what else gives the stiffness in section 'Material' differs too much. Beyond a thousand times "
-            "hardly anything changes but that: choose values that differ less, or leave out what is so soft, as a hole.";
-        else if (!(own > 1e-13 * largest))
-          message =
-            "The node at " + this->place_of(i) +
-            " is isolated: cracks cut all cells around it, and no bond holds it. Use " +
-            (zone_bonds ?
-               "fewer cracks, or a wider 'Zone' in section 'Coupling' where only a part of the body has bonds." :
-               "'Models = coupled' with a zone around the cracks, or 'Mesh = "
-               "faces' in section 'Cracks'.");
+            fault.empty() ?
+              looseness_text(this->place_of(i),
+                             own / largest,
+                             body.cracks.cracks.empty(),
+                             zone_bonds != nullptr) :
+              "The node at " + this->place_of(i) + fault +
+                " Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
       }
     throw_on_all_if_any(dofs.get_communicator(), message);
   }
@@ -198,6 +193,8 @@ namespace PeriDeal
     for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
       row_sums[row] += std::abs(value);
     });
+    if (breaking)
+      breaking->bonds.add_row_sums(row_sums);
     for (const unsigned int i : hanging.owned())
       row_sums[i] = 0.;
     double bound = 0.;
@@ -210,8 +207,28 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    matrix.copy_from(stiffness);
-    hold_unknowns(matrix, this->held_unknowns());
+    if (!breaking)
+      {
+        matrix.copy_from(stiffness);
+        hold_unknowns(matrix, this->held_unknowns());
+        return;
+      }
+    matrix.reinit(stiffness);
+    for_each_own_cell([&](const Cell &cell, CellData &data) {
+      if (cut_by_cracks.is_cut(cell) || zone_bonds->is_parted(cell))
+        return;
+      hanging.add_to(matrix, data.stiffness, data.unknowns);
+    });
+    breaking->bonds.add_between_vertices(matrix);
+    matrix.compress(VectorOperation::add);
+    Vector loose = this->held_unknowns();
+    for_each_entry(matrix, [&](const unsigned int row, const auto column, const double value) {
+      if (column == unknowns->local_to_global(row) &&
+          !(value > 1e-13 * stiffness_diagonal.local_element(row)))
+        loose.local_element(row) = 1.;
+    });
+    loose.update_ghost_values();
+    hold_unknowns(matrix, loose);
   }
 
   template <int dim>
@@ -220,13 +237,231 @@ namespace PeriDeal
     OperatorSize size;
     size.unknowns = unknowns->size();
     size.nonzeros = stiffness.n_nonzero_elements();
-    size.bonds    = std::llround(Utilities::MPI::sum(n_bonds, dofs.get_communicator()));
-    size.memory   = stiffness.memory_consumption() + positions.capacity() * sizeof(Point<dim>);
+    size.bonds    = std::llround(
+      Utilities::MPI::sum(breaking ? breaking->bonds.n_whole() : n_bonds, dofs.get_communicator()));
+    size.memory = stiffness.memory_consumption() + positions.capacity() * sizeof(Point<dim>);
     if (zone_bonds)
       size.memory += zone_bonds->coupling().memory_consumption();
+    if (breaking)
+      size.memory += breaking->memory_consumption();
     size.form = "matrix";
     return size;
   }
+
+  template <int dim>
+  void ElasticElements<dim>::multiply(Vector &y, const Vector &x) const
+  {
+    stiffness.vmult(y, x);
+    if (breaking)
+      {
+        x.update_ghost_values();
+        breaking->bonds.add_forces(y, x);
+        x.set_ghost_state(false);
+      }
+    hanging.set(y, 0.); // the nodes they follow from have all of it
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::set_all_bonds()
+  {
+    std::vector<unsigned int> owned(nodes->locally_owned_size());
+    std::iota(owned.begin(), owned.end(), 0);
+    breaking->bonds.set_rows(owned, crack_factors);
+  }
+
+
+  template <int dim>
+  double ElasticElements<dim>::add_zone_parts(const std::vector<Cell>         &of_cells,
+                                              const std::vector<unsigned int> &rows,
+                                              const double                     multiple,
+                                              const Vector                    &u)
+  {
+    CellData  &data   = *cell_data;
+    const bool warms  = any_thermal();
+    double     energy = 0., held = 0.;
+    for (const Cell &cell : of_cells)
+      if (cell->is_locally_owned())
+        {
+          data.values.reinit(cell);
+          data.set_indices(cell);
+          data.assemble(*this);
+          change_cell(cell, data);
+          energy += data.energy(u);
+          held += data.thermal_energy;
+          data.stiffness *= multiple;
+          hanging.add_to(stiffness, data.stiffness, data.unknowns);
+          for (unsigned int i = 0; i < data.unknowns.size() && warms; ++i)
+            thermal_loads(data.unknowns[i]) += multiple * data.thermal(i);
+        }
+    const std::vector<double> &strains = breaking->thermal_strains();
+    energy += breaking->bonds.energy(u, rows, strains);
+    if (warms)
+      held += breaking->bonds.add_thermal(thermal_loads, rows, strains, multiple) / multiple;
+    thermal_energy += Utilities::MPI::sum(multiple * held, dofs.get_communicator());
+    return multiple * energy;
+  }
+
+
+  template <int dim>
+  double ElasticElements<dim>::mend_zone(const Boxes                     &boxes,
+                                         const double                     of_cells,
+                                         const std::vector<unsigned int> &rows,
+                                         const Vector                    &u,
+                                         const std::function<void()>     &make_change)
+  {
+    if (!search)
+      search = std::make_unique<CellSearch<dim>>(dofs);
+    std::vector<Cell> cells;
+    search->find(boxes, of_cells, cells);
+    double gained = add_zone_parts(cells, rows, -1., u);
+    make_change();
+    gained += add_zone_parts(cells, rows, 1., u);
+    stiffness.compress(VectorOperation::add);
+    if (any_thermal())
+      {
+        thermal_loads.compress(VectorOperation::add);
+        hanging.condense(thermal_loads);
+        this->keep_constant_loads();
+      }
+    note_parted(cells);
+    mend_diagonal(cells, rows);
+    return -Utilities::MPI::sum(gained, dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::note_parted(const std::vector<Cell> &of_cells)
+  {
+    if (breaking->n_broken_pairs() == 0)
+      return;
+    if (parted.empty())
+      parted = cut_by_cracks.flags();
+    for (const Cell &cell : of_cells)
+      parted[cell->active_cell_index()] = cut_by_cracks.is_cut(cell) || zone_bonds->is_parted(cell);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::mend_diagonal(const std::vector<Cell>         &of_cells,
+                                           const std::vector<unsigned int> &rows)
+  {
+    std::vector<unsigned int> touched = rows;
+    for (const unsigned int i : owned_unknowns<dim>(of_cells, *nodes))
+      touched.push_back(i);
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    const Vector held    = this->held_unknowns();
+    const double largest = stiffness_diagonal.linfty_norm();
+    for (const unsigned int i : touched)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const auto unknown = unknowns->local_to_global(dim * i + d);
+          double     value   = stiffness.el(unknown, unknown);
+          breaking->bonds.for_each(i, [&](const auto &bond, const Tensor<1, dim> &xi) {
+            value += bond.strength * xi[d] * xi[d];
+          });
+          const bool stands                             = value > 1e-13 * largest;
+          stiffness_diagonal.local_element(dim * i + d) = held.local_element(dim * i + d) > 0. ?
+                                                            1. :
+                                                          stands ? value :
+                                                                   largest;
+        }
+  }
+
+
+  template <int dim>
+  bool ElasticElements<dim>::join_zone_around(const std::vector<Point<dim>> &places,
+                                              const Vector                  &u)
+  {
+    const std::vector<unsigned int> joining = breaking->joining(places);
+    Boxes                           boxes;
+    for (const unsigned int i : joining)
+      boxes.emplace_back(std::vector<Point<dim>>{positions[i], positions[i]});
+    if (Utilities::MPI::sum(static_cast<double>(joining.size()), dofs.get_communicator()) == 0.)
+      return false;
+    const std::vector<unsigned int> rows = zone_bonds->nodes_near(boxes);
+    this->released_by_joining += mend_zone(boxes, zone_bonds->reach(), rows, u, [&] {
+      breaking->join(joining);
+      breaking->bonds.set_rows(rows, crack_factors);
+    });
+    return true;
+  }
+
+
+  template <int dim>
+  bool ElasticElements<dim>::widen_zone(const Vector &u)
+  {
+    if (!zone_follows_stretches())
+      return false;
+    u.update_ghost_values();
+    const std::vector<Point<dim>> places  = breaking->find_places_to_join(u);
+    const bool                    widened = !places.empty() && join_zone_around(places, u);
+    u.set_ghost_state(false);
+    return widened;
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::break_pairs(const std::vector<NodePair> &pairs,
+                                         const Vector                &u,
+                                         const double                 t)
+  {
+    u.update_ghost_values();
+    breaking->history.released +=
+      mend_zone(breaking->parted_by(pairs), 0., breaking->owned_ends(pairs), u, [&] {
+        breaking->take(pairs, t);
+      });
+    if (const auto places = breaking->find_places_to_join(u); !places.empty())
+      join_zone_around(places, u);
+    u.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  unsigned long long ElasticElements<dim>::break_bonds(const Vector &u,
+                                                       const double  t,
+                                                       const double  share)
+  {
+    if (!breaking)
+      return 0;
+    u.update_ghost_values();
+    const std::vector<NodePair> pairs = breaking->find_overstretched(u, share);
+    u.set_ghost_state(false);
+    if (!pairs.empty())
+      break_pairs(pairs, u, t);
+    return pairs.size();
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::surrogate_made() const
+  {
+    if (!breaking)
+      return;
+    n_broken_of_surrogate = breaking->n_broken_pairs();
+    breaking->keep_zone();
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::exchange_bonds(Archive                     &archive,
+                                            const NodeKeys              &keys,
+                                            const std::function<void()> &at_surrogate)
+  {
+    if (!breaking)
+      return;
+    breaking->exchange(archive, keys, n_broken_of_surrogate, [&] {
+      set_all_bonds();
+      at_surrogate();
+    });
+    if (!archive.loads())
+      return;
+    assemble();
+    this->keep_constant_loads();
+    note_parted({dofs.begin_active(), dofs.end()});
+  }
+
 
   template <int dim>
   double ElasticElements<dim>::energy(const Vector &u) const

@@ -7,6 +7,7 @@
 
 #include <perideal/operators/coupling/state_coupling.h>
 #include <perideal/operators/solid/solid_bonds_beside_elements.h>
+#include <perideal/operators/solid/zone_breaking.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,6 @@ namespace PeriDeal
   template <int dim>
   void SolidBondsBesideElements<dim>::require(const BodyParameters<dim> &body)
   {
-    const Material &material = body.material;
     body.coupling.refuse(
       body.coupling.is_adaptive(),
       "Zone",
@@ -27,10 +27,7 @@ namespace PeriDeal
       body.elasticity.has_full_kinematics(),
       "Kinematics",
       "'full' is not for 'Models = coupled', whose coefficients are those of the undeformed body.");
-    material.refuse(
-      material.fracture_energy || material.critical_stretch,
-      material.fracture_energy ? "Fracture energy" : "Critical stretch",
-      "is not for 'Models = coupled', whose bonds do not break; use 'peridynamics', or leave the entry out.");
+    ZoneBreaking<dim>::require(body);
     if (!body.coupling.exchanges())
       StateCoupling<dim>::require(body);
     body.peridynamics.refuse(
@@ -69,14 +66,24 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidBondsBesideElements<dim>::add_pattern(TrilinosWrappers::SparsityPattern &pattern) const
+  void SolidBondsBesideElements<dim>::add_pattern(TrilinosWrappers::SparsityPattern &pattern,
+                                                  const bool                         ever) const
   {
     const Utilities::MPI::Partitioner   &layout = *nodes().partitioner();
     std::vector<unsigned int>            neighbors;
+    std::vector<Bond>                    bonds;
     std::vector<types::global_dof_index> columns;
     for (unsigned int i = 0; i < layout.locally_owned_size(); ++i)
       {
-        coupled->possible_neighbors_of(i, neighbors);
+        if (ever)
+          coupled->possible_neighbors_of(i, neighbors);
+        else
+          {
+            coupled->bonds_of(i, bonds);
+            neighbors.clear();
+            for (const Bond &bond : bonds)
+              neighbors.push_back(bond.neighbor);
+          }
         if (neighbors.empty())
           continue;
         columns.clear();

@@ -16,6 +16,8 @@
 namespace PeriDeal
 {
   template <int dim>
+  class LatticeBonds;
+  template <int dim>
   class NodeFamilies;
 
 
@@ -55,6 +57,18 @@ namespace PeriDeal
     virtual const NodeFamilies<dim> *node_families() const
     {
       return nullptr;
+    }
+
+    /** The bonds of an exchange on a lattice, which may break; null where there are none. */
+    virtual LatticeBonds<dim> *breakable()
+    {
+      return nullptr;
+    }
+
+    /** A bond between two vertices of a cell has broken, so that nothing is left of the cell. */
+    virtual bool parts_cell(const Cell &) const
+    {
+      return false;
     }
 
     /**

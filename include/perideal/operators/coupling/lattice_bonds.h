@@ -76,8 +76,8 @@ namespace PeriDeal
     dealii::Tensor<1, dim> vector_of(const Offset &offset) const;
 
     /**
-     * Visit (neighbour, offset, strength) for the active bonds of an owned node, broken ones
-     * included, in a fixed order.
+     * Visit (neighbour, offset, strength, whether it has been marked broken) for the active bonds
+     * of an owned node, broken ones included, in a fixed order.
      */
     template <typename Visit>
     void for_each_bond(const unsigned int node, const Visit &visit) const;
@@ -92,6 +92,31 @@ namespace PeriDeal
     /** The same for the full family, with whole volumes and unit stiffness. */
     template <typename Visit>
     void for_each_full_passage(const Visit &visit) const;
+
+    /** The bond between two nodes known here has broken for good. Not collective. */
+    void mark_broken(const unsigned int a, const unsigned int b);
+
+    bool any_broken() const
+    {
+      return !broken.empty();
+    }
+
+    /**
+     * A bond between two vertices of the cell with that lowest corner has broken: a crack that
+     * parts vertices of a cell cuts an edge of it.
+     */
+    bool is_parted(const Site &cell) const;
+
+    /**
+     * Add to a list the nodes known here within a distance of a place that may join the zone and
+     * are not in it. Not collective.
+     */
+    void find_joining(const dealii::Point<dim>  &place,
+                      const double               distance,
+                      std::vector<unsigned int> &list) const;
+
+    /** They join. Not collective. */
+    void join_nodes(const std::vector<unsigned int> &list);
 
     /** As Coupling::possible_neighbors_of(). */
     void possible_neighbors_of(const unsigned int node, std::vector<unsigned int> &neighbors) const;
@@ -113,7 +138,10 @@ namespace PeriDeal
     std::vector<Offset>  offsets;
     std::vector<Passage> passages;
     Site                 reach{};
-    bool                 plain = true; // no void, one stiffness, one cell size
+    // The bonds between vertices of a cell: start relative to the lowest corner, and offset.
+    std::vector<std::pair<Site, unsigned int>> vertex_pairs;
+
+    bool plain = true; // no void, one stiffness, one cell size
 
   private:
     void find_offsets();
@@ -124,13 +152,15 @@ namespace PeriDeal
     SiteData       &own(const Site &site);
     Site            site_of(const unsigned int node) const;
     double          stiffness_on(const Offset &offset, const Site &start) const;
+    std::size_t     number_of(const SiteData &start, const Offset &offset) const;
 
     double                last;                      // time of the run
     bool                  stays             = false; // all that may join the zone are in it
     bool                  uniform           = true;
     double                uniform_stiffness = 0.;
     Site                  corner{}, extent{};
-    std::vector<SiteData> sites; // of the box around all nodes that may ever be in the zone
+    std::vector<SiteData> sites;  // of the box around all nodes that may ever be in the zone
+    std::vector<bool>     broken; // by site of the start and offset; empty while all are whole
   };
 
 
@@ -146,6 +176,13 @@ namespace PeriDeal
         key = key * extent[d] + x;
       }
     return key < sites.size() ? &sites[key] : nullptr;
+  }
+
+
+  template <int dim>
+  inline std::size_t LatticeBonds<dim>::number_of(const SiteData &start, const Offset &offset) const
+  {
+    return (&start - sites.data()) * offsets.size() + (&offset - offsets.data());
   }
 
 
@@ -192,7 +229,10 @@ namespace PeriDeal
           const double strength =
             stiffness_on(offset, start) * offset.weight * own->volume * neighbor->volume;
           if (strength != 0.)
-            visit(neighbor->node, offset, strength);
+            visit(neighbor->node,
+                  offset,
+                  strength,
+                  any_broken() && broken[number_of(forward ? *own : *neighbor, offset)]);
         }
   }
 

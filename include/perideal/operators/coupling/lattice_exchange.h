@@ -21,7 +21,8 @@ namespace PeriDeal
    *
    * S is zero on linear fields, so that these conduct or have forces alike with and without bonds,
    * for any set of them; R_c is positive semidefinite. Bonds of a solid keep the matrix symmetric,
-   * and momentum is conserved. S, v and the stiffness k are those of the law, ConductingBonds or
+   * and momentum is conserved. A cell of which a bond between two of its own vertices has broken
+   * keeps nothing. S, v and the stiffness k are those of the law, ConductingBonds or
    * ElasticBonds; which bonds are active: LatticeBonds.
    */
   template <int dim, typename Law>
@@ -34,10 +35,17 @@ namespace PeriDeal
     /** Collective. Throws UserError for a zone without nodes, and as Law::calibrate(). */
     LatticeExchange(Nodes<dim> &nodes, const BodyParameters<dim> &body, const Zone<dim> &zone);
 
+    LatticeBonds<dim> *breakable() override
+    {
+      return &bonds;
+    }
+
     void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
     void possible_neighbors_of(const unsigned int         node,
                                std::vector<unsigned int> &neighbors) const override;
     bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
+    bool finish_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
+    bool parts_cell(const Cell &cell) const override;
     bool leaves_nothing(const Cell &cell) const override;
     bool has_form() const override;
     std::unique_ptr<BondForm>             make_form() override;

@@ -14,6 +14,7 @@
 #include <perideal/operators/parts/hanging_nodes.h>
 #include <perideal/operators/solid/solid_bonds_beside_elements.h>
 #include <perideal/operators/solid/solid_operator.h>
+#include <perideal/operators/solid/zone_breaking.h>
 
 #include <memory>
 
@@ -40,6 +41,10 @@ namespace PeriDeal
    * coupling. Cells that a crack cuts carry nothing (`Mesh = removed`), so that in a zone the bonds
    * around the crack alone hold what they do; unless the crack is cut into the mesh.
    *
+   * Where bonds may break (ZoneBreaking) they are no part of the matrix but a list beside it, and
+   * what breaks or joins the zone changes only cells and rows beside it. The preconditioner is then
+   * made for the elements of cells that are not cut, with the bonds between vertices of one cell.
+   *
    * Crack-side scaling: at nodes with broken bonds and on cut cells g_i = V_i C_abab/(-(1/2) sum_j
    * tr K_ij r_ij^2), C_abab = dim lambda + dim (dim + 1) mu, clipped to [0.5, 4]; elsewhere g = 1.
    * Bonds are multiplied by the mean of both ends, cells by that of their vertices.
@@ -60,7 +65,7 @@ namespace PeriDeal
     Spectrum spectrum() const override;
     bool     surrogate_is_exact() const override
     {
-      return true;
+      return !breaking;
     }
 
     OperatorSize size() const override;
@@ -72,16 +77,40 @@ namespace PeriDeal
     bool zone_follows_cracks() const override
     {
       return zone_bonds && zone_bonds->coupling().zone_follows_cracks() &&
-             this->has_growing_cracks();
+             (this->has_growing_cracks() || zone_follows_stretches());
+    }
+
+    /** Nodes join the zone where the body is stretched (`Zone = follow`). */
+    bool zone_follows_stretches() const
+    {
+      return breaking && body.coupling.follows_stretches();
+    }
+
+    const BreakHistory *break_history() const override
+    {
+      return breaking ? &breaking->history : nullptr;
+    }
+
+    std::vector<NodePair> broken_since(std::size_t &n_known) const override
+    {
+      return breaking ? breaking->broken_since(n_known) : std::vector<NodePair>();
+    }
+
+    unsigned long long break_bonds(const Vector &u, const double t, const double share) override;
+    bool               widen_zone(const Vector &u) override;
+
+    /** Break these bonds of the zone, named alike by all processes, at the state u. Collective. */
+    void break_pairs(const std::vector<NodePair> &pairs, const Vector &u, const double t);
+
+    /** ZoneBreaking::damage(); empty where no bonds may break. Not collective. */
+    std::vector<double> damage() const
+    {
+      return breaking ? breaking->damage() : std::vector<double>();
     }
 
     ForceBalance forces(const Vector &u, const double t) const override;
     double       energy(const Vector &u) const override;
-    void         multiply(Vector &y, const Vector &x) const override
-    {
-      stiffness.vmult(y, x);
-      hanging.set(y, 0.); // the nodes they follow from have all of it
-    }
+    void         multiply(Vector &y, const Vector &x) const override;
 
     void distribute(Vector &u, const double t) const override
     {
@@ -124,10 +153,10 @@ namespace PeriDeal
       return zone_bonds ? zone_bonds->mirrors() : std::vector<dealii::types::boundary_id>();
     }
 
-    /** Cells of this process that a crack cuts, by active cell index. */
+    /** Cells of this process that keep nothing, by active cell index. */
     const std::vector<bool> &cut_cells() const
     {
-      return cut_by_cracks.flags();
+      return parted.empty() ? cut_by_cracks.flags() : parted;
     }
 
     /** Nodes join that will do so on the whole way of the cracks; K stays as it is. Collective. */
@@ -154,6 +183,10 @@ namespace PeriDeal
     bool join_zone(const ChangeSet<dim> &change) override;
     void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
     void find_loads(Vector &loads, const double t) const override;
+    void surrogate_made() const override;
+    void exchange_bonds(Archive                     &archive,
+                        const NodeKeys              &keys,
+                        const std::function<void()> &at_surrogate) override;
 
   private:
     using SolidOperator<dim>::body;
@@ -174,7 +207,6 @@ namespace PeriDeal
     void find_positions();
     void find_conditions();
     void assemble();
-    void assemble_cell(CellData &data) const;
     void change_cell(const Cell &cell, CellData &data) const;
     void find_crack_factors();
     bool any_thermal() const;
@@ -195,7 +227,26 @@ namespace PeriDeal
      */
     template <typename MakeChange>
     void mend(const Boxes &boxes, const double of_cells, const MakeChange &make_change);
-    void throw_if_isolated() const;
+    /**
+     * Change what breaking bonds and a growing zone do to cells within a distance of boxes and to
+     * rows of bonds. Returns the energy that is released at u, whose ghosts are up to date.
+     * Collective.
+     */
+    double mend_zone(const Boxes                     &boxes,
+                     const double                     of_cells,
+                     const std::vector<unsigned int> &rows,
+                     const Vector                    &u,
+                     const std::function<void()>     &make_change);
+    /** As add_parts(), with thermal loads. Returns the energy at u of what is added. */
+    double add_zone_parts(const std::vector<Cell>         &of_cells,
+                          const std::vector<unsigned int> &rows,
+                          const double                     multiple,
+                          const Vector                    &u);
+    bool   join_zone_around(const std::vector<dealii::Point<dim>> &places, const Vector &u);
+    void   mend_diagonal(const std::vector<Cell> &of_cells, const std::vector<unsigned int> &rows);
+    void   note_parted(const std::vector<Cell> &of_cells);
+    void   set_all_bonds();
+    void   throw_if_isolated() const;
     template <typename Visit>
     void for_each_own_cell(const Visit &visit) const;
     template <typename Visit>
@@ -203,6 +254,7 @@ namespace PeriDeal
 
     const dealii::DoFHandler<dim>                 &dofs;
     std::unique_ptr<SolidBondsBesideElements<dim>> zone_bonds; // null: finite elements alone
+    std::unique_ptr<ZoneBreaking<dim>>             breaking;   // null: no bonds may break
     CutCells<dim>                                  cut_by_cracks;
     ConditionFaces<dim>                            condition_faces;
     const HangingNodes<dim>                        hanging;
@@ -214,6 +266,8 @@ namespace PeriDeal
     CrackSideFactors                               crack_factors;
     std::unique_ptr<CellSearch<dim>>               search;       // where cracks grow
     double                                         n_bonds = 0.; // of this process
-    double thermal_energy = 0.; // of a body that is held everywhere
+    double              thermal_energy = 0.; // of a body that is held everywhere
+    std::vector<bool>   parted; // cells that cracks cut or breaking bonds part; empty before
+    mutable std::size_t n_broken_of_surrogate = 0;
   };
 } // namespace PeriDeal

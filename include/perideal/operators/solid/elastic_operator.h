@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/operators/interface/operator.h>
+#include <perideal/operators/solid/break_history.h>
 #include <perideal/scene/change_set.h>
 
 #include <map>
@@ -38,38 +39,6 @@ namespace PeriDeal
     unsigned long long n_nodes = 0;
     std::string
       place; // of the worst of them in the undeformed body, as `(x, y)`; empty if there are none
-  };
-
-
-  /** Where the first bonds of a body broke. */
-  struct BreakPlaces
-  {
-    /**
-     * The middle of the bond that was stretched most of all that broke first; empty: none has
-     * broken.
-     */
-    std::vector<double> first;
-    /**
-     * How many bonds within a horizon of a side or part in `Traction` broke, by its name, before
-     * any did elsewhere.
-     */
-    std::map<std::string, unsigned long long> beside_loads;
-    bool                                      elsewhere = false; // some broke there, too
-
-    /** Collective. */
-    void exchange(Archive &archive);
-  };
-
-
-  /** What has broken of a body so far. The same on all processes. */
-  struct BreakHistory
-  {
-    double             released = 0.; // strain energy
-    unsigned long long n_broken = 0;  // bonds
-    BreakPlaces        places;
-
-    /** Collective. */
-    void exchange(Archive &archive);
   };
 
 
@@ -215,6 +184,16 @@ namespace PeriDeal
      * spectrum may have. Collective. Throws UserError where they leave a node without hold.
      */
     virtual bool grow_cracks(const Vector & /*u*/, const double /*t*/)
+    {
+      return false;
+    }
+
+    /**
+     * Let nodes join the zone of a coupling where u has stretched the body, before bonds break
+     * there. Returns whether K has changed; what the body gives up by it is
+     * energy_released_by_joining(). Collective.
+     */
+    virtual bool widen_zone(const Vector & /*u*/)
     {
       return false;
     }

@@ -41,6 +41,12 @@ namespace PeriDeal
       return *coupled;
     }
 
+    /** As Coupling::breakable(). */
+    Coupling<dim> &breakable()
+    {
+      return *coupled;
+    }
+
     const Nodes<dim> &nodes() const
     {
       return coupled->families().nodes();
@@ -75,6 +81,12 @@ namespace PeriDeal
       return coupled->finish_cell(cell, stiffness) || changed;
     }
 
+    /** A bond between two vertices of a cell has broken. */
+    bool is_parted(const typename Coupling<dim>::Cell &cell) const
+    {
+      return coupled->parts_cell(cell);
+    }
+
     /** How far bonds and families reach. */
     double reach() const
     {
@@ -87,7 +99,8 @@ namespace PeriDeal
       return coupled->families().neighbors().nodes_near(boxes, reach());
     }
 
-    void add_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern) const;
+    /** @param ever of all nodes that may join the zone, else of those in it */
+    void add_pattern(dealii::TrilinosWrappers::SparsityPattern &pattern, const bool ever) const;
 
     /**
      * Add to K. Returns the number of this process's unbroken bonds, those with other processes

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/coupling/coupling.h>
+#include <perideal/operators/solid/elastic_operator.h>
+#include <perideal/operators/solid/zone_bonds.h>
+#include <perideal/scene/body_parameters.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Bonds of an exchange that break for good in a solid, and a zone that follows (`Zone = follow`).
+   *
+   * A bond breaks at a stretch (xi . (u_j - u_i))/x^2 - alpha dT, dT the mean of its ends, beyond
+   * the smaller critical stretch s of both ends. It is given, or follows from the fracture energy G
+   * by the bonds alone (what is left of the cells releases 3 % of G at most):
+   *   G = s^2/2 k V sum over half the family of w x^4 |xi_n|, mean over the axes n,
+   * W = k w V_i V_j the bond's strength. A cell between whose vertices a bond has broken keeps
+   * nothing (LatticeBonds::is_parted()).
+   *
+   * The zone grows by the nodes within one horizon of the centre of a cell whose largest principal
+   * strain, thermal strain taken off, has reached a share of the critical stretch, and of the ends
+   * of broken bonds. All functions are collective unless stated, and leave the same on all
+   * processes.
+   */
+  template <int dim>
+  class ZoneBreaking
+  {
+  public:
+    /** Throws UserError for bodies whose bonds cannot break beside elements. Not collective. */
+    static void require(const BodyParameters<dim> &body);
+
+    /** All have to outlive this object. Throws UserError for critical stretches not above 0. */
+    ZoneBreaking(Coupling<dim>                 &coupling,
+                 const dealii::DoFHandler<dim> &dofs,
+                 const BodyParameters<dim>     &body);
+
+    /** Thermal strains of all nodes known here; empty: none. Not collective. */
+    void set_thermal(std::vector<double> strains)
+    {
+      thermal = std::move(strains);
+    }
+
+    const std::vector<double> &thermal_strains() const
+    {
+      return thermal;
+    }
+
+    /**
+     * The bonds that are stretched too far at u, those with at least a share of the largest stretch
+     * over critical stretch. Ghosts of u are up to date.
+     */
+    std::vector<NodePair> find_overstretched(const Vector &u, const double share);
+
+    /** Of those the boxes around bonds between vertices of a cell, whose cells are parted. */
+    std::vector<dealii::BoundingBox<dim>> parted_by(const std::vector<NodePair> &broken) const;
+
+    /** Of those the owned nodes, ascending. Not collective. */
+    std::vector<unsigned int> owned_ends(const std::vector<NodePair> &broken) const;
+
+    /** They break for good at time t. Not collective. */
+    void take(const std::vector<NodePair> &broken, const double t);
+
+    /**
+     * Around what the zone is to grow at u, all or none of it in vain: centres of stretched cells
+     * and ends of bonds that have broken since this was called last. Ghosts as above.
+     */
+    std::vector<dealii::Point<dim>> find_places_to_join(const Vector &u);
+
+    /** Nodes known here within a horizon of these that are to join, ascending. Not collective. */
+    std::vector<unsigned int> joining(const std::vector<dealii::Point<dim>> &places) const;
+
+    /** They join; rows of bonds are left. Not collective. */
+    void join(const std::vector<unsigned int> &list)
+    {
+      of_lattice.join_nodes(list);
+    }
+
+    /**
+     * 1 - the volume of neighbours over unbroken bonds over that of the family, at owned nodes;
+     * what cracks of the scene cut counts as broken. Not collective.
+     */
+    std::vector<double> damage() const;
+
+    /** As ElasticOperator::broken_since(). Not collective. */
+    std::vector<NodePair> broken_since(std::size_t &n_known) const;
+
+    std::size_t n_broken_pairs() const
+    {
+      return broken.size();
+    }
+
+    /** The zone is as it is when the latest preconditioner is made. Not collective. */
+    void keep_zone();
+
+    /**
+     * What has broken, and the zone. Where a body is loaded, marks and zone are set; rows are left.
+     * @param n_first an earlier n_broken_pairs(), which is archived
+     * @param at_first as BondBreaking::exchange()
+     */
+    void exchange(Archive                     &archive,
+                  const NodeKeys              &keys,
+                  std::size_t                 &n_first,
+                  const std::function<void()> &at_first);
+
+    std::size_t memory_consumption() const;
+
+    ZoneBonds<dim> bonds;
+    BreakHistory   history;
+
+  private:
+    static constexpr unsigned int n_corners = dealii::GeometryInfo<dim>::vertices_per_cell;
+
+    struct Break
+    {
+      NodePair pair;
+      double   time;
+    };
+
+    void   find_critical_stretches(const BodyParameters<dim> &body);
+    void   find_cells(const dealii::DoFHandler<dim> &dofs);
+    double largest_strain(const std::array<unsigned int, n_corners> &corners,
+                          const Vector                              &u) const;
+    void   keep_first_place(const std::vector<std::pair<NodePair, double>> &found);
+
+    /** Local number of a node, or none. */
+    std::optional<unsigned int> known(const dealii::types::global_dof_index node) const;
+
+    LatticeBonds<dim>                               &of_lattice;
+    const Nodes<dim>                                &nodes;
+    const double                                     horizon;
+    const double                                     share_of_zone; // 0: the zone stays
+    std::vector<double>                              critical;      // of all nodes known here
+    std::vector<double>                              thermal;
+    std::vector<std::array<unsigned int, n_corners>> cells;  // whose centres have lit nothing yet
+    std::vector<Break>                               broken; // in the order of breaking
+    std::size_t                                      n_followed = 0; // of those, by the zone
+    std::vector<bool>                                kept_zone;
+  };
+} // namespace PeriDeal

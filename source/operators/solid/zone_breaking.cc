@@ -1,0 +1,471 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <perideal/base/point_order.h>
+#include <perideal/base/user_error.h>
+#include <perideal/operators/coupling/exchange_laws.h>
+#include <perideal/operators/solid/zone_breaking.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <unordered_map>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** What s^2 is multiplied by in the energy of a unit area, for bonds of stiffness 1. */
+    template <int dim>
+    double energy_per_square(const LatticeBonds<dim> &bonds)
+    {
+      const Lattice<dim> &lattice = *bonds.families.nodes().lattice();
+      double              sum     = 0.;
+      for (const auto &offset : bonds.offsets)
+        {
+          const Tensor<1, dim> xi = bonds.vector_of(offset);
+          for (unsigned int d = 0; d < dim; ++d)
+            sum += offset.weight * std::pow(xi.norm_square(), 2) * std::abs(xi[d]) / dim;
+        }
+      return 0.5 * lattice.cell_volume() * sum;
+    }
+
+
+    template <typename T>
+    std::vector<T> gather(const std::vector<T> &own, const MPI_Comm communicator)
+    {
+      if (Utilities::MPI::sum(static_cast<unsigned long long>(own.size()), communicator) == 0)
+        return {};
+      std::vector<T> all;
+      for (const auto &list : Utilities::MPI::all_gather(communicator, own))
+        all.insert(all.end(), list.begin(), list.end());
+      return all;
+    }
+  } // namespace
+
+
+  template <int dim>
+  void ZoneBreaking<dim>::require(const BodyParameters<dim> &body)
+  {
+    const CouplingControl &coupling = body.coupling;
+    const Material        &material = body.material;
+    const std::string entry  = material.fracture_energy ? "Fracture energy" : "Critical stretch";
+    const bool        breaks = material.fracture_energy || material.critical_stretch;
+    coupling.refuse(
+      coupling.follows_stretches() && !breaks,
+      "Zone",
+      "'follow' is for bonds that may break: give section 'Material' a 'Fracture energy' or a 'Critical stretch', or use 'cracks: 1'.");
+    if (!breaks)
+      return;
+    coupling.refuse(!coupling.exchanges(),
+                    "Scheme",
+                    "'" + coupling.scheme_text() +
+                      "' has bonds that do not break, but section 'Material' has a '" + entry +
+                      "'. Use 'exchange', or 'Models = peridynamics'.");
+    coupling.refuse(
+      coupling.is_near_cracks() && coupling.width < 1.,
+      "Zone",
+      "found '" + coupling.zone_text() + "'; where bonds may break ('" + entry +
+        "' in section 'Material') they would join through broken cells in a zone of less than one horizon. Use 'follow', or 'cracks: 1' or more.");
+    material.refuse(
+      !body.domain.has_lattice() || body.cracks.on_faces(),
+      entry,
+      !body.domain.has_lattice() ?
+        "is for lattices of equal cells with 'Models = coupled'; on meshes of other cells bonds break in 'Models = peridynamics'." :
+        "is not for 'Mesh = faces' in section 'Cracks' with 'Models = coupled'; use 'removed'.");
+  }
+
+
+  template <int dim>
+  ZoneBreaking<dim>::ZoneBreaking(Coupling<dim>             &coupling,
+                                  const DoFHandler<dim>     &dofs,
+                                  const BodyParameters<dim> &body)
+    : bonds(coupling, *coupling.breakable())
+    , of_lattice(*coupling.breakable())
+    , nodes(of_lattice.families.nodes())
+    , horizon(body.horizon())
+    , share_of_zone(body.coupling.follows_stretches() ? body.coupling.zone_share : 0.)
+  {
+    find_critical_stretches(body);
+    if (share_of_zone > 0.)
+      find_cells(dofs);
+  }
+
+
+  template <int dim>
+  void ZoneBreaking<dim>::find_critical_stretches(const BodyParameters<dim> &body)
+  {
+    const Material          &material  = body.material;
+    const double             of_square = energy_per_square(of_lattice);
+    const CellStiffness<dim> stiffness = ElasticBonds<dim>::stiffness(body);
+    std::string              message;
+    Vector                   stretches(nodes.partitioner());
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const Point<dim> &p = nodes.position(i);
+        double           &s = stretches.local_element(i);
+        s                   = material.critical_stretch ?
+                                material.critical_stretch->value(p) :
+                                std::sqrt(material.fracture_energy->value(p) / (stiffness.at(p) * of_square));
+        if (message.empty() && !(s > 0.))
+          {
+            std::ostringstream where;
+            where << "'" << (material.critical_stretch ? "Critical stretch" : "Fracture energy")
+                  << "' in section 'Material' is not positive at (" << p << ").";
+            message = where.str();
+          }
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+    stretches.update_ghost_values();
+    critical.assign(stretches.begin(), stretches.begin() + nodes.n_local());
+  }
+
+
+  template <int dim>
+  void ZoneBreaking<dim>::find_cells(const DoFHandler<dim> &dofs)
+  {
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && of_lattice.is_of_lattice(cell))
+        {
+          cells.emplace_back();
+          for (const unsigned int v : cell->vertex_indices())
+            cells.back()[v] = nodes.partitioner()->global_to_local(cell->vertex_dof_index(v, 0));
+        }
+  }
+
+
+  template <int dim>
+  std::optional<unsigned int> ZoneBreaking<dim>::known(const types::global_dof_index node) const
+  {
+    const auto &layout = *nodes.partitioner();
+    if (!layout.in_local_range(node) && !layout.is_ghost_entry(node))
+      return {};
+    return layout.global_to_local(node);
+  }
+
+
+  template <int dim>
+  std::vector<NodePair> ZoneBreaking<dim>::find_overstretched(const Vector &u, const double share)
+  {
+    const auto                              &layout = *nodes.partitioner();
+    std::vector<std::pair<NodePair, double>> found; // stretch over the critical one
+    double                                   most = 0.;
+    for (const unsigned int i : bonds.nodes())
+      bonds.for_each(i, [&](const auto &bond, const Tensor<1, dim> &xi) {
+        const unsigned int j = bond.neighbor;
+        if (bond.strength == 0. || !bonds.starts(bond))
+          return;
+        double change = 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          change += xi[d] * (u.local_element(dim * j + d) - u.local_element(dim * i + d));
+        double stretch = change / xi.norm_square();
+        if (!thermal.empty())
+          stretch -= 0.5 * (thermal[i] + thermal[j]);
+        const double limit = std::min(critical[i], critical[j]);
+        if (stretch > limit)
+          {
+            NodePair pair{layout.local_to_global(i), layout.local_to_global(j)};
+            std::sort(pair.begin(), pair.end());
+            found.emplace_back(pair, stretch / limit);
+            most = std::max(most, stretch / limit);
+          }
+      });
+    const MPI_Comm communicator = nodes.communicator();
+    most                        = Utilities::MPI::max(most, communicator);
+    if (most == 0.)
+      return {};
+    std::vector<NodePair> own;
+    for (const auto &[pair, ratio] : found)
+      if (ratio >= share * most)
+        own.push_back(pair);
+    keep_first_place(found);
+    std::vector<NodePair> all = gather(own, communicator);
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+
+  template <int dim>
+  void ZoneBreaking<dim>::keep_first_place(const std::vector<std::pair<NodePair, double>> &found)
+  {
+    if (!history.places.first.empty())
+      return;
+    // Of bonds that are stretched alike, but for round-off, the first in space.
+    double most = 0.;
+    for (const auto &[pair, ratio] : found)
+      most = std::max(most, ratio);
+    most = (1. - 1e-6) * Utilities::MPI::max(most, nodes.communicator());
+    std::vector<Point<dim>> first;
+    for (const auto &[pair, ratio] : found)
+      if (ratio >= most)
+        {
+          const Point<dim> &a     = nodes.position(*known(pair[0])),
+                           &b     = nodes.position(*known(pair[1]));
+          const Point<dim> middle = a + 0.5 * (b - a);
+          if (first.empty() || comes_first(middle, first[0]))
+            first.assign(1, middle);
+        }
+    std::vector<Point<dim>> all = gather(first, nodes.communicator());
+    for (const Point<dim> &p : all)
+      if (comes_first(p, all[0]))
+        all[0] = p;
+    history.places.first.assign(all[0].begin_raw(), all[0].end_raw());
+    history.places.elsewhere = true; // loads act on elements
+  }
+
+
+  template <int dim>
+  std::vector<BoundingBox<dim>> ZoneBreaking<dim>::parted_by(
+    const std::vector<NodePair> &pairs) const
+  {
+    std::vector<BoundingBox<dim>> boxes;
+    for (const NodePair &pair : pairs)
+      if (const auto a = known(pair[0]), b = known(pair[1]); a && b)
+        {
+          const Point<dim> &p = nodes.position(*a), &q = nodes.position(*b);
+          bool              is_short = true;
+          for (unsigned int d = 0; d < dim; ++d)
+            is_short = is_short && std::abs(p[d] - q[d]) < 1.5 * nodes.lattice()->spacing[d];
+          if (is_short)
+            boxes.emplace_back(std::vector<Point<dim>>{p, q});
+        }
+    return boxes;
+  }
+
+
+  template <int dim>
+  std::vector<unsigned int> ZoneBreaking<dim>::owned_ends(const std::vector<NodePair> &pairs) const
+  {
+    std::vector<unsigned int> ends;
+    for (const NodePair &pair : pairs)
+      for (const auto node : pair)
+        if (nodes.partitioner()->in_local_range(node))
+          ends.push_back(nodes.partitioner()->global_to_local(node));
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    return ends;
+  }
+
+
+  template <int dim>
+  void ZoneBreaking<dim>::take(const std::vector<NodePair> &pairs, const double t)
+  {
+    for (const NodePair &pair : pairs)
+      {
+        broken.push_back({pair, t});
+        ++history.n_broken;
+        const auto a = known(pair[0]), b = known(pair[1]);
+        if (!a || !b)
+          continue;
+        of_lattice.mark_broken(*a, *b);
+        if (*a < nodes.n_owned())
+          bonds.release(*a, *b);
+        if (*b < nodes.n_owned())
+          bonds.release(*b, *a);
+      }
+  }
+
+
+  template <int dim>
+  double ZoneBreaking<dim>::largest_strain(const std::array<unsigned int, n_corners> &corners,
+                                           const Vector                              &u) const
+  {
+    const Tensor<1, dim> &spacing = nodes.lattice()->spacing;
+    Tensor<2, dim>        gradient;
+    for (unsigned int v = 0; v < n_corners; ++v)
+      for (unsigned int e = 0; e < dim; ++e)
+        {
+          const double slope = ((v >> e) & 1 ? 2. : -2.) / (n_corners * spacing[e]);
+          for (unsigned int d = 0; d < dim; ++d)
+            gradient[d][e] += slope * u.local_element(dim * corners[v] + d);
+        }
+    return eigenvalues(symmetrize(gradient))[0];
+  }
+
+
+  template <int dim>
+  std::vector<Point<dim>> ZoneBreaking<dim>::find_places_to_join(const Vector &u)
+  {
+    if (share_of_zone == 0.)
+      return {};
+    const auto centre = [&](const std::array<unsigned int, n_corners> &corners) {
+      return nodes.position(corners[0]) +
+             0.5 * (nodes.position(corners[n_corners - 1]) - nodes.position(corners[0]));
+    };
+    std::vector<Point<dim>> own;
+    const auto              is_lit = [&](const std::array<unsigned int, n_corners> &corners) {
+      double limit = std::numeric_limits<double>::max(), warm = 0.;
+      for (const unsigned int i : corners)
+        limit = std::min(limit, critical[i]);
+      for (unsigned int v = 0; v < n_corners && !thermal.empty(); ++v)
+        warm += thermal[corners[v]] / n_corners;
+      if (!(largest_strain(corners, u) - warm >= share_of_zone * limit))
+        return false;
+      own.push_back(centre(corners));
+      return true;
+    };
+    cells.erase(std::remove_if(cells.begin(), cells.end(), is_lit), cells.end());
+    std::vector<Point<dim>> places = gather(own, nodes.communicator());
+    std::vector<Point<dim>> ends;
+    for (; n_followed < broken.size(); ++n_followed)
+      for (const auto node : broken[n_followed].pair)
+        if (nodes.partitioner()->in_local_range(node))
+          ends.push_back(nodes.position(nodes.partitioner()->global_to_local(node)));
+    for (const Point<dim> &p : gather(ends, nodes.communicator()))
+      places.push_back(p);
+    return places;
+  }
+
+
+  template <int dim>
+  std::vector<unsigned int> ZoneBreaking<dim>::joining(const std::vector<Point<dim>> &places) const
+  {
+    std::vector<unsigned int> list;
+    for (const Point<dim> &place : places)
+      of_lattice.find_joining(place, horizon, list);
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  }
+
+
+  template <int dim>
+  std::vector<double> ZoneBreaking<dim>::damage() const
+  {
+    std::vector<double>                         result(nodes.n_owned());
+    std::vector<typename Families<dim>::Member> family;
+    for (const unsigned int i : bonds.nodes())
+      {
+        double lost = 0., all = 0.;
+        bonds.for_each(i, [&](const auto &bond, const auto &) {
+          lost += bond.strength == 0. ? nodes.volume(bond.neighbor) : 0.;
+        });
+        if (lost == 0.)
+          continue;
+        of_lattice.families.members_of(i, family);
+        for (const auto &member : family)
+          all += nodes.volume(member.neighbor);
+        result[i] = lost / all;
+      }
+    return result;
+  }
+
+
+  template <int dim>
+  std::vector<NodePair> ZoneBreaking<dim>::broken_since(std::size_t &n_known) const
+  {
+    std::vector<NodePair> pairs;
+    for (; n_known < broken.size(); ++n_known)
+      if (nodes.partitioner()->in_local_range(broken[n_known].pair[0]))
+        pairs.push_back(broken[n_known].pair);
+    return pairs;
+  }
+
+
+  template <int dim>
+  void ZoneBreaking<dim>::keep_zone()
+  {
+    kept_zone.resize(nodes.n_owned());
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      kept_zone[i] = of_lattice.in_zone(i);
+  }
+
+
+  template <int dim>
+  void ZoneBreaking<dim>::exchange(Archive                     &archive,
+                                   const NodeKeys              &keys,
+                                   std::size_t                 &n_first,
+                                   const std::function<void()> &at_first)
+  {
+    // Pairs by the key of their first node and the place of the second one in its row, which is
+    // that of all members of the family: the same on all processes.
+    history.exchange(archive);
+    unsigned long long n_kept = n_first;
+    archive.exchange("broken at first", n_kept);
+    Vector zone(nodes.partitioner());
+    for (unsigned int i = 0; i < nodes.n_owned() && !archive.loads(); ++i)
+      zone.local_element(i) =
+        (of_lattice.in_zone(i) ? 1. : 0.) + (!kept_zone.empty() && kept_zone[i] ? 1. : 0.);
+    archive.exchange("zone", zone, keys);
+
+    std::vector<typename Families<dim>::Member> family;
+    KeyedPairs                                  pairs;
+    for (std::size_t k = 0; k < broken.size() && !archive.loads(); ++k)
+      if (nodes.partitioner()->in_local_range(broken[k].pair[0]))
+        {
+          const unsigned int a = *known(broken[k].pair[0]), b = *known(broken[k].pair[1]);
+          of_lattice.families.members_of(a, family);
+          std::uint64_t place = 0;
+          while (family[place].neighbor != b)
+            ++place;
+          pairs.keys.push_back({keys[a], place});
+          pairs.values.insert(pairs.values.end(), {broken[k].time, static_cast<double>(k)});
+        }
+    archive.exchange("broken pairs", pairs, keys);
+    if (!archive.loads())
+      return;
+
+    std::unordered_map<std::uint64_t, unsigned int> node_of;
+    for (unsigned int i = 0; i < keys.size(); ++i)
+      node_of[keys[i]] = i;
+    using Numbered = std::array<double, 4>; // order, time, both nodes
+    std::vector<Numbered> own;
+    for (std::size_t k = 0; k < pairs.keys.size(); ++k)
+      {
+        const unsigned int a = node_of.at(pairs.keys[k][0]);
+        of_lattice.families.members_of(a, family);
+        NodePair pair{nodes.partitioner()->local_to_global(a),
+                      nodes.partitioner()->local_to_global(family[pairs.keys[k][1]].neighbor)};
+        std::sort(pair.begin(), pair.end());
+        own.push_back({pairs.values[2 * k + 1],
+                       pairs.values[2 * k],
+                       static_cast<double>(pair[0]),
+                       static_cast<double>(pair[1])});
+      }
+    std::vector<Numbered> all = gather(own, nodes.communicator());
+    std::sort(all.begin(), all.end());
+    zone.update_ghost_values();
+    const unsigned long long n_broken  = history.n_broken;
+    const auto               take_from = [&](const std::size_t first, const std::size_t last) {
+      for (std::size_t k = first; k < last; ++k)
+        take({{static_cast<types::global_dof_index>(all[k][2]),
+               static_cast<types::global_dof_index>(all[k][3])}},
+             all[k][1]);
+    };
+    const auto join_above = [&](const double least) {
+      std::vector<unsigned int> list;
+      for (unsigned int i = 0; i < nodes.n_local(); ++i)
+        if (zone.local_element(i) > least)
+          list.push_back(i);
+      of_lattice.join_nodes(list);
+    };
+    n_first = n_kept;
+    join_above(1.5);
+    take_from(0, n_first);
+    at_first();
+    join_above(0.5);
+    take_from(n_first, all.size());
+    history.n_broken = n_broken;
+    n_followed       = broken.size();
+  }
+
+
+  template <int dim>
+  std::size_t ZoneBreaking<dim>::memory_consumption() const
+  {
+    return bonds.memory_consumption() +
+           (critical.capacity() + thermal.capacity()) * sizeof(double) +
+           cells.capacity() * sizeof(cells[0]) + broken.capacity() * sizeof(Break);
+  }
+
+
+  template class ZoneBreaking<1>;
+  template class ZoneBreaking<2>;
+  template class ZoneBreaking<3>;
+} // namespace PeriDeal

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "elastic_coupling_tools.h"
+
+using namespace PeriDeal;
+using namespace PeriDeal::OperatorTests;
+using dealii::Point;
+using dealii::Tensor;
+
+namespace
+{
+  template <int dim>
+  Settings breakable(const std::string &zone, const double nu)
+  {
+    return zoned<dim>(zone, nu) + Settings{{"Material/Critical stretch", "0.01"}};
+  }
+
+
+  /** All active bonds for which choose(first place, second place) holds, on all processes alike. */
+  template <int dim, typename Choose>
+  std::vector<NodePair> pairs_of(const Body<dim> &body, const Choose &choose)
+  {
+    std::vector<NodePair>                     own, all;
+    std::vector<typename Coupling<dim>::Bond> bonds;
+    const auto                               &layout = *body.nodes->partitioner();
+    for (unsigned int i = 0; i < body.nodes->n_owned(); ++i)
+      {
+        body.elements->bonds().bonds_of(i, bonds);
+        for (const auto &bond : bonds)
+          {
+            NodePair pair{layout.local_to_global(i), layout.local_to_global(bond.neighbor)};
+            if (pair[0] < pair[1] && choose(bond, body.position(i), body.position(bond.neighbor)))
+              own.push_back(pair);
+          }
+      }
+    for (const auto &list : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, own))
+      all.insert(all.end(), list.begin(), list.end());
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+
+  /** About a fifth, as if at random. */
+  template <int dim>
+  bool is_chosen(const Point<dim> &a, const Point<dim> &b)
+  {
+    double phase = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      phase += (91.7 + 37. * d) * (a[d] + b[d]) + (13.1 + 7. * d) * std::abs(a[d] - b[d]);
+    return phase * 13.37 - std::floor(phase * 13.37) < 0.2;
+  }
+
+
+  /** Of K: asymmetry, force and moment on rigid motions, lowest energy of some fields. */
+  template <int dim>
+  void check_sound(const Body<dim> &body)
+  {
+    const Vector x = body.values(bumpy_vector<dim>);
+    Vector       z = body.values([](const Point<dim> &p) {
+      Tensor<1, dim> value;
+      for (unsigned int d = 0; d < dim; ++d)
+        value[d] = std::cos(17. * p[d] * (1. + p[0]) + d) + p.norm();
+      return value;
+    });
+    Vector       y(x), w(x);
+    body.elements->multiply(y, x);
+    body.elements->multiply(w, z);
+    const double size = std::sqrt((x * y) * (z * w));
+    EXPECT_LT(std::abs(z * y - x * w), 1e-13 * size);
+    EXPECT_GE(x * y, 0.);
+    for (const Vector &motion : body.elements->near_null_space())
+      {
+        EXPECT_LT(std::abs(motion * y), 1e-13 * motion.linfty_norm() * y.l1_norm());
+        body.elements->multiply(w, motion);
+        EXPECT_LT(w.linfty_norm(), 1e-12 * motion.linfty_norm() * y.linfty_norm());
+      }
+    EXPECT_GT(body.elements->lowest_remainder(), -1e-12);
+  }
+
+
+  template <int dim>
+  void check_a_fifth_broken(const std::string &zone, const double nu)
+  {
+    const Settings warm{{"Material/Thermal expansion", "1e-3"},
+                        {"Elasticity/Temperature change", "2"}};
+    Body<dim>      body(breakable<dim>(zone, nu) + warm, ModelKind::coupled);
+    const auto     some = pairs_of(body, [](const auto &, const auto &a, const auto &b) {
+      return is_chosen<dim>(a, b);
+    });
+    const double   n    = body.elements->size().bonds;
+    const Vector   u    = body.values(bumpy_vector<dim>);
+    const double   full = body.elements->energy(u);
+    body.elements->break_pairs(some, u, 0.);
+    EXPECT_NEAR(some.size() / n, 0.2, 0.1);
+    EXPECT_EQ(body.elements->size().bonds, static_cast<unsigned long long>(n) - some.size());
+    // What the rest of the body gives up is what is counted.
+    const double left = body.elements->energy(u);
+    EXPECT_GT(full, left);
+    EXPECT_NEAR((full - left) / body.elements->released_energy(), 1., 1e-11);
+    check_sound(body);
+    // A body that is warm all over and free is as large as it wants to be, and stores nothing.
+    Vector free = body.values([](const Point<dim> &p) { return Tensor<1, dim>(2e-3 * p); });
+    Vector forces(free);
+    body.elements->unbalanced(forces, free, 0.);
+    Vector held(free);
+    held = 0.;
+    Vector loads(free);
+    body.elements->unbalanced(loads, held, 0.);
+    EXPECT_LT(forces.linfty_norm(), 1e-12 * loads.linfty_norm());
+    EXPECT_LT(std::abs(body.elements->energy(free)), 1e-12 * body.elements->energy(held));
+  }
+
+
+  /**
+   * K of a body in which all bonds across a crack have been broken, and of one with that crack: the
+   * same but for cells in which the crack ends without cutting an edge of them.
+   * @param to_end distance from where the crack ends
+   */
+  template <int dim>
+  void check_made_crack(const std::string                               &entry,
+                        const std::string                               &crack,
+                        const std::string                               &zone,
+                        const std::function<double(const Point<dim> &)> &to_end)
+  {
+    Body<dim> given(breakable<dim>(zone, 0.3) + Settings{{"Cracks/" + entry, crack}},
+                    ModelKind::coupled),
+      made(breakable<dim>(zone, 0.3), ModelKind::coupled);
+    const auto across =
+      pairs_of(given, [](const auto &bond, const auto &, const auto &) { return bond.cut; });
+    ASSERT_FALSE(across.empty());
+    const Vector u = made.values(bumpy_vector<dim>);
+    Vector       x(u), y(u);
+    made.elements->break_pairs(across, u, 0.);
+    made.elements->multiply(x, u);
+    given.elements->multiply(y, u);
+    const double size = y.linfty_norm(), within = std::sqrt(1. * dim) * 0.1 * (1. + 1e-9);
+    y -= x;
+    unsigned int n_compared = 0;
+    for (unsigned int i = 0; i < made.nodes->n_owned(); ++i)
+      for (unsigned int d = 0; d < dim && to_end(made.position(i)) > within; ++d, ++n_compared)
+        EXPECT_LT(std::abs(y.local_element(dim * i + d)), 1e-12 * size) << made.position(i);
+    EXPECT_GT(dealii::Utilities::MPI::sum(n_compared, MPI_COMM_WORLD), 0.6 * y.size());
+    EXPECT_EQ(made.elements->size().bonds, given.elements->size().bonds);
+  }
+} // namespace
+
+
+TEST(ZoneBreaking, stays_sound_with_a_fifth_of_the_bonds_broken)
+{
+  for (const double nu : {-0.2, 0., 0.3, 0.45})
+    {
+      check_a_fifth_broken<2>("everywhere", nu);
+      check_a_fifth_broken<2>("x - 0.55", nu);
+    }
+  for (const double nu : {0., 0.25, 0.45})
+    {
+      check_a_fifth_broken<3>("everywhere", nu);
+      check_a_fifth_broken<3>("x - 0.25", nu);
+    }
+}
+
+
+TEST(ZoneBreaking, crack_made_of_broken_bonds_is_the_prescribed_one)
+{
+  const auto of_points = [](const Point<2> &a, const Point<2> &b) {
+    return [a, b](const Point<2> &p) { return std::min(a.distance(p), b.distance(p)); };
+  };
+  const auto segment = [&](const Point<2> &a, const Point<2> &b, const std::string &zone) {
+    check_made_crack<2>("Segments",
+                        std::to_string(a[0]) + "," + std::to_string(a[1]) + " ; " +
+                          std::to_string(b[0]) + "," + std::to_string(b[1]),
+                        zone,
+                        of_points(a, b));
+  };
+  segment({0.35, 0.55}, {1.05, 0.55}, "everywhere");
+  segment({0.35, 0.33}, {1.02, 0.93}, "everywhere");
+  segment({0.35, 0.42}, {1.05, 0.61}, "0.4 - abs(y - 0.5)");
+  std::string disc;
+  for (unsigned int k = 0; k < 24; ++k)
+    disc += (k > 0 ? " ; " : "") + std::to_string(0.4 + 0.23 * std::cos(0.2617993878 * k)) + "," +
+            std::to_string(0.35 + 0.23 * std::sin(0.2617993878 * k)) + ",0.35";
+  check_made_crack<3>("Polygons", disc, "everywhere", [](const Point<3> &p) {
+    const double outside = std::hypot(p[0] - 0.4, p[1] - 0.35) - 0.23;
+    return std::hypot(outside, p[2] - 0.35);
+  });
+  check_made_crack<3>("Polygons",
+                      "0.15,0.15,0.25 ; 0.55,0.15,0.25 ; 0.55,0.55,0.25 ; 0.15,0.55,0.25",
+                      "everywhere",
+                      [](const Point<3> &p) {
+                        const double outside =
+                          std::max(std::abs(p[0] - 0.35) - 0.2, std::abs(p[1] - 0.35) - 0.2);
+                        return std::hypot(outside, p[2] - 0.25);
+                      });
+}
