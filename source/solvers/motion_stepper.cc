@@ -196,7 +196,10 @@ namespace PeriDeal
       return;
     const double before = account.kept_back(unbalanced);
     operator_changed();
-    op.unbalanced(unbalanced, u, t);
+    if (grown)
+      op.unbalanced(unbalanced, u, t);
+    else
+      op.mend_unbalanced(unbalanced, u, t);
     account.add_jump(unbalanced, t, before);
   }
 

@@ -53,7 +53,7 @@ def static():
         if side == "top":
             table.add(f"{name}: largest force", peak(zone) / peak(full), 1, absolute=0.005)
         last, of_full = (rows(run, DISSIPATED, BROKEN, JOINING if run is zone else BROKEN)[-1] for run in (zone, full))
-        check(of_full[2] > 300, f"{name}: bonds break: {of_full[2]}")
+        check(of_full[2] > 150, f"{name}: bonds break: {of_full[2]}")
         table.add(f"{name}: broken bonds", last[2] / of_full[2], 1, absolute=0.01)
         table.add(f"{name}: energy dissipated", last[1] / of_full[1], 1, absolute=0.01)
         table.add_limit(f"{name}: energy of joining over dissipated", abs(last[3]) / last[1], 3e-3)
@@ -81,7 +81,7 @@ def motion():
 
 
 def heat():
-    """A strip that tears in the middle conducts no heat across, and as before where broken bonds conduct."""
+    """A strip that tears in the middle conducts no heat across, and as before where broken bonds conduct; heat is kept to round-off."""
     table = Comparison("Torn strip, coupled")
     strip = {"Models": MODEL, "Domain/Cells": "41, 11", "Output/Fields": "none"}
     for zone in ("follow", "everywhere"):
@@ -89,6 +89,10 @@ def heat():
         for place, warm in (((0.4, 0.1), 1), ((0.6, 0.1), 0)):
             found = run.probe(MODEL, place, time=1, column="temperature")
             table.add(f"{zone}: temperature at {place}", found, warm, absolute=1e-3)
+        balance = run.model(MODEL)["heat balance"]["cumulative"]
+        check(balance["scale"] > 1e-3, f"{zone}: heat moves: {balance['scale']}")
+        imbalance = max(abs(row[1]) for row in rows(run, "heat imbalance since start"))
+        table.add_limit(f"{zone}: heat imbalance over what has moved, at all steps", imbalance / balance["scale"], 1e-12)
     through = run_scene("prm/fracture/torn_strip.prm", {**strip, "Coupling/Zone": "follow", "Elasticity/Broken bonds conduct": "1"})
     table.add("broken bonds that conduct: temperature at (0.4, 0.1)", through.probe(MODEL, (0.4, 0.1), time=1, column="temperature"), 0.6, absolute=1e-6)
     table.show()
@@ -103,7 +107,7 @@ def same(a, b, what):
 
 
 COARSE = {**QUIET, "Domain/Cells": "25, 37", "Solver/Tolerance": "1e-12", "Time/Time step": "0.04", "Time/End time": "0.6"}
-BLOCK = {**VERTICES, "Domain/Cells": "9, 17, 2", "Peridynamics/Horizon ratio": "2", "Time/Time step": "0.1", "Coupling/Zone": "follow",
+BLOCK = {**VERTICES, "Domain/Cells": "17, 33, 2", "Peridynamics/Horizon ratio": "2", "Time/Time step": "0.1", "Coupling/Zone": "follow",
          "Solver/Tolerance": "1e-12"}
 
 
@@ -123,7 +127,7 @@ def mistakes():
             ({"Coupling/Zone": "cracks: 1", "Coupling/Scheme": "blending"}, ("'Scheme' in section 'Coupling'", "do not break", "'exchange'")),
             ({"Coupling/Zone": "folow"}, ("'Zone' in section 'Coupling'", "did you mean 'follow'")),
             ({"Coupling/Zone share": "1"}, ("'Zone share' in section 'Coupling'", "at most 0.9")),
-            ({"Coupling/Zone": "everywhere", "Coupling/Zone share": "0.5"}, ("'Zone share'", "'Zone = follow'")),
+            ({"Coupling/Zone": "everywhere", "Coupling/Zone share": "0.4"}, ("'Zone share'", "'Zone = follow'")),
             ({"Material/Fracture energy": ""}, ("'Zone' in section 'Coupling'", "'Fracture energy'", "'Critical stretch'")),
             ({"Material/Fracture energy": "x"}, ("'Fracture energy' in section 'Material'", "not positive at (-0.5")),
             ({"Cracks/Segments": "-0.2,0 ; 0.2,0", "Cracks/Mesh": "faces", "Domain/Cells": "50, 74"}, ("'Fracture energy'", "'Mesh = faces'"))):

@@ -17,6 +17,7 @@
 #include <numeric>
 
 #include "elastic_cell_data.h"
+#include "loose_nodes.h"
 
 namespace PeriDeal
 {
@@ -145,19 +146,6 @@ namespace PeriDeal
   }
 
 
-  namespace
-  {
-    /** Nodes that nothing holds any more have a diagonal like others. */
-    void hold_loose(Vector &diagonal)
-    {
-      const double largest = diagonal.linfty_norm();
-      for (double &value : diagonal)
-        if (!(value > 1e-13 * largest))
-          value = largest;
-    }
-  } // namespace
-
-
   template <int dim>
   void ElasticElements<dim>::find_diagonal()
   {
@@ -254,7 +242,7 @@ namespace PeriDeal
         zone_bonds->apply_change(change);
     });
     if (!parted.empty())
-      note_parted({dofs.begin_active(), dofs.end()});
+      note_parted(known_cells());
     find_diagonal();
     this->keep_constant_loads();
   }
@@ -459,6 +447,24 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  OperatorSize ElasticElements<dim>::size() const
+  {
+    OperatorSize size;
+    size.unknowns = unknowns->size();
+    size.nonzeros = stiffness.n_nonzero_elements();
+    size.bonds    = std::llround(
+      Utilities::MPI::sum(breaking ? breaking->bonds.n_whole() : n_bonds, dofs.get_communicator()));
+    size.memory = stiffness.memory_consumption() + positions.capacity() * sizeof(Point<dim>);
+    if (zone_bonds)
+      size.memory += zone_bonds->coupling().memory_consumption();
+    if (breaking)
+      size.memory += breaking->memory_consumption();
+    size.form = "matrix";
+    return size;
+  }
+
+
 #define PERIDEAL_INSTANTIATE(dim)                                                               \
   template void         ElasticElements<dim>::assemble();                                       \
   template bool         ElasticElements<dim>::join_zone(const ChangeSet<dim> &);                \
@@ -468,7 +474,8 @@ namespace PeriDeal
   template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;       \
   template void         ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &, \
                                                       const bool) const;                \
-  template double       ElasticElements<dim>::lowest_remainder() const;
+  template double       ElasticElements<dim>::lowest_remainder() const;                         \
+  template OperatorSize ElasticElements<dim>::size() const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -68,10 +68,7 @@ namespace PeriDeal
     double sum = thermal_energy;
     for (unsigned int i = 0; i < unknowns.size(); ++i)
       {
-        double force = -thermal(i);
-        for (unsigned int j = 0; j < unknowns.size(); ++j)
-          force += 0.5 * stiffness(i, j) * u(unknowns[j]);
-        sum += force * u(unknowns[i]);
+        sum += (0.5 * force(i, u) - thermal(i)) * u(unknowns[i]);
       }
     return sum;
   }

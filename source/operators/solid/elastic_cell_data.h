@@ -50,6 +50,15 @@ namespace PeriDeal
     /** At a state u, whose ghosts are up to date. */
     double energy(const Vector &u) const;
 
+    /** What an unknown has of K u, thermal loads apart. */
+    double force(const unsigned int unknown, const Vector &u) const
+    {
+      double sum = 0.;
+      for (unsigned int j = 0; j < unknowns.size(); ++j)
+        sum += stiffness(unknown, j) * u(unknowns[j]);
+      return sum;
+    }
+
     dealii::FEValues<dim>      values;
     dealii::FEFaceValues<dim>  face_values;
     dealii::FullMatrix<double> stiffness;

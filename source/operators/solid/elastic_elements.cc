@@ -20,7 +20,7 @@
 
 #include "elastic_cell_data.h"
 #include "inversion.h"
-#include "looseness_text.h"
+#include "loose_nodes.h"
 
 namespace PeriDeal
 {
@@ -58,7 +58,10 @@ namespace PeriDeal
     , hanging(dofs, *nodes, dim)
   {
     if (zone_bonds && (body.material.fracture_energy || body.material.critical_stretch))
-      breaking = std::make_unique<ZoneBreaking<dim>>(zone_bonds->breakable(), dofs, body);
+      {
+        breaking = std::make_unique<ZoneBreaking<dim>>(zone_bonds->breakable(), dofs, body);
+        this->initialize_vector(force_change);
+      }
     find_positions();
     find_conditions();
     // Where tips cut in part, ends on sides are none.
@@ -98,11 +101,7 @@ namespace PeriDeal
   template <int dim>
   Inversion ElasticElements<dim>::inverted(const Vector &u) const
   {
-    const auto corners =
-      cell_corners<dim>(dofs, nodes->locally_owned_size(), [&](const types::global_dof_index i) {
-        return nodes->in_local_range(i) || nodes->is_ghost_entry(i) ? nodes->global_to_local(i) :
-                                                                      numbers::invalid_unsigned_int;
-      });
+    const auto corners = cell_corners_of<dim>(dofs, *nodes);
     u.update_ghost_values();
     const Inversion result = find_inverted<dim>(
       corners,
@@ -222,30 +221,8 @@ namespace PeriDeal
     breaking->bonds.add_between_vertices(matrix);
     matrix.compress(VectorOperation::add);
     Vector loose = this->held_unknowns();
-    for_each_entry(matrix, [&](const unsigned int row, const auto column, const double value) {
-      if (column == unknowns->local_to_global(row) &&
-          !(value > 1e-13 * stiffness_diagonal.local_element(row)))
-        loose.local_element(row) = 1.;
-    });
-    loose.update_ghost_values();
+    mark_loose(matrix, stiffness_diagonal, loose);
     hold_unknowns(matrix, loose);
-  }
-
-  template <int dim>
-  OperatorSize ElasticElements<dim>::size() const
-  {
-    OperatorSize size;
-    size.unknowns = unknowns->size();
-    size.nonzeros = stiffness.n_nonzero_elements();
-    size.bonds    = std::llround(
-      Utilities::MPI::sum(breaking ? breaking->bonds.n_whole() : n_bonds, dofs.get_communicator()));
-    size.memory = stiffness.memory_consumption() + positions.capacity() * sizeof(Point<dim>);
-    if (zone_bonds)
-      size.memory += zone_bonds->coupling().memory_consumption();
-    if (breaking)
-      size.memory += breaking->memory_consumption();
-    size.form = "matrix";
-    return size;
   }
 
   template <int dim>
@@ -288,6 +265,8 @@ namespace PeriDeal
           data.assemble(*this);
           change_cell(cell, data);
           energy += data.energy(u);
+          for (unsigned int i = 0; i < data.unknowns.size(); ++i)
+            force_change(data.unknowns[i]) += multiple * data.force(i, u);
           held += data.thermal_energy;
           data.stiffness *= multiple;
           hanging.add_to(stiffness, data.stiffness, data.unknowns);
@@ -296,6 +275,7 @@ namespace PeriDeal
         }
     const std::vector<double> &strains = breaking->thermal_strains();
     energy += breaking->bonds.energy(u, rows, strains);
+    breaking->bonds.add_forces_of(rows, multiple, force_change, u);
     if (warms)
       held += breaking->bonds.add_thermal(thermal_loads, rows, strains, multiple) / multiple;
     thermal_energy += Utilities::MPI::sum(multiple * held, dofs.get_communicator());
@@ -314,7 +294,8 @@ namespace PeriDeal
       search = std::make_unique<CellSearch<dim>>(dofs);
     std::vector<Cell> cells;
     search->find(boxes, of_cells, cells);
-    double gained = add_zone_parts(cells, rows, -1., u);
+    changes_forces = true;
+    double gained  = add_zone_parts(cells, rows, -1., u);
     make_change();
     gained += add_zone_parts(cells, rows, 1., u);
     stiffness.compress(VectorOperation::add);
@@ -327,6 +308,33 @@ namespace PeriDeal
     note_parted(cells);
     mend_diagonal(cells, rows);
     return -Utilities::MPI::sum(gained, dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  std::vector<typename ElasticElements<dim>::Cell> ElasticElements<dim>::known_cells() const
+  {
+    std::vector<Cell> list;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        list.push_back(cell);
+    return list;
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::mend_unbalanced(Vector &r, const Vector &u, const double t) const
+  {
+    if (!breaking || any_thermal())
+      return this->unbalanced(r, u, t);
+    if (!changes_forces)
+      return;
+    force_change.compress(VectorOperation::add);
+    hanging.condense(force_change);
+    hanging.set(force_change, 0.);
+    r -= force_change;
+    force_change   = 0.;
+    changes_forces = false;
   }
 
 
@@ -392,6 +400,12 @@ namespace PeriDeal
   template <int dim>
   bool ElasticElements<dim>::widen_zone(const Vector &u)
   {
+    if (changes_forces)
+      {
+        force_change = 0.;
+        force_change.zero_out_ghost_values();
+        changes_forces = false;
+      }
     if (!zone_follows_stretches())
       return false;
     u.update_ghost_values();
@@ -459,7 +473,7 @@ namespace PeriDeal
       return;
     assemble();
     this->keep_constant_loads();
-    note_parted({dofs.begin_active(), dofs.end()});
+    note_parted(known_cells());
   }
 
 

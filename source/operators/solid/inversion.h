@@ -15,6 +15,21 @@
 
 namespace PeriDeal
 {
+  /** cell_corners() of the nodes known here, by local number. */
+  template <int dim>
+  std::vector<CellCorner<dim>> cell_corners_of(const dealii::DoFHandler<dim>             &dofs,
+                                               const dealii::Utilities::MPI::Partitioner &nodes)
+  {
+    return cell_corners<dim>(dofs,
+                             nodes.locally_owned_size(),
+                             [&](const dealii::types::global_dof_index i) {
+                               return nodes.in_local_range(i) || nodes.is_ghost_entry(i) ?
+                                        nodes.global_to_local(i) :
+                                        dealii::numbers::invalid_unsigned_int;
+                             });
+  }
+
+
   /**
    * Nodes some corner of which has no volume left in the deformed body, and the place of the worst
    * of them. Collective.

@@ -127,8 +127,18 @@ namespace PeriDeal
   template <int dim>
   void ZoneBonds<dim>::add_forces(Vector &y, const Vector &u) const
   {
+    add_forces_of(with_rows, 1., y, u);
+  }
+
+
+  template <int dim>
+  void ZoneBonds<dim>::add_forces_of(const std::vector<unsigned int> &of_nodes,
+                                     const double                     multiple,
+                                     Vector                          &y,
+                                     const Vector                    &u) const
+  {
     const double *const all = u.begin();
-    for (const unsigned int i : with_rows)
+    for (const unsigned int i : of_nodes)
       {
         Tensor<1, dim> sum;
         const Row     &row = rows[i];
@@ -138,7 +148,7 @@ namespace PeriDeal
             sum += bonds[k].strength * change_along<dim>(xi, all, i, bonds[k].neighbor) * xi;
           }
         for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * i + d) -= sum[d];
+          y.local_element(dim * i + d) -= multiple * sum[d];
       }
   }
 

@@ -98,6 +98,7 @@ namespace PeriDeal
 
     unsigned long long break_bonds(const Vector &u, const double t, const double share) override;
     bool               widen_zone(const Vector &u) override;
+    void               mend_unbalanced(Vector &r, const Vector &u, const double t) const override;
 
     /** Break these bonds of the zone, named alike by all processes, at the state u. Collective. */
     void break_pairs(const std::vector<NodePair> &pairs, const Vector &u, const double t);
@@ -244,9 +245,10 @@ namespace PeriDeal
                           const Vector                    &u);
     bool   join_zone_around(const std::vector<dealii::Point<dim>> &places, const Vector &u);
     void   mend_diagonal(const std::vector<Cell> &of_cells, const std::vector<unsigned int> &rows);
-    void   note_parted(const std::vector<Cell> &of_cells);
-    void   set_all_bonds();
-    void   throw_if_isolated() const;
+    std::vector<Cell> known_cells() const; // own and ghosts
+    void              note_parted(const std::vector<Cell> &of_cells);
+    void              set_all_bonds();
+    void              throw_if_isolated() const;
     template <typename Visit>
     void for_each_own_cell(const Visit &visit) const;
     template <typename Visit>
@@ -267,7 +269,9 @@ namespace PeriDeal
     std::unique_ptr<CellSearch<dim>>               search;       // where cracks grow
     double                                         n_bonds = 0.; // of this process
     double              thermal_energy = 0.; // of a body that is held everywhere
-    std::vector<bool>   parted; // cells that cracks cut or breaking bonds part; empty before
+    std::vector<bool>   parted;       // cells that cracks cut or breaking bonds part; empty before
+    mutable Vector      force_change; // of K u, by what broke or joined at the last u
+    mutable bool        changes_forces        = false;
     mutable std::size_t n_broken_of_surrogate = 0;
   };
 } // namespace PeriDeal

@@ -198,6 +198,15 @@ namespace PeriDeal
       return false;
     }
 
+    /**
+     * unbalanced() at the u and t of the last widen_zone() and break_bonds(), behind which nothing
+     * else has changed. @p r is that of the body before. Collective.
+     */
+    virtual void mend_unbalanced(Vector &r, const Vector &u, const double t) const
+    {
+      unbalanced(r, u, t);
+    }
+
     /** Some strain energy may be released: bonds break, or cracks grow. Not collective. */
     bool may_release_energy() const
     {

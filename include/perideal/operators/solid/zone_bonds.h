@@ -49,6 +49,12 @@ namespace PeriDeal
     /** Add K u to the owned unknowns of y; ghosts of u are up to date. */
     void add_forces(Vector &y, const Vector &u) const;
 
+    /** Add a multiple of K u in the rows of some nodes; ghosts as above. */
+    void add_forces_of(const std::vector<unsigned int> &of_nodes,
+                       const double                     multiple,
+                       Vector                          &y,
+                       const Vector                    &u) const;
+
     /** Add the diagonal of K to a vector of unknowns. */
     void add_diagonal(Vector &diagonal) const;
 

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <perideal/base/matrix_rows.h>
+#include <perideal/base/types.h>
 #include <perideal/scene/lists.h>
 
 #include <string>
@@ -29,5 +31,29 @@ namespace PeriDeal
            (coupled ?
               "fewer cracks, or a wider 'Zone' in section 'Coupling' where only a part of the body has bonds." :
               "'Models = coupled' with a zone around the cracks, or 'Mesh = faces' in section 'Cracks'.");
+  }
+
+
+  /** The diagonal of K of unknowns that nothing holds any more, after breaks, is like others. */
+  inline void hold_loose(Vector &diagonal)
+  {
+    const double largest = diagonal.linfty_norm();
+    for (double &value : diagonal)
+      if (!(value > 1e-13 * largest))
+        value = largest;
+  }
+
+
+  /** Mark by 1 what a matrix holds by next to nothing of a diagonal. Collective. */
+  inline void mark_loose(const dealii::TrilinosWrappers::SparseMatrix &matrix,
+                         const Vector                                 &diagonal,
+                         Vector                                       &marked)
+  {
+    for_each_entry(matrix, [&](const unsigned int row, const auto column, const double value) {
+      if (column == marked.get_partitioner()->local_to_global(row) &&
+          !(value > 1e-13 * diagonal.local_element(row)))
+        marked.local_element(row) = 1.;
+    });
+    marked.update_ghost_values();
   }
 } // namespace PeriDeal
