@@ -199,3 +199,47 @@ TEST(ZoneBreaking, crack_made_of_broken_bonds_is_the_prescribed_one)
                         return std::hypot(outside, p[2] - 0.25);
                       });
 }
+
+
+namespace
+{
+  /** A zone that follows what a field stretches: energies and forces that change with it. */
+  template <int dim>
+  void check_following_zone(const Settings &more)
+  {
+    Body<dim> body(breakable<dim>("follow", 0.3) + more, ModelKind::coupled);
+    EXPECT_EQ(body.elements->size().bonds, 0U);
+    Vector u = body.values([](const Point<dim> &p) {
+      Tensor<1, dim> value;
+      value[0] = 0.02 * std::exp(-40. * (p - 0.5 * Point<dim>::unit_vector(0)).norm_square());
+      return value;
+    });
+    body.op().distribute(u, 0.);
+    Vector forces(u), then(u);
+    body.op().unbalanced(forces, u, 0.);
+    const double whole = body.op().energy(u);
+    ASSERT_TRUE(body.op().widen_zone(u));
+    const double widened = body.op().energy(u);
+    EXPECT_NEAR(whole - widened, body.op().energy_released_by_joining(), 1e-12 * whole);
+    EXPECT_GT(body.elements->size().bonds, 0U);
+    EXPECT_FALSE(body.elements->bonds().zone_share() > 0.9);
+    ASSERT_GT(body.op().break_bonds(u, 0.1), 0U);
+    EXPECT_NEAR((whole - body.op().energy(u)) / body.op().released_energy(), 1., 1e-11);
+    // What broke joins nothing in vain, and nothing breaks twice.
+    body.op().mend_unbalanced(forces, u, 0.);
+    body.op().unbalanced(then, u, 0.);
+    const double size = then.linfty_norm();
+    then -= forces;
+    EXPECT_LT(then.linfty_norm(), 1e-12 * size);
+    EXPECT_EQ(body.op().break_bonds(u, 0.2), 0U);
+  }
+} // namespace
+
+
+TEST(ZoneBreaking, follows_what_is_stretched)
+{
+  check_following_zone<1>({});
+  check_following_zone<2>({});
+  check_following_zone<2>({{"Domain/Cells", "28, 24"}, {"Domain/Upper corner", "1.4, 1.2"}});
+  check_following_zone<3>({});
+}
