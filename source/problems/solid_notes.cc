@@ -183,6 +183,21 @@ namespace PeriDeal
         rounded_text(100. * (std::sqrt(1. + largest * largest) - 1.)) +
         " %. 'Kinematics = full', for peridynamics, turns it as it is.");
     }
+    /** Cracks that have come to the end of their zone. */
+    template <int dim>
+    void note_end_of_zone(const SolidProblem<dim> &run, const RunContext &context)
+    {
+      const auto [n, place] = run.op().stretched_outside(run.displacement);
+      if (n == 0)
+        return;
+      context.record.notes.push_back(
+        run.name() + ": " + readable_count(n) +
+        " cells are stretched beyond the critical stretch, the worst at " + place +
+        ", and have no bonds that could break: what breaks ends there. " +
+        (run.scene.coupling.follows_stretches() ?
+           "Keep cells of lattice size there: 'Fine where' or a smaller 'Coarsening' in section 'Domain'." :
+           "'Zone = follow' in section 'Coupling' goes with it."));
+    }
   } // namespace
 
 
@@ -217,6 +232,7 @@ namespace PeriDeal
     note_inversion(run, context);
     note_turning(run, context);
     note_torn_sides(run, context);
+    note_end_of_zone(run, context);
   }
 
 

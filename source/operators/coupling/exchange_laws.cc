@@ -297,6 +297,20 @@ namespace PeriDeal
 
 
   template <int dim>
+  double ElasticBonds<dim>::energy_per_square(const LatticeBonds<dim> &bonds)
+  {
+    double sum = 0.;
+    for (const auto &offset : bonds.offsets)
+      {
+        const Tensor<1, dim> xi = bonds.vector_of(offset);
+        for (unsigned int d = 0; d < dim; ++d)
+          sum += offset.weight * std::pow(xi.norm_square(), 2) * std::abs(xi[d]) / dim;
+      }
+    return 0.5 * bonds.families.nodes().lattice()->cell_volume() * sum;
+  }
+
+
+  template <int dim>
   CellSurplus ElasticBonds<dim>::calibrate(LatticeBonds<dim> &bonds)
   {
     set_weights(bonds);

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/symmetric_tensor.h>
 
+#include <perideal/base/place_text.h>
 #include <perideal/base/point_order.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/coupling/exchange_laws.h>
@@ -21,22 +22,6 @@ namespace PeriDeal
 
   namespace
   {
-    /** What s^2 is multiplied by in the energy of a unit area, for bonds of stiffness 1. */
-    template <int dim>
-    double energy_per_square(const LatticeBonds<dim> &bonds)
-    {
-      const Lattice<dim> &lattice = *bonds.families.nodes().lattice();
-      double              sum     = 0.;
-      for (const auto &offset : bonds.offsets)
-        {
-          const Tensor<1, dim> xi = bonds.vector_of(offset);
-          for (unsigned int d = 0; d < dim; ++d)
-            sum += offset.weight * std::pow(xi.norm_square(), 2) * std::abs(xi[d]) / dim;
-        }
-      return 0.5 * lattice.cell_volume() * sum;
-    }
-
-
     template <typename T>
     std::vector<T> gather(const std::vector<T> &own, const MPI_Comm communicator)
     {
@@ -102,7 +87,7 @@ namespace PeriDeal
   void ZoneBreaking<dim>::find_critical_stretches(const BodyParameters<dim> &body)
   {
     const Material          &material  = body.material;
-    const double             of_square = energy_per_square(of_lattice);
+    const double             of_square = ElasticBonds<dim>::energy_per_square(of_lattice);
     const CellStiffness<dim> stiffness = ElasticBonds<dim>::stiffness(body);
     std::string              message;
     Vector                   stretches(nodes.partitioner());
@@ -276,16 +261,22 @@ namespace PeriDeal
   double ZoneBreaking<dim>::largest_strain(const std::array<unsigned int, n_corners> &corners,
                                            const Vector                              &u) const
   {
-    const Tensor<1, dim> &spacing = nodes.lattice()->spacing;
-    Tensor<2, dim>        gradient;
+    const Tensor<1, dim> size = nodes.position(corners[n_corners - 1]) - nodes.position(corners[0]);
+    Tensor<2, dim>       gradient;
+    double               limit = std::numeric_limits<double>::max(), warm = 0.;
     for (unsigned int v = 0; v < n_corners; ++v)
       for (unsigned int e = 0; e < dim; ++e)
         {
-          const double slope = ((v >> e) & 1 ? 2. : -2.) / (n_corners * spacing[e]);
+          const double slope = ((v >> e) & 1 ? 2. : -2.) / (n_corners * size[e]);
           for (unsigned int d = 0; d < dim; ++d)
             gradient[d][e] += slope * u.local_element(dim * corners[v] + d);
         }
-    return eigenvalues(symmetrize(gradient))[0];
+    for (const unsigned int i : corners)
+      {
+        limit = std::min(limit, critical[i]);
+        warm += thermal.empty() ? 0. : thermal[i] / n_corners;
+      }
+    return (eigenvalues(symmetrize(gradient))[0] - warm) / limit;
   }
 
 
@@ -300,12 +291,7 @@ namespace PeriDeal
     };
     std::vector<Point<dim>> own;
     const auto              is_lit = [&](const std::array<unsigned int, n_corners> &corners) {
-      double limit = std::numeric_limits<double>::max(), warm = 0.;
-      for (const unsigned int i : corners)
-        limit = std::min(limit, critical[i]);
-      for (unsigned int v = 0; v < n_corners && !thermal.empty(); ++v)
-        warm += thermal[corners[v]] / n_corners;
-      if (!(largest_strain(corners, u) - warm >= share_of_zone * limit))
+      if (!(largest_strain(corners, u) >= share_of_zone))
         return false;
       own.push_back(centre(corners));
       return true;
@@ -320,6 +306,44 @@ namespace PeriDeal
     for (const Point<dim> &p : gather(ends, nodes.communicator()))
       places.push_back(p);
     return places;
+  }
+
+
+  template <int dim>
+  std::pair<unsigned long long, std::string> ZoneBreaking<dim>::stretched_outside(
+    const Vector          &u,
+    const DoFHandler<dim> &dofs) const
+  {
+    unsigned long long                         n = 0;
+    std::vector<std::pair<double, Point<dim>>> worst;
+    u.update_ghost_values();
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          std::array<unsigned int, n_corners> corners;
+          bool                                inside = true;
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              corners[v] = nodes.partitioner()->global_to_local(cell->vertex_dof_index(v, 0));
+              inside     = inside && of_lattice.in_zone(corners[v]);
+            }
+          if (inside)
+            continue;
+          const double strain = largest_strain(corners, u);
+          if (!(strain > 1.))
+            continue;
+          ++n;
+          if (worst.empty() || strain > worst[0].first)
+            worst.assign(1, {strain, cell->center()});
+        }
+    u.set_ghost_state(false);
+    const auto all = gather(worst, nodes.communicator());
+    if (all.empty())
+      return {};
+    const auto most = std::max_element(all.begin(), all.end(), [](const auto &a, const auto &b) {
+      return a.first < b.first;
+    });
+    return {Utilities::MPI::sum(n, nodes.communicator()), place_text(most->second)};
   }
 
 

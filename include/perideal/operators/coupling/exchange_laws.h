@@ -150,6 +150,13 @@ namespace PeriDeal
      */
     static CellSurplus calibrate(LatticeBonds<dim> &bonds);
 
+    /**
+     * Energy per area of the bonds that a plane of a calibrated lattice cuts, all stretched by s,
+     * over s^2, for unit stiffness; the mean over the axes n:
+     *   V/2 sum over half the family of w x^4 |xi_n|.
+     */
+    static double energy_per_square(const LatticeBonds<dim> &bonds);
+
     ElasticBonds(Families<dim> &families, const BodyParameters<dim> &)
       : families(families)
     {}

@@ -103,6 +103,12 @@ namespace PeriDeal
     /** Break these bonds of the zone, named alike by all processes, at the state u. Collective. */
     void break_pairs(const std::vector<NodePair> &pairs, const Vector &u, const double t);
 
+    std::pair<unsigned long long, std::string> stretched_outside(const Vector &u) const override
+    {
+      return breaking ? breaking->stretched_outside(u, dofs) :
+                        std::pair<unsigned long long, std::string>();
+    }
+
     /** ZoneBreaking::damage(); empty where no bonds may break. Not collective. */
     std::vector<double> damage() const
     {

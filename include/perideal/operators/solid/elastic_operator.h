@@ -9,6 +9,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -205,6 +206,16 @@ namespace PeriDeal
     virtual void mend_unbalanced(Vector &r, const Vector &u, const double t) const
     {
       unbalanced(r, u, t);
+    }
+
+    /**
+     * Cells outside of the zone of a coupling that u stretches beyond the critical stretch, though
+     * no bond of theirs is there to break: how many, and the place of the worst as `(x, y)`.
+     * Collective.
+     */
+    virtual std::pair<unsigned long long, std::string> stretched_outside(const Vector & /*u*/) const
+    {
+      return {};
     }
 
     /** Some strain energy may be released: bonds break, or cracks grow. Not collective. */

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace PeriDeal
@@ -73,6 +74,11 @@ namespace PeriDeal
      */
     std::vector<dealii::Point<dim>> find_places_to_join(const Vector &u);
 
+    /** As ElasticOperator::stretched_outside(). */
+    std::pair<unsigned long long, std::string> stretched_outside(
+      const Vector                  &u,
+      const dealii::DoFHandler<dim> &dofs) const;
+
     /** Nodes known here within a horizon of these that are to join, ascending. Not collective. */
     std::vector<unsigned int> joining(const std::vector<dealii::Point<dim>> &places) const;
 
@@ -123,8 +129,9 @@ namespace PeriDeal
       double   time;
     };
 
-    void   find_critical_stretches(const BodyParameters<dim> &body);
-    void   find_cells(const dealii::DoFHandler<dim> &dofs);
+    void find_critical_stretches(const BodyParameters<dim> &body);
+    void find_cells(const dealii::DoFHandler<dim> &dofs);
+    /** Thermal strain taken off, over the smallest critical stretch of the corners. */
     double largest_strain(const std::array<unsigned int, n_corners> &corners,
                           const Vector                              &u) const;
     void   keep_first_place(const std::vector<std::pair<NodePair, double>> &found);
