@@ -53,10 +53,20 @@ namespace PeriDeal
   }
 
 
-  std::vector<BondState::Kept> BondState::exchange(Archive                        &archive,
-                                                   const std::vector<std::size_t> &starts,
-                                                   const NodeKeys                 &keys,
-                                                   const std::size_t               n_first)
+  BondState::Numbering BondState::by_starts(const std::vector<std::size_t> &starts)
+  {
+    return {[&starts](const std::size_t number) -> std::size_t {
+              return std::upper_bound(starts.begin(), starts.end(), number) - starts.begin() - 1;
+            },
+            [&starts](const std::size_t node) { return starts[node]; },
+            [&starts]() { return starts.back(); }};
+  }
+
+
+  std::vector<BondState::Kept> BondState::exchange(Archive          &archive,
+                                                   const Numbering  &numbering,
+                                                   const NodeKeys   &keys,
+                                                   const std::size_t n_first)
   {
     KeyedPairs        pairs; // a node, and the number of its bond among its own
     std::vector<Kept> kept;
@@ -64,9 +74,8 @@ namespace PeriDeal
       for (std::size_t k = 0; k < times.size(); ++k)
         {
           const auto [number, time] = times[k];
-          const auto        next    = std::upper_bound(starts.begin(), starts.end(), number);
-          const std::size_t node    = next - starts.begin() - 1;
-          pairs.keys.push_back({keys[node], number - starts[node]});
+          const std::size_t node    = numbering.node_of(number);
+          pairs.keys.push_back({keys[node], number - numbering.first_of(node)});
           pairs.values.insert(pairs.values.end(),
                               {time, static_cast<double>(marks[number]), k < n_first ? 1. : 0.});
         }
@@ -76,12 +85,12 @@ namespace PeriDeal
     std::unordered_map<std::uint64_t, std::size_t> node_of;
     for (std::size_t node = 0; node < keys.size(); ++node)
       node_of[keys[node]] = node;
-    resize(starts.back());
     for (std::size_t k = 0; k < pairs.keys.size(); ++k)
-      kept.push_back({starts[node_of.at(pairs.keys[k][0])] + pairs.keys[k][1],
+      kept.push_back({numbering.first_of(node_of.at(pairs.keys[k][0])) + pairs.keys[k][1],
                       static_cast<Mark>(pairs.values[3 * k + 1]),
                       pairs.values[3 * k],
                       pairs.values[3 * k + 2] > 0.});
+    resize(numbering.n_bonds());
     std::sort(kept.begin(), kept.end(), [](const Kept &a, const Kept &b) {
       return a.number < b.number;
     });

@@ -18,6 +18,7 @@ namespace PeriDeal
         : MotionStepper(op, dt, 0.125)
       {
         op.initialize_vector(acceleration);
+        op.forgoes_diagonal = true;
       }
 
       std::string name() const override

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -30,29 +31,32 @@ namespace PeriDeal
       dependent // of a fictitious node: what it follows from is gone
     };
 
-    /** A list of so many bonds, all whole. Without it all bonds are whole, and none is marked. */
+    /**
+     * A list of so many bonds; those that come to it are whole. Bonds beyond its end are whole, and
+     * none of them is marked.
+     */
     void resize(const std::size_t n);
 
     std::size_t size() const;
 
     bool is_whole(const std::size_t number) const
     {
-      return marks.empty() || marks[number] == whole;
+      return number >= marks.size() || marks[number] == whole;
     }
 
     bool is_parted(const std::size_t number) const
     {
-      return !marks.empty() && marks[number] == parted;
+      return number < marks.size() && marks[number] == parted;
     }
 
     bool is_broken(const std::size_t number) const
     {
-      return !marks.empty() && marks[number] == broken;
+      return number < marks.size() && marks[number] == broken;
     }
 
     Mark operator[](const std::size_t number) const
     {
-      return marks.empty() ? whole : marks[number];
+      return number < marks.size() ? marks[number] : whole;
     }
 
     /** Of a whole bond; it stays so. @param time since when, that of the run */
@@ -70,18 +74,29 @@ namespace PeriDeal
       bool        is_first; // it is among the marks that were told to be
     };
 
+    /** Where the bonds of a list belong. */
+    struct Numbering
+    {
+      std::function<std::size_t(std::size_t)> node_of;  // by the number of a bond
+      std::function<std::size_t(std::size_t)> first_of; // number of a node's first bond
+      std::function<std::size_t()>            n_bonds;  // asked for after first_of
+    };
+
+    /** @param starts of the bonds of each owned node in the list; referred to */
+    static Numbering by_starts(const std::vector<std::size_t> &starts);
+
     /**
      * Archive the marks of bonds that have been whole at first, and since when, or return those of
      * the archive, in ascending order of numbers. The list has its size then; marks are not set.
      * Collective.
      *
-     * @param starts  of the bonds of each owned node in the list
+     * @param numbering of the bonds; nodes that are asked for have got a mark
      * @param n_first so many marks were set at first, n_marks() of an earlier time
      */
-    std::vector<Kept> exchange(Archive                        &archive,
-                               const std::vector<std::size_t> &starts,
-                               const NodeKeys                 &keys,
-                               const std::size_t               n_first);
+    std::vector<Kept> exchange(Archive          &archive,
+                               const Numbering  &numbering,
+                               const NodeKeys   &keys,
+                               const std::size_t n_first);
 
     /** Those at the start apart. */
     std::size_t n_marks() const

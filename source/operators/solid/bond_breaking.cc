@@ -131,6 +131,8 @@ namespace PeriDeal
     if (!breaks)
       return;
     find_critical_stretches();
+    if (bonds.rows.has_lattice())
+      screen = std::make_unique<StretchScreen<dim>>(bonds.families, critical);
     loaded_side = loads.sides_nearby(bonds.families);
   }
 
@@ -192,35 +194,72 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondBreaking<dim>::find_overstretched(const Vector &u, const double share)
+  double BondBreaking<dim>::overstretch(const double                        *u,
+                                        const unsigned int                   i,
+                                        const typename SolidRows<dim>::Bond &bond) const
   {
-    const Families<dim>       &families   = bonds.families;
+    // W x e and W x^2; the same digits at both ends of a bond.
     const BondKinematics<dim> &kinematics = bonds.kinematics;
-    double                     most       = 0.;
-    u.update_ghost_values();
+    const Tensor<1, dim>       xi    = bonds.families.neighbors().bond_vector(i, bond.neighbor);
+    const double               all   = kinematics.is_full() ? kinematics.length(bond) * xi.norm() :
+                                                              bond.moment * xi;
+    const double               limit = all * std::min(critical[i], critical[bond.neighbor]);
+    const double               found = kinematics.extension_moment(u, i, bond);
+    return found > limit ? found / limit : 0.;
+  }
+
+
+  template <int dim>
+  void BondBreaking<dim>::find_inside(const double *u)
+  {
+    SolidRows<dim> &rows = bonds.rows;
     inside.clear();
-    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-      bonds.rows.for_each_stored(i, [&](const auto &bond) {
+    const auto look_at_row = [&](const unsigned int i) {
+      rows.for_each_stored(i, [&](const auto &bond) {
         if (!state.is_whole(bond.number))
           return;
-        // W x e and W x^2; the same digits at both ends of a bond.
-        const unsigned int   j     = bond.neighbor;
-        const Tensor<1, dim> xi    = families.neighbors().bond_vector(i, j);
-        const double         all   = kinematics.is_full() ? kinematics.length(bond) * xi.norm() :
-                                                            bond.moment * xi;
-        const double         limit = all * std::min(critical[i], critical[j]);
-        const double         found = kinematics.extension_moment(u.begin(), i, bond);
-        if (found > limit)
-          inside.emplace_back(bond.number, found / limit);
+        if (const double ratio = overstretch(u, i, bond); ratio > 0.)
+          inside.emplace_back(bond.number, ratio);
       });
+    };
+    for (unsigned int i = 0; !screen && i < bonds.families.nodes().n_owned(); ++i)
+      look_at_row(i);
+    if (!screen)
+      return;
+    for (const unsigned int i : screen->suspects(u, bonds.thermal.least()))
+      {
+        if (rows.is_on_lattice(i))
+          {
+            bool any = false;
+            if (screen->may_reach(i, u, bonds.thermal.least()))
+              rows.for_each_to_store(i, family, [&](const auto &bond) {
+                any = any || overstretch(u, i, bond) > 0.;
+              });
+            if (!any)
+              continue;
+            rows.store_row(i);
+            state.resize(rows.n_stored());
+          }
+        look_at_row(i);
+      }
+  }
+
+
+  template <int dim>
+  void BondBreaking<dim>::find_overstretched(const Vector &u, const double share)
+  {
+    u.update_ghost_values();
+    find_inside(u.begin());
     beyond = bonds.beyond ? bonds.beyond->find_overstretched(u.begin(), critical) : Overstretched();
     u.set_ghost_state(false);
     if (share <= 0.)
       return;
+    double most = 0.;
     for (const Overstretched *list : {&inside, &beyond})
       for (const auto &[number, ratio] : *list)
         most = std::max(most, ratio);
-    const double at_least = share * Utilities::MPI::max(most, families.nodes().communicator());
+    const double at_least =
+      share * Utilities::MPI::max(most, bonds.families.nodes().communicator());
     for (Overstretched *list : {&inside, &beyond})
       list->erase(std::remove_if(list->begin(),
                                  list->end(),
@@ -289,15 +328,27 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned long long BondBreaking<dim>::break_overstretched(const double               t,
-                                                            std::vector<unsigned int> &touched)
+  void BondBreaking<dim>::find_losing()
   {
-    std::set<unsigned int> nodes;
+    losing.clear();
+    for (const auto &[number, ratio] : inside)
+      losing.push_back(bonds.rows.node_of(number));
+    if (bonds.beyond)
+      bonds.beyond->for_each_in(beyond, [&](const auto &bond, const double) {
+        losing.push_back(bond.node);
+      });
+    std::sort(losing.begin(), losing.end());
+    losing.erase(std::unique(losing.begin(), losing.end()), losing.end());
+  }
+
+
+  template <int dim>
+  unsigned long long BondBreaking<dim>::break_overstretched(const double t)
+  {
     for (const auto &[number, ratio] : inside)
       {
         state.mark(number, BondState::broken, t);
         bonds.kinematics.release(number);
-        nodes.insert(bonds.rows.node_of(number));
       }
     unsigned long long n_ends = inside.size();
     if (bonds.beyond)
@@ -305,9 +356,8 @@ namespace PeriDeal
         bonds.beyond->for_each_in(beyond, [&](const auto &bond, const double) {
           n_ends += bonds.beyond->n_ends(bond);
           bonds.beyond->break_bond(bond.number, BondState::broken, t);
-          nodes.insert(bond.node);
         });
-        for (const unsigned int i : nodes)
+        for (const unsigned int i : losing)
           {
             std::vector<unsigned int> lost;
             bonds.rows.for_each_stored(i, [&](const auto &bond) {
@@ -317,7 +367,6 @@ namespace PeriDeal
             bonds.beyond->break_dependent(i, lost, t);
           }
       }
-    touched.assign(nodes.begin(), nodes.end());
     return n_ends;
   }
 
@@ -337,11 +386,13 @@ namespace PeriDeal
     if (Utilities::MPI::sum(n_found, all) == 0)
       return {};
     keep_places();
+    find_losing();
     const double   before = energy();
     ChangeSet<dim> change;
     change.since  = t;
     change.damage = true;
-    so_far.n_broken += Utilities::MPI::sum(break_overstretched(t, change.nodes), all) / 2;
+    change.nodes  = losing;
+    so_far.n_broken += Utilities::MPI::sum(break_overstretched(t), all) / 2;
     so_far.released += before - energy();
     return change;
   }
@@ -373,8 +424,9 @@ namespace PeriDeal
       return;
     if (breaks)
       so_far.exchange(archive);
-    using List            = std::vector<BondState::Kept>;
-    const List of_body    = state.exchange(archive, bonds.rows.first_of_nodes(), keys, n_first[0]);
+    using List = std::vector<BondState::Kept>;
+    const List of_body =
+      state.exchange(archive, bonds.rows.numbering(archive.loads()), keys, n_first[0]);
     const List of_outside = bonds.beyond ? bonds.beyond->exchange(archive, keys, n_first[1]) :
                                            List();
     if (!archive.loads())
@@ -412,11 +464,11 @@ namespace PeriDeal
         // Bonds are stored in the order of the family, those left out that cracks cut at first.
         bonds.families.members_of(i, family);
         double      all = 0., left = 0.;
-        std::size_t k = bonds.rows.first_of_nodes()[i];
+        std::size_t k = bonds.rows.begin_of(i);
         for (const auto &bond : family)
           {
             const double volume = nodes.volume(bond.neighbor);
-            const bool   stored = k < bonds.rows.first_of_nodes()[i + 1] &&
+            const bool   stored = k < bonds.rows.end_of(i) &&
                                 bonds.rows.neighbor(k) == bond.neighbor && bond.weight != 0.;
             if (!stored)
               {

@@ -94,6 +94,18 @@ namespace PeriDeal
   }
 
 
+  double ElasticOperator::released_energy() const
+  {
+    return released_by_growth + released_by_joining + (brittle() ? break_history()->released : 0.);
+  }
+
+
+  unsigned long long ElasticOperator::n_broken_bonds() const
+  {
+    return brittle() ? break_history()->n_broken : 0;
+  }
+
+
   const BreakPlaces &ElasticOperator::break_places() const
   {
     static const BreakPlaces none;

@@ -327,7 +327,7 @@ namespace PeriDeal
                                                               const std::size_t n_first)
   {
     const Archive::Part part(archive, "fictitious nodes");
-    return state.exchange(archive, starts, keys, n_first);
+    return state.exchange(archive, BondState::by_starts(starts), keys, n_first);
   }
 
 

@@ -67,6 +67,7 @@ namespace PeriDeal
     Family            family;
     std::string       message;
     std::vector<bool> changing;
+    row_of.assign(nodes.n_owned(), no_row);
     if (leave_out)
       {
         list_lattice_bonds();
@@ -75,24 +76,29 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const bool complete = leave_out && has_complete_family(i);
+        bool       stored   = !leave_out;
         if (complete && !families.near_crack(i) && !changing[i])
           n_whole += 0.5 * static_cast<double>(lattice_bonds.size()); // at each end
         else
           {
             families.members_of(i, family);
-            if (leave_out)
-              on_lattice[i] = !changing[i] &&
-                              std::none_of(family.begin(), family.end(), [](const auto &bond) {
-                                return bond.kept < 1. || bond.weight == 0.;
-                              });
-            store(i, family, message);
+            stored = stored || changing[i] ||
+                     std::any_of(family.begin(), family.end(), [](const auto &bond) {
+                       return bond.kept < 1. || bond.weight == 0.;
+                     });
+            n_whole += 0.5 * static_cast<double>(
+                               std::count_if(family.begin(), family.end(), [](const auto &bond) {
+                                 return bond.kept * bond.weight != 0.;
+                               }));
+            laws.weighted.local_element(i) = weight_of(i, family, message);
           }
-        if (complete && on_lattice[i])
+        if (stored)
+          add_row(i, family);
+        else if (complete)
           laws.weighted.local_element(i) = q; // to the last bit
-        starts.push_back(neighbors.size());
-        if (!leave_out || !on_lattice[i])
-          stored_nodes.push_back(i);
       }
+    if (!leave_out)
+      row_of.clear(); // all rows, in the order of their nodes
     throw_on_all_if_any(nodes.communicator(), message);
   }
 
@@ -125,7 +131,6 @@ namespace PeriDeal
   void SolidRows<dim>::list_lattice_bonds()
   {
     const Nodes<dim> &nodes = families.nodes();
-    on_lattice.assign(nodes.n_owned(), true);
     for (const FamilyMember<dim> &member : families.weights().members())
       {
         LatticeBond bond;
@@ -167,24 +172,47 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidRows<dim>::store(const unsigned int i, const Family &family, std::string &message)
+  void SolidRows<dim>::add_row(const unsigned int i, const Family &family)
   {
-    const bool stored = !is_on_lattice(i);
     for (const auto &bond : family)
       {
         const double weight = bond.kept * bond.weight;
         if (weight == 0.)
           continue;
         AssertIndexRange(bond.neighbor, families.nodes().n_local()); // no fictitious nodes
-        n_whole += 0.5;                                              // at each end
-        if (!stored)
-          continue;
         const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
         neighbors.push_back(bond.neighbor);
         moments.push_back(weight * xi);
         springs.push_back(weight * xi.norm_square());
       }
-    laws.weighted.local_element(i) = weight_of(i, family, message);
+    row_of[i] = static_cast<std::uint32_t>(stored_nodes.size());
+    stored_nodes.push_back(i);
+    starts.push_back(neighbors.size());
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::store_row(const unsigned int i)
+  {
+    Assert(is_on_lattice(i), ExcInternalError());
+    Family family;
+    families.members_of(i, family);
+    add_row(i, family);
+    for (std::size_t k = begin_of(i); k < end_of(i); ++k)
+      springs[k] = (laws.stiffness(i) + laws.stiffness(neighbors[k])) / springs[k]; // W x^2
+  }
+
+
+  template <int dim>
+  BondState::Numbering SolidRows<dim>::numbering(const bool stores)
+  {
+    return {[this](const std::size_t number) -> std::size_t { return node_of(number); },
+            [this, stores](const std::size_t node) {
+              if (stores && is_on_lattice(node))
+                store_row(node);
+              return begin_of(node);
+            },
+            [this]() { return n_stored(); }};
   }
 
 
@@ -231,9 +259,9 @@ namespace PeriDeal
   {
     Family family;
     families.members_of(i, family);
-    std::size_t k = starts[i];
+    std::size_t k = begin_of(i);
     for (const auto &bond : family)
-      if (k < starts[i + 1] && neighbors[k] == bond.neighbor && bond.weight != 0.)
+      if (k < end_of(i) && neighbors[k] == bond.neighbor && bond.weight != 0.)
         {
           const double square =
             bond.weight * families.neighbors().bond_vector(i, bond.neighbor).norm_square();
@@ -277,7 +305,7 @@ namespace PeriDeal
     if (body.peridynamics.corrects_elastic_bonds())
       correct_surface(body);
     for (const unsigned int i : stored_nodes)
-      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+      for (std::size_t k = begin_of(i); k < end_of(i); ++k)
         springs[k] = (laws.stiffness(i) + laws.stiffness(neighbors[k])) / springs[k]; // W x^2
     if (!lattice_bonds.empty())
       make_lattice();
@@ -299,14 +327,17 @@ namespace PeriDeal
         if (laws.volumetric && i < families.nodes().n_owned())
           coefficients.dilatations.push_back(laws[i].volumetric * laws[i].dilatation / (own * own));
       }
-    lattice = std::make_unique<StateLattice<dim>>(families, coefficients, on_lattice);
+    std::vector<bool> computed;
+    for (const std::uint32_t row : row_of)
+      computed.push_back(row == no_row);
+    lattice = std::make_unique<StateLattice<dim>>(families, coefficients, computed);
   }
 
 
   template <int dim>
   bool SolidRows<dim>::is_regular(const unsigned int i) const
   {
-    return lattice && on_lattice[i] && lattice->is_regular(i);
+    return lattice && is_on_lattice(i) && lattice->is_regular(i);
   }
 
 
@@ -315,13 +346,14 @@ namespace PeriDeal
   {
     if (lattice)
       lattice->dilatation_forces(tau, u);
-    for (const unsigned int i : stored_nodes)
+    for (std::size_t row = 0; row < stored_nodes.size(); ++row)
       {
-        Tensor<1, dim> own;
+        const unsigned int i = stored_nodes[row];
+        Tensor<1, dim>     own;
         for (unsigned int d = 0; d < dim; ++d)
           own[d] = u[dim * i + d];
         double sum = 0.;
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+        for (std::size_t k = starts[row]; k < starts[row + 1]; ++k)
           {
             const double *const   v = u + dim * neighbors[k];
             const Tensor<1, dim> &p = moments[k];
@@ -338,11 +370,12 @@ namespace PeriDeal
   {
     if (lattice)
       lattice->forces(y, u, tau);
-    const auto sum_row = [&](const unsigned int i, const auto &tension) {
-      Tensor<1, dim> own, force;
+    const auto sum_row = [&](const std::size_t row, const auto &tension) {
+      const unsigned int i = stored_nodes[row];
+      Tensor<1, dim>     own, force;
       for (unsigned int d = 0; d < dim; ++d)
         own[d] = u[dim * i + d];
-      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+      for (std::size_t k = starts[row]; k < starts[row + 1]; ++k)
         {
           const double *const   v       = u + dim * neighbors[k];
           const Tensor<1, dim> &p       = moments[k];
@@ -356,13 +389,14 @@ namespace PeriDeal
       for (unsigned int d = 0; d < dim; ++d)
         y[dim * i + d] = -force[d];
     };
-    for (const unsigned int i : stored_nodes)
+    for (std::size_t row = 0; row < stored_nodes.size(); ++row)
       if (tau != nullptr)
-        sum_row(i, [tau, own = tau[i]](const double of_spring, const unsigned int j) {
-          return of_spring + own + tau[j];
-        });
+        sum_row(row,
+                [tau, own = tau[stored_nodes[row]]](const double of_spring, const unsigned int j) {
+                  return of_spring + own + tau[j];
+                });
       else
-        sum_row(i, [](const double of_spring, const unsigned int) { return of_spring; });
+        sum_row(row, [](const double of_spring, const unsigned int) { return of_spring; });
   }
 
 
@@ -379,7 +413,8 @@ namespace PeriDeal
   std::size_t SolidRows<dim>::memory_consumption() const
   {
     return neighbors.size() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
-           starts.size() * sizeof(std::size_t) + stored_nodes.size() * sizeof(unsigned int) +
+           starts.size() * sizeof(std::size_t) +
+           (stored_nodes.size() + row_of.size()) * sizeof(unsigned int) +
            (lattice ? lattice->memory_consumption() : 0);
   }
 

@@ -269,6 +269,37 @@ namespace PeriDeal
 
 
   template <int dim>
+  double StateOperator<dim>::energy_of(const std::vector<unsigned int> &of_nodes,
+                                       const Vector                    &u) const
+  {
+    u.update_ghost_values();
+    if (solid.beyond)
+      solid.beyond->images().find(u.begin());
+    double sum = 0.;
+    for (const unsigned int i : of_nodes)
+      {
+        double of_node = 0., own = 0.; // sum of W x e
+        solid.rows.for_each(i, [&](const auto &bond) {
+          const double product = solid.kinematics.extension_moment(u.begin(), i, bond);
+          own += product;
+          of_node += 0.25 * bond.spring * product * product;
+        });
+        if (solid.beyond)
+          solid.beyond->for_each_of(i, [&](const auto &bond) {
+            const double product = solid.beyond->extension_moment(bond, u.begin());
+            own += product;
+            of_node += 0.5 * bond.spring * product * product;
+          });
+        if (solid.laws.volumetric)
+          of_node += 0.5 * solid.laws.tension(i, own) * own;
+        sum += of_node;
+      }
+    u.set_ghost_state(false);
+    return Utilities::MPI::sum(sum, solid.families.nodes().communicator());
+  }
+
+
+  template <int dim>
   NodalTensors<dim> StateOperator<dim>::tensors(const Vector &u) const
   {
     u.update_ghost_values();
@@ -397,7 +428,8 @@ namespace PeriDeal
                                                      const double  share)
   {
     const unsigned long long before = this->n_broken_bonds();
-    const auto change = breakage.break_bonds(u, t, share, [&]() { return energy(u); });
+    const auto               change =
+      breakage.break_bonds(u, t, share, [&]() { return energy_of(breakage.nodes_at_work(), u); });
     if (!change)
       return 0;
     apply_change(*change, true);
@@ -410,16 +442,16 @@ namespace PeriDeal
   {
     if (!change.damage)
       breakage.apply_change(change, loaded);
-    follow_bonds(change.damage && !solid.beyond ? &change.nodes : nullptr);
+    follow_bonds(change.damage ? &change.nodes : nullptr);
   }
 
 
   template <int dim>
   void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *of_nodes)
   {
-    if (of_nodes)
+    if (of_nodes && !solid.beyond)
       mend_stiffness_diagonal(solid, *of_nodes, stiffness_diagonal);
-    else
+    else if (!of_nodes || !this->forgoes_diagonal)
       find_stiffness_diagonal(solid, stiffness_diagonal);
     conditions->mask(stiffness_diagonal, 1.);
     if (solid.thermal.any())
@@ -451,9 +483,9 @@ namespace PeriDeal
     size.bonds    = std::llround(Utilities::MPI::sum(rows.n_bonds(), all));
     size.nonzeros =
       std::llround(Utilities::MPI::sum(static_cast<double>(rows.n_stored()) * (dim + 1.), all));
-    size.memory = solid.families.memory_consumption() +
-                  breakage.broken_state().memory_consumption() + solid.laws.memory_consumption() +
-                  solid.thermal.memory_consumption() + rows.memory_consumption() +
+    size.memory = solid.families.memory_consumption() + breakage.memory_consumption() +
+                  solid.laws.memory_consumption() + solid.thermal.memory_consumption() +
+                  rows.memory_consumption() +
                   (solid.beyond ? solid.beyond->memory_consumption() : 0);
     size.form = rows.has_lattice() ? "lattice" : "stored";
     return size;

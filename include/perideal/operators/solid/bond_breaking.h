@@ -6,9 +6,11 @@
 #include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/operators/solid/solid_bonds.h>
 #include <perideal/operators/solid/solid_loads.h>
+#include <perideal/operators/solid/stretch_screen.h>
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -42,12 +44,18 @@ namespace PeriDeal
      * or nothing if there were none on any process. Collective.
      *
      * @param t      the time of u, kept with each bond
-     * @param energy of the body as it is, collective
+     * @param energy of the body as it is, or of nodes_at_work() alone; collective
      */
     std::optional<ChangeSet<dim>> break_bonds(const Vector                  &u,
                                               const double                   t,
                                               const double                   share,
                                               const std::function<double()> &energy);
+
+    /** The owned nodes that lose a bond in this break_bonds(), or have done so in the last one. */
+    const std::vector<unsigned int> &nodes_at_work() const
+    {
+      return losing;
+    }
 
     /**
      * What cracks cut as they grow is marked, too. Collective. Throws UserError.
@@ -113,13 +121,25 @@ namespace PeriDeal
      */
     std::vector<double> damage() const;
 
-  private:
-    void find_critical_stretches();
-    void find_overstretched(const Vector &u, const double share);
-    void keep_places(); // of what is overstretched
+    std::size_t memory_consumption() const
+    {
+      return state.memory_consumption() + critical.capacity() * sizeof(double) +
+             loaded_side.capacity() * sizeof(unsigned int) +
+             (screen ? screen->memory_consumption() : 0);
+    }
 
-    /** Returns the number of ends of bonds. @param touched the owned nodes that lose a bond */
-    unsigned long long break_overstretched(const double t, std::vector<unsigned int> &touched);
+  private:
+    void   find_critical_stretches();
+    double overstretch(const double                        *u,
+                       const unsigned int                   i,
+                       const typename SolidRows<dim>::Bond &bond) const; // over 1, or 0
+    void   find_inside(const double *u);
+    void   find_overstretched(const Vector &u, const double share);
+    void   find_losing();
+    void   keep_places(); // of what is overstretched
+
+    /** Returns the number of ends of bonds. */
+    unsigned long long break_overstretched(const double t);
 
     SolidBonds<dim>           &bonds;
     const BodyParameters<dim> &body;
@@ -129,5 +149,8 @@ namespace PeriDeal
     BreakHistory               so_far;
     std::vector<unsigned int>  loaded_side;    // which in `Traction` is within a horizon of these
     Overstretched              inside, beyond; // what is to break next, inside by stored bonds
+    std::vector<unsigned int>  losing;         // nodes of these, in ascending order
+    std::unique_ptr<StretchScreen<dim>>         screen; // null: all bonds are looked at
+    std::vector<typename Families<dim>::Member> family; // of the node that is looked at
   };
 } // namespace PeriDeal

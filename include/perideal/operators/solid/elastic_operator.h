@@ -218,6 +218,9 @@ namespace PeriDeal
       return {};
     }
 
+    /** Explicit steps follow: diagonal() and surrogate() need not know which bonds break. */
+    bool forgoes_diagonal = false;
+
     /** Some strain energy may be released: bonds break, or cracks grow. Not collective. */
     bool may_release_energy() const
     {
@@ -249,16 +252,9 @@ namespace PeriDeal
     }
 
     /** All strain energy released so far, by broken bonds, too. Not collective. */
-    double released_energy() const
-    {
-      return released_by_growth + released_by_joining +
-             (brittle() ? break_history()->released : 0.);
-    }
+    double released_energy() const;
 
-    unsigned long long n_broken_bonds() const
-    {
-      return brittle() ? break_history()->n_broken : 0;
-    }
+    unsigned long long n_broken_bonds() const;
 
     /** Where; empty while none have. Not collective. */
     const BreakPlaces &break_places() const;

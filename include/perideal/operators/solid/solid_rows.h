@@ -9,6 +9,7 @@
 #include <perideal/operators/solid/node_laws.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,12 +23,12 @@ namespace PeriDeal
   /**
    * The bonds of the linear peridynamic solid between nodes of the body (StateOperator), row by
    * row, and the sums over them that an application takes. On a lattice in 2D and 3D, with linear
-   * kinematics, where nothing breaks and no surface is corrected, nodes store none (StateLattice)
-   * whose bonds no crack cuts, now or later. Other bonds are stored at both ends: W xi, one number,
-   * a column.
+   * kinematics, where no surface is corrected, nodes store none (StateLattice) whose bonds no crack
+   * cuts, now or later. Other bonds are stored at both ends: W xi, one number, a column.
    *
    * A bond that breaks, or that a growing crack cuts, stays in its row and bears nothing
-   * (release()).
+   * (release()). A node gets a row when the first of its bonds is about to break (store_row()): its
+   * sums then are those of the row, what the lattice finds there is overwritten.
    */
   template <int dim>
   class SolidRows
@@ -78,9 +79,18 @@ namespace PeriDeal
     template <typename Visit>
     void for_each_stored(const unsigned int i, const Visit &visit) const
     {
-      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+      for (std::size_t k = begin_of(i); k < end_of(i); ++k)
         visit(Bond{k, neighbors[k], moments[k], springs[k]});
     }
+
+    /**
+     * Visit the bonds of an owned node that stores none as it would store them, to the last bit,
+     * with their places in the row for numbers, and without their springs. @p family is scratch.
+     */
+    template <typename Visit>
+    void for_each_to_store(const unsigned int                           i,
+                           std::vector<typename Families<dim>::Member> &family,
+                           const Visit                                 &visit) const;
 
     /** The same of a node that stores none, those of a list. */
     template <typename Visit>
@@ -91,8 +101,11 @@ namespace PeriDeal
     /** The owned node stores no bonds. */
     bool is_on_lattice(const unsigned int i) const
     {
-      return !on_lattice.empty() && on_lattice[i];
+      return !row_of.empty() && row_of[i] == no_row;
     }
+
+    /** Let an owned node store its bonds, which gives them the next numbers. */
+    void store_row(const unsigned int i);
 
     /** Its family and those of its neighbours are like most others. */
     bool is_regular(const unsigned int i) const;
@@ -144,8 +157,26 @@ namespace PeriDeal
     /** The owned node of which a stored bond is one. */
     unsigned int node_of(const std::size_t number) const
     {
-      return std::upper_bound(starts.begin(), starts.end(), number) - starts.begin() - 1;
+      return stored_nodes[std::upper_bound(starts.begin(), starts.end(), number) - starts.begin() -
+                          1];
     }
+
+    /** The numbers of the bonds that an owned node stores. */
+    std::size_t begin_of(const unsigned int i) const
+    {
+      return row_of.empty() ? starts[i] : is_on_lattice(i) ? 0 : starts[row_of[i]];
+    }
+
+    std::size_t end_of(const unsigned int i) const
+    {
+      return row_of.empty() ? starts[i + 1] : is_on_lattice(i) ? 0 : starts[row_of[i] + 1];
+    }
+
+    /**
+     * Of the stored bonds; referred to. @param stores nodes that are asked for then store their
+     * bonds
+     */
+    BondState::Numbering numbering(const bool stores);
 
     /** How many of this process's bonds are stored, each counted at both ends. */
     std::size_t n_stored() const
@@ -159,12 +190,7 @@ namespace PeriDeal
       return n_whole;
     }
 
-    const std::vector<std::size_t> &first_of_nodes() const
-    {
-      return starts;
-    }
-
-    /** The owned nodes that store their bonds. */
+    /** The owned nodes that store their bonds; numbers of bonds go up along this list. */
     const std::vector<unsigned int> &nodes_with_rows() const
     {
       return stored_nodes;
@@ -187,10 +213,12 @@ namespace PeriDeal
   private:
     using Family = std::vector<typename Families<dim>::Member>;
 
+    static constexpr std::uint32_t no_row = static_cast<std::uint32_t>(-1);
+
     bool              has_complete_family(const unsigned int i) const; // cut or not
     void              list_lattice_bonds();
     std::vector<bool> find_changing(const BodyParameters<dim> &body) const;
-    void              store(const unsigned int i, const Family &family, std::string &message);
+    void              add_row(const unsigned int i, const Family &family); // springs are W x^2
     double weight_of(const unsigned int i, const Family &family, std::string &message) const;
     void   correct_surface(const BodyParameters<dim> &body);
     void   make_lattice();
@@ -198,15 +226,15 @@ namespace PeriDeal
     const Families<dim>                &families;
     NodeLaws<dim>                      &laws;
     const double                        horizon;
-    std::vector<std::size_t>            starts{0}; // of the bonds of each owned node
+    std::vector<std::size_t>            starts{0}; // of the rows, in the order of stored_nodes
     std::vector<unsigned int>           neighbors;
     std::vector<dealii::Tensor<1, dim>> moments;
     std::vector<double>                 springs;      // at first W x^2
     std::vector<unsigned int>           stored_nodes; // of these the loops are made
     double                              n_whole = 0.;
-    std::vector<bool>                   on_lattice; // owned nodes that store no bond
-    std::vector<LatticeBond>            lattice_bonds;
-    std::unique_ptr<StateLattice<dim>>  lattice; // or none
+    std::vector<std::uint32_t> row_of; // of owned nodes, or no_row; empty: all in their order
+    std::vector<LatticeBond>   lattice_bonds;
+    std::unique_ptr<StateLattice<dim>> lattice; // or none
   };
 
 
@@ -228,5 +256,22 @@ namespace PeriDeal
         const double w = volume * nodes.volume(j);
         visit(Bond{not_stored, j, w * bond.moment, (own + laws.stiffness(j)) / (w * bond.weight)});
       }
+  }
+
+
+  template <int dim>
+  template <typename Visit>
+  inline void SolidRows<dim>::for_each_to_store(const unsigned int                           i,
+                                                std::vector<typename Families<dim>::Member> &family,
+                                                const Visit &visit) const
+  {
+    families.members_of(i, family);
+    std::size_t place = 0;
+    for (const auto &bond : family)
+      if (const double weight = bond.kept * bond.weight; weight != 0.)
+        visit(Bond{place++,
+                   bond.neighbor,
+                   weight * families.neighbors().bond_vector(i, bond.neighbor),
+                   0.});
   }
 } // namespace PeriDeal

@@ -125,6 +125,9 @@ namespace PeriDeal
     void find_thermal_strains();
     void find_thermal_loads();
 
+    /** What these owned nodes have of energy(). Collective. */
+    double energy_of(const std::vector<unsigned int> &of_nodes, const Vector &u) const;
+
     /** What is found of all bonds, or of those of nodes that have lost some. */
     void follow_bonds(const std::vector<unsigned int> *of_nodes = nullptr);
 

@@ -20,11 +20,13 @@ namespace PeriDeal
     void set(const unsigned int n_nodes, const Strain &strain, const MPI_Comm communicator)
     {
       double largest = 0.;
+      lowest         = 0.;
       strains.resize(n_nodes);
       for (unsigned int i = 0; i < n_nodes; ++i)
         {
           strains[i] = strain(i);
           largest    = std::max(largest, std::abs(strains[i]));
+          lowest     = std::min(lowest, strains[i]);
         }
       is_any = dealii::Utilities::MPI::max(largest, communicator) > 0.;
     }
@@ -33,6 +35,12 @@ namespace PeriDeal
     bool any() const
     {
       return is_any;
+    }
+
+    /** No node of this process has less; at most 0. */
+    double least() const
+    {
+      return lowest;
     }
 
     double operator[](const unsigned int node) const
@@ -52,6 +60,7 @@ namespace PeriDeal
 
   private:
     std::vector<double> strains;
+    double              lowest = 0.;
     bool                is_any = false;
   };
 } // namespace PeriDeal
