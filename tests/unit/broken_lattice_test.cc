@@ -75,7 +75,7 @@ namespace
   }
 
 
-  /** The bonds that break in a motion from rest. After each step no whole one should have broken. */
+  /** The bonds that break in a motion from rest. No whole one should have broken at any step. */
   template <int dim>
   std::vector<NodePair> broken_bonds(BodyOfScene<dim> &body, const double t_end)
   {
