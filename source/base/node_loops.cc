@@ -79,6 +79,39 @@ namespace PeriDeal
           sum[i] += a * (s[i] * r[i]);
       }
 
+      PERIDEAL_CLONES void kick_and_drift_all(Out               v,
+                                              Out               u,
+                                              Out               last,
+                                              In                s,
+                                              In                r,
+                                              const double      a,
+                                              const double      b,
+                                              const std::size_t n)
+      {
+        for (std::size_t i = 0; i < n; ++i)
+          {
+            v[i] += a * (s[i] * r[i]);
+            last[i] = u[i];
+            u[i] += b * v[i];
+          }
+      }
+
+      PERIDEAL_CLONES double weighted_square_of_all(In s, In r, const std::size_t n)
+      {
+        constexpr std::size_t n_parts = 8;
+        double                sums[n_parts]{};
+        std::size_t           i = 0;
+        for (; i + n_parts <= n; i += n_parts)
+          for (std::size_t k = 0; k < n_parts; ++k)
+            sums[k] += s[i + k] * (r[i + k] * r[i + k]);
+        for (; i < n; ++i)
+          sums[i % n_parts] += s[i] * (r[i] * r[i]);
+        double all = 0.;
+        for (const double sum : sums)
+          all += sum;
+        return all;
+      }
+
       PERIDEAL_CLONES void chebyshev_all(Out               last,
                                          Out               sum,
                                          In                now,
@@ -132,6 +165,23 @@ namespace PeriDeal
     void combine(double *y, const double *u, const double *v, const double *d, const std::size_t n)
     {
       combine_varying(y, u, v, d, n);
+    }
+
+    void kick_and_drift(double           *v,
+                        double           *u,
+                        double           *last,
+                        const double     *s,
+                        const double     *r,
+                        const double      a,
+                        const double      b,
+                        const std::size_t n)
+    {
+      kick_and_drift_all(v, u, last, s, r, a, b, n);
+    }
+
+    double weighted_square(const double *s, const double *r, const std::size_t n)
+    {
+      return weighted_square_of_all(s, r, n);
     }
 
     void negate(double *y, const std::size_t n)

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/node_loops.h>
 #include <perideal/solvers/motion_energy.h>
 
 #include <algorithm>
@@ -15,10 +16,12 @@ namespace PeriDeal
 
   MotionAccount::MotionAccount(ElasticOperator           &op,
                                const std::vector<double> &inverse_mass,
+                               const std::vector<double> &free_inverse_mass,
                                const std::vector<bool>   &held,
                                const double               c)
     : op(op)
     , inverse_mass(inverse_mass)
+    , free_inverse_mass(free_inverse_mass)
     , held(held)
     , work_of_forces(op)
     , c(c)
@@ -40,10 +43,8 @@ namespace PeriDeal
     const double factor = c * dt * dt;
     if (factor == 0.)
       return 0.;
-    double sum = 0.;
-    for (unsigned int i = 0; i < held.size(); ++i)
-      if (!held[i])
-        sum += forces.local_element(i) * forces.local_element(i) * inverse_mass[i];
+    const double sum =
+      NodeLoops::weighted_square(free_inverse_mass.data(), forces.begin(), held.size());
     return factor * Utilities::MPI::sum(sum, forces.get_mpi_communicator());
   }
 
@@ -79,9 +80,12 @@ namespace PeriDeal
   }
 
 
-  void MotionAccount::add_step(const Vector &change, const Vector &forces, const double t)
+  void MotionAccount::add_step(const Vector &from,
+                               const Vector &to,
+                               const Vector &forces,
+                               const double  t)
   {
-    const double gain = work_of_forces.step(change, forces, t);
+    const double gain = work_of_forces.step(from, to, forces, t);
     work += gain;
     effort += std::abs(gain);
     exchanged = std::max(exchanged, start + std::abs(work));

@@ -49,6 +49,25 @@ namespace PeriDeal
       Utilities::MPI::max(moves, change.get_mpi_communicator(), moves);
       return moves[0] > much * moves[1];
     }
+
+
+    std::vector<double> zero_where(std::vector<double> values, const std::vector<bool> &where)
+    {
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (where[i])
+          values[i] = 0.;
+      return values;
+    }
+
+
+    std::vector<unsigned int> list_of(const std::vector<bool> &which)
+    {
+      std::vector<unsigned int> list;
+      for (unsigned int i = 0; i < which.size(); ++i)
+        if (which[i])
+          list.push_back(i);
+      return list;
+    }
   } // namespace
 
 
@@ -56,9 +75,11 @@ namespace PeriDeal
     : op(op)
     , inverse_mass(inverse_capacity(op))
     , held(held_unknowns(op))
+    , free_inverse_mass(zero_where(inverse_mass, held))
+    , supports(list_of(held))
     , longest(dt)
     , shortest(dt)
-    , account(op, inverse_mass, held, c)
+    , account(op, inverse_mass, free_inverse_mass, held, c)
   {
     for (Vector *v : {&unbalanced, &last, &last_velocity, &change})
       op.initialize_vector(*v);
@@ -80,9 +101,8 @@ namespace PeriDeal
 
   void MotionStepper::follow_supports(Vector &v, const Vector &u, const double dt) const
   {
-    for (unsigned int i = 0; i < held.size(); ++i)
-      if (held[i])
-        v.local_element(i) = (u.local_element(i) - last.local_element(i)) / dt;
+    for (const unsigned int i : supports)
+      v.local_element(i) = (u.local_element(i) - last.local_element(i)) / dt;
   }
 
 
@@ -237,25 +257,24 @@ namespace PeriDeal
                           span.end :
                           span.start + (span.n_done + 1) * ((span.end - span.start) / span.n_steps);
     account.set_step(next - span.now, unbalanced);
-    last          = u;
-    last_velocity = v;
     step(u, v, span.now, account.step());
     ++spent.steps;
-    change = u;
-    change -= last;
     // What supports do that jump is not defined where forces are not linear: it depends on what the
     // body does meanwhile. So that step is none that keeps the energy, however short it is.
-    const bool jumps = op.nonlinear() && op.depends_on_time() && !found.has("energy") &&
-                       supports_jump(change, last_velocity, account.step(), held);
+    bool   jumps = false;
     double drift = 0.;
+    if (op.nonlinear() && op.depends_on_time() && !found.has("energy"))
+      {
+        change = u;
+        change -= last;
+        jumps = supports_jump(change, last_velocity, account.step(), held);
+      }
     if (jumps)
       {
         op.unbalanced(change, last, span.now);
-        drift  = account.energy(last, last_velocity, change).drift;
-        change = u;
-        change -= last;
+        drift = account.energy(last, last_velocity, change).drift;
       }
-    account.add_step(change, unbalanced, next);
+    account.add_step(last, u, unbalanced, next);
     if (jumps)
       account.add_jump(unbalanced,
                        next,

@@ -40,6 +40,8 @@ namespace PeriDeal
       void step(Vector &u, Vector &v, const double t, const double dt) override
       {
         const double factor = 4. / (dt * dt);
+        last                = u;
+        last_velocity       = v;
         residual            = unbalanced;
         op.clear_constrained(residual);
         const double before = residual.l2_norm();

@@ -169,7 +169,7 @@ namespace PeriDeal
     op.unbalanced(unbalanced, u, t);
     before.change = u;
     before.change -= last;
-    so_far.work += work_of_forces.step(before.change, unbalanced, t);
+    so_far.work += work_of_forces.step(last, u, unbalanced, t);
     so_far.exchanged = std::max(so_far.exchanged, so_far.start + std::abs(so_far.work));
     breaking         = {t, 0., false, false};
     go_on(u, after_round);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/node_loops.h>
 #include <perideal/solvers/motion_stepper.h>
 
 namespace PeriDeal
@@ -17,7 +18,6 @@ namespace PeriDeal
       Verlet(ElasticOperator &op, const double dt)
         : MotionStepper(op, dt, 0.125)
       {
-        op.initialize_vector(acceleration);
         op.forgoes_diagonal = true;
       }
 
@@ -29,18 +29,22 @@ namespace PeriDeal
     protected:
       void step(Vector &u, Vector &v, const double t, const double dt) override
       {
-        accelerate(acceleration, unbalanced);
-        v.add(0.5 * dt, acceleration);
-        u.add(dt, v);
+        const std::size_t n = v.locally_owned_size();
+        if (op.nonlinear())
+          last_velocity = v;
+        NodeLoops::kick_and_drift(v.begin(),
+                                  u.begin(),
+                                  last.begin(),
+                                  free_inverse_mass.data(),
+                                  unbalanced.begin(),
+                                  0.5 * dt,
+                                  dt,
+                                  n);
         op.distribute(u, t + dt);
         op.unbalanced(unbalanced, u, t + dt);
-        accelerate(acceleration, unbalanced);
-        v.add(0.5 * dt, acceleration);
+        NodeLoops::accumulate(v.begin(), free_inverse_mass.data(), unbalanced.begin(), 0.5 * dt, n);
         follow_supports(v, u, dt);
       }
-
-    private:
-      Vector acceleration;
     };
   } // namespace
 

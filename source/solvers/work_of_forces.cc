@@ -17,9 +17,27 @@ namespace PeriDeal
   }
 
 
+  void WorkOfForces::find_active()
+  {
+    // What was loaded may still have a force of the last step.
+    active.clear();
+    for (unsigned int i = 0; i < held.size(); ++i)
+      if (held[i] || load.local_element(i) != 0. || last_forces.local_element(i) != 0. ||
+          forces.local_element(i) != 0.)
+        active.push_back(i);
+  }
+
+
+  void WorkOfForces::find_load(const double t)
+  {
+    op.mechanical_loads(load, t);
+    find_active();
+  }
+
+
   void WorkOfForces::find_forces(const Vector &unbalanced)
   {
-    for (unsigned int i = 0; i < held.size(); ++i)
+    for (const unsigned int i : active)
       forces.local_element(i) =
         load.local_element(i) - (held[i] ? unbalanced.local_element(i) : 0.);
   }
@@ -28,23 +46,27 @@ namespace PeriDeal
   void WorkOfForces::begin(const Vector &unbalanced, const double t)
   {
     if (!begun || op.depends_on_time())
-      op.mechanical_loads(load, t);
+      find_load(t);
     begun = true;
     find_forces(unbalanced);
     last_forces.swap(forces);
   }
 
 
-  double WorkOfForces::step(const Vector &du, const Vector &unbalanced, const double t)
+  double WorkOfForces::step(const Vector &from,
+                            const Vector &to,
+                            const Vector &unbalanced,
+                            const double  t)
   {
     if (op.depends_on_time())
-      op.mechanical_loads(load, t);
+      find_load(t);
     find_forces(unbalanced);
     double work = 0.;
-    for (unsigned int i = 0; i < held.size(); ++i)
-      work += 0.5 * (forces.local_element(i) + last_forces.local_element(i)) * du.local_element(i);
+    for (const unsigned int i : active)
+      work += 0.5 * (forces.local_element(i) + last_forces.local_element(i)) *
+              (to.local_element(i) - from.local_element(i));
     last_forces.swap(forces);
-    return dealii::Utilities::MPI::sum(work, du.get_mpi_communicator());
+    return dealii::Utilities::MPI::sum(work, to.get_mpi_communicator());
   }
 
 
@@ -53,5 +75,7 @@ namespace PeriDeal
     archive.exchange("work has begun", begun);
     archive.exchange("load", load, keys);
     archive.exchange("last forces", last_forces, keys);
+    if (archive.loads())
+      find_active();
   }
 } // namespace PeriDeal

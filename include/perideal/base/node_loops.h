@@ -48,6 +48,19 @@ namespace PeriDeal
                     const double      a,
                     const std::size_t n);
 
+    /** v_i += a s_i r_i, last_i = u_i, then u_i += b v_i: the begin of a step of a motion. */
+    void kick_and_drift(double           *v,
+                        double           *u,
+                        double           *last,
+                        const double     *s,
+                        const double     *r,
+                        const double      a,
+                        const double      b,
+                        const std::size_t n);
+
+    /** The sum of s_i r_i^2, in eight parts, whatever the machine. */
+    double weighted_square(const double *s, const double *r, const std::size_t n);
+
     /**
      * last_i = 2 now_i - last_i - a s_i r_i, and sum_i += c last_i: a term of a Chebyshev
      * expansion.

@@ -59,6 +59,7 @@ namespace PeriDeal
      */
     MotionAccount(ElasticOperator           &op,
                   const std::vector<double> &inverse_mass,
+                  const std::vector<double> &free_inverse_mass,
                   const std::vector<bool>   &held,
                   const double               c);
 
@@ -75,8 +76,8 @@ namespace PeriDeal
     /** Before each step; another one than the last keeps back something else. */
     void set_step(const double dt, const Vector &forces);
 
-    /** A step has been made to t. @param change of the displacement */
-    void add_step(const Vector &change, const Vector &forces, const double t);
+    /** A step has been made to t. @param from displacements before @param to after it */
+    void add_step(const Vector &from, const Vector &to, const Vector &forces, const double t);
 
     /** Bonds have broken at t, between two steps. @param before kept back */
     void add_jump(const Vector &forces, const double t, const double before);
@@ -120,7 +121,7 @@ namespace PeriDeal
     double kept_back(const double dt, const Vector &forces) const;
 
     ElasticOperator           &op;
-    const std::vector<double> &inverse_mass;
+    const std::vector<double> &inverse_mass, &free_inverse_mass; // 0 where prescribed
     const std::vector<bool>   &held;
     WorkOfForces               work_of_forces;
     const double               c;

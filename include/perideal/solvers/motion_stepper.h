@@ -106,8 +106,8 @@ namespace PeriDeal
 
   protected:
     /**
-     * One step: u and v at t + dt, and unbalanced, which is that of u at t on entry, at t + dt. u
-     * and v keep their values at t in last and last_velocity, which the caller has set.
+     * One step: u and v at t + dt, and unbalanced, which is that of u at t on entry, at t + dt. It
+     * keeps their values at t in last and, where forces are not linear, in last_velocity.
      */
     virtual void step(Vector &u, Vector &v, const double t, const double dt) = 0;
 
@@ -123,12 +123,14 @@ namespace PeriDeal
     /** Velocity of the prescribed unknowns: that of the step. */
     void follow_supports(Vector &v, const Vector &u, const double dt) const;
 
-    ElasticOperator          &op;
-    const std::vector<double> inverse_mass;
-    const std::vector<bool>   held; // prescribed
-    Vector                    unbalanced, last, last_velocity;
-    StepperCost               spent;
-    Findings                  found;
+    ElasticOperator                &op;
+    const std::vector<double>       inverse_mass;
+    const std::vector<bool>         held;              // prescribed
+    const std::vector<double>       free_inverse_mass; // 0 where prescribed
+    const std::vector<unsigned int> supports;          // those that are prescribed
+    Vector                          unbalanced, last, last_velocity;
+    StepperCost                     spent;
+    Findings                        found;
 
   private:
     void begin(const Vector &u, const Vector &v, const double t);

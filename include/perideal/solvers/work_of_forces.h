@@ -27,10 +27,10 @@ namespace PeriDeal
     void begin(const Vector &unbalanced, const double t);
 
     /**
-     * Work (J; in 2D per unit thickness) of the step du up to time t, and begin() there.
-     * Collective.
+     * Work (J; in 2D per unit thickness) of a step to time t, and begin() there. Collective.
+     * @param from displacements before the step @param to after it
      */
-    double step(const Vector &du, const Vector &unbalanced, const double t);
+    double step(const Vector &from, const Vector &to, const Vector &unbalanced, const double t);
 
     /** What the next step depends on. Collective. */
     void exchange(Archive &archive, const NodeKeys &keys);
@@ -42,11 +42,14 @@ namespace PeriDeal
     }
 
   private:
+    void find_active();
+    void find_load(const double t);
     void find_forces(const Vector &unbalanced);
 
-    ElasticOperator        &op;
-    const std::vector<bool> held; // prescribed unknowns
-    bool                    begun = false;
-    Vector                  load, forces, last_forces;
+    ElasticOperator          &op;
+    const std::vector<bool>   held;   // prescribed unknowns
+    std::vector<unsigned int> active; // prescribed or loaded: elsewhere forces are zero
+    bool                      begun = false;
+    Vector                    load, forces, last_forces;
   };
 } // namespace PeriDeal

@@ -214,6 +214,7 @@ namespace PeriDeal
   {
     SolidRows<dim> &rows = bonds.rows;
     inside.clear();
+    losing.clear();
     const auto look_at_row = [&](const unsigned int i) {
       rows.for_each_stored(i, [&](const auto &bond) {
         if (!state.is_whole(bond.number))
@@ -224,14 +225,13 @@ namespace PeriDeal
     };
     for (unsigned int i = 0; !screen && i < bonds.families.nodes().n_owned(); ++i)
       look_at_row(i);
-    if (!screen)
-      return;
-    for (const unsigned int i : screen->suspects(u, bonds.thermal.least()))
+    const double least_strain = bonds.thermal.least();
+    for (const unsigned int i : screen ? screen->suspects(u, least_strain) : losing)
       {
         if (rows.is_on_lattice(i))
           {
             bool any = false;
-            if (screen->may_reach(i, u, bonds.thermal.least()))
+            if (screen->may_reach(i, u, least_strain))
               rows.for_each_to_store(i, family, [&](const auto &bond) {
                 any = any || overstretch(u, i, bond) > 0.;
               });
@@ -240,7 +240,8 @@ namespace PeriDeal
             rows.store_row(i);
             state.resize(rows.n_stored());
           }
-        look_at_row(i);
+        if (rows.may_exceed(i, u, screen->least_critical() + least_strain))
+          look_at_row(i);
       }
   }
 
@@ -330,7 +331,6 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::find_losing()
   {
-    losing.clear();
     for (const auto &[number, ratio] : inside)
       losing.push_back(bonds.rows.node_of(number));
     if (bonds.beyond)

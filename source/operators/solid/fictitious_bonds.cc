@@ -283,6 +283,8 @@ namespace PeriDeal
                                                          const std::vector<double> &critical) const
   {
     Overstretched result;
+    if (!fictitious.any_mirrored_alone())
+      return result;
     fictitious.find(u);
     for_each([&](const Bond &bond) {
       if (!may_break(bond))

@@ -34,6 +34,21 @@ namespace PeriDeal
     values.resize(dim * images.size());
     forces.resize(values.size());
     passed.reinit(interleaved(*nodes.partitioner(), dim));
+    for (const Term &term : terms)
+      for (unsigned int d = 0; d < dim; ++d)
+        pulled.push_back(dim * term.node + d);
+    std::sort(pulled.begin(), pulled.end());
+    pulled.erase(std::unique(pulled.begin(), pulled.end()), pulled.end());
+  }
+
+
+  template <int dim>
+  bool FictitiousImages<dim>::any_mirrored_alone() const
+  {
+    bool any = false;
+    for (unsigned int image = 0; image < images.size() && !any; ++image)
+      any = is_mirrored_alone(image);
+    return any;
   }
 
 
@@ -90,13 +105,26 @@ namespace PeriDeal
   template <int dim>
   void FictitiousImages<dim>::pass_on(Vector &y) const
   {
-    passed = 0.;
-    passed.zero_out_ghost_values();
+    const bool alone = passed.get_partitioner()->n_mpi_processes() == 1;
+    if (alone) // few unknowns, and there is nothing to be exchanged
+      for (const unsigned int i : pulled)
+        passed.local_element(i) = 0.;
+    else
+      {
+        passed = 0.;
+        passed.zero_out_ghost_values();
+      }
     for (unsigned int g = 0; g < images.size(); ++g)
       for (std::size_t k = starts[g]; k < starts[g + 1]; ++k)
         for (unsigned int d = 0; d < dim; ++d)
           passed.local_element(dim * terms[k].node + d) +=
             terms[k].of_component[d] * forces[dim * g + d];
+    if (alone)
+      {
+        for (const unsigned int i : pulled)
+          y.local_element(i) += passed.local_element(i);
+        return;
+      }
     passed.compress(VectorOperation::add);
     y += passed;
   }

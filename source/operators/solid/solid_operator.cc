@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/interleaved.h>
+#include <perideal/base/node_loops.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
 #include <perideal/laws/elasticity.h>
@@ -208,7 +209,9 @@ namespace PeriDeal
     find_forces(r, u);
     if (loads_vary)
       find_loads(scratch, t);
-    r.sadd(-1., 1., loads_vary ? scratch : constant_loads);
+    NodeLoops::subtract_from(r.begin(),
+                             (loads_vary ? scratch : constant_loads).begin(),
+                             r.locally_owned_size());
   }
 
 

@@ -327,6 +327,9 @@ namespace PeriDeal
         if (laws.volumetric && i < families.nodes().n_owned())
           coefficients.dilatations.push_back(laws[i].volumetric * laws[i].dilatation / (own * own));
       }
+    // Where cracks grow, q becomes smaller and this no larger than it is.
+    least_stiffness =
+      *std::min_element(coefficients.stiffnesses.begin(), coefficients.stiffnesses.end());
     std::vector<bool> computed;
     for (const std::uint32_t row : row_of)
       computed.push_back(row == no_row);
@@ -397,6 +400,28 @@ namespace PeriDeal
                 });
       else
         sum_row(row, [](const double of_spring, const unsigned int) { return of_spring; });
+  }
+
+
+  template <int dim>
+  bool SolidRows<dim>::may_exceed(const unsigned int i, const double *u, const double stretch) const
+  {
+    const double limit =
+      (1. - 1e-9) * 2. * least_stiffness * stretch; // spring = (b/q + b/q)/(W x^2)
+    if (!(limit > 0.))
+      return true;
+    const double *const own = u + static_cast<std::size_t>(dim) * i;
+    for (std::size_t k = begin_of(i); k < end_of(i); ++k)
+      {
+        const double *const   v       = u + static_cast<std::size_t>(dim) * neighbors[k];
+        const Tensor<1, dim> &p       = moments[k];
+        double                product = 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          product += p[d] * (v[d] - own[d]);
+        if (springs[k] * product > limit)
+          return true;
+      }
+    return false;
   }
 
 

@@ -44,6 +44,7 @@ namespace PeriDeal
                                     const std::vector<double> &critical)
     : families(families)
     , critical(critical)
+    , least(critical.empty() ? never : *std::min_element(critical.begin(), critical.end()))
   {
     const NodeSearch<dim> &search  = *families.nodes().search();
     const Lattice<dim>    &lattice = *families.nodes().lattice();

@@ -65,6 +65,8 @@ namespace PeriDeal
       return starts[image + 1] - starts[image] == 1;
     }
 
+    bool any_mirrored_alone() const;
+
     const Term &first_term(const unsigned int image) const
     {
       return terms[starts[image]];
@@ -129,5 +131,6 @@ namespace PeriDeal
     mutable std::vector<double> values, forces;
     std::vector<double>         kept_forces;
     mutable Vector              passed;
+    std::vector<unsigned int>   pulled; // the unknowns of all terms, in ascending order
   };
 } // namespace PeriDeal

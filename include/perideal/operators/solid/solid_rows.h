@@ -131,6 +131,12 @@ namespace PeriDeal
      */
     void find_forces(double *y, const double *u, const double *tau) const;
 
+    /**
+     * Whether a bond that an owned node stores may have e/x, thermal strains left aside, above a
+     * positive number; errs to the side of yes, by round-off. With a lattice; ghosts as above.
+     */
+    bool may_exceed(const unsigned int i, const double *u, const double stretch) const;
+
     /** Let a bond bear nothing any more. */
     void release(const std::size_t number);
 
@@ -233,6 +239,7 @@ namespace PeriDeal
     std::vector<unsigned int>           stored_nodes; // of these the loops are made
     double                              n_whole = 0.;
     std::vector<std::uint32_t> row_of; // of owned nodes, or no_row; empty: all in their order
+    double                     least_stiffness = 0.; // b/q, with a lattice
     std::vector<LatticeBond>   lattice_bonds;
     std::unique_ptr<StateLattice<dim>> lattice; // or none
   };

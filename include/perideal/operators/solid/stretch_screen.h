@@ -51,6 +51,12 @@ namespace PeriDeal
      */
     const std::vector<unsigned int> &suspects(const double *u, const double least_strain) const;
 
+    /** The least critical stretch of the nodes of this process. */
+    double least_critical() const
+    {
+      return least;
+    }
+
     /** The bound on e/x for the bonds of an owned node, of the last call; infinity: none. */
     double bound(const unsigned int node) const;
 
@@ -99,6 +105,7 @@ namespace PeriDeal
 
     const Families<dim>              &families;
     const std::vector<double>        &critical;
+    double                            least; // critical stretch
     std::vector<Member>               members;
     Index                             corner, n_blocks, reach; // reach in blocks
     std::array<std::ptrdiff_t, dim>   strides;
