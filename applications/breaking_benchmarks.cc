@@ -19,7 +19,7 @@ namespace PeriDeal
 {
   namespace
   {
-    /** A square or cube with a crack from its left side to the middle, pulled open at once. */
+    /** A square or cube with a short crack from its left side, pulled open at once. */
     template <int dim>
     struct CrackedBody
     {
@@ -28,8 +28,9 @@ namespace PeriDeal
         const auto list = [](const std::string &entry) {
           return entry + ", " + entry + (dim > 2 ? ", " + entry : "");
         };
-        const std::string crack = dim == 2 ? "Segments = 0,0.5 ; 0.5,0.5" :
-                                             "Polygons = 0,0.5,0 ; 0.5,0.5,0 ; 0.5,0.5,1 ; 0,0.5,1",
+        const std::string crack = dim == 2 ?
+                                    "Segments = 0,0.5 ; 0.05,0.5" :
+                                    "Polygons = 0,0.5,0 ; 0.05,0.5,0 ; 0.05,0.5,1 ; 0,0.5,1",
                           last  = dim == 2 ? "" : ", 0";
         parse_scene(
           SceneText{

@@ -66,6 +66,9 @@ namespace PeriDeal
       state.resize(image_of_bond.size());
     for (const std::size_t number : search.parted)
       state.mark(number, BondState::parted, 0.);
+    image_of_bond.shrink_to_fit();
+    moments.shrink_to_fit();
+    springs.shrink_to_fit();
     fictitious.make_room();
   }
 

@@ -28,6 +28,13 @@ namespace PeriDeal
         largest  = std::max(largest, laws[i].extension);
         smallest = std::min(smallest, laws[i].extension);
       }
+    const auto same = [&](const StateLaw &law) {
+      return law.extension == laws[0].extension && law.volumetric == laws[0].volumetric &&
+             law.dilatation == laws[0].dilatation;
+    };
+    if (std::all_of(laws.begin(), laws.end(), same))
+      laws.resize(std::min<std::size_t>(laws.size(), 1));
+    laws.shrink_to_fit();
     const MPI_Comm all = nodes.communicator();
     several_phases     = Utilities::MPI::max(largest, all) >
                      (1. + 1e-12) * Utilities::MPI::min(smallest, all);
@@ -41,7 +48,8 @@ namespace PeriDeal
     const MPI_Comm     all     = nodes.communicator();
     const unsigned int n_owned = nodes.n_owned();
     const auto         law_of  = [&](const unsigned int i) {
-      return Numbers{{laws[i].extension, laws[i].volumetric, laws[i].dilatation}};
+      const StateLaw &law = (*this)[i];
+      return Numbers{{law.extension, law.volumetric, law.dilatation}};
     };
     std::vector<Numbers> extremes; // of this process
     for (unsigned int i = 0; i < n_owned; ++i)

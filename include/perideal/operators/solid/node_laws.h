@@ -25,19 +25,19 @@ namespace PeriDeal
 
     const StateLaw &operator[](const unsigned int node) const
     {
-      return laws[node];
+      return laws[laws.size() > 1 ? node : 0];
     }
 
     /** b_i/q_i. */
     double stiffness(const unsigned int i) const
     {
-      return laws[i].extension / weighted.local_element(i);
+      return (*this)[i].extension / weighted.local_element(i);
     }
 
     /** c_i theta_i/q_i, of the sum of W x e over the family. */
     double tension(const unsigned int i, const double sum) const
     {
-      const StateLaw &law = laws[i];
+      const StateLaw &law = (*this)[i];
       const double    q   = weighted.local_element(i);
       return law.volumetric * law.dilatation * sum / (q * q * nodes.volume(i));
     }
@@ -47,7 +47,7 @@ namespace PeriDeal
 
     std::size_t memory_consumption() const
     {
-      return laws.size() * sizeof(StateLaw);
+      return laws.capacity() * sizeof(StateLaw);
     }
 
     Vector     weighted;               // q_i; ghosts up to date
@@ -56,6 +56,6 @@ namespace PeriDeal
 
   private:
     const Nodes<dim>     &nodes;
-    std::vector<StateLaw> laws; // owned and ghosts
+    std::vector<StateLaw> laws; // owned and ghosts; a single one: all have it
   };
 } // namespace PeriDeal

@@ -29,6 +29,8 @@ namespace PeriDeal
           lowest     = std::min(lowest, strains[i]);
         }
       is_any = dealii::Utilities::MPI::max(largest, communicator) > 0.;
+      if (!is_any)
+        strains = std::vector<double>();
     }
 
     /** Some node of some process has one. */
@@ -45,12 +47,12 @@ namespace PeriDeal
 
     double operator[](const unsigned int node) const
     {
-      return strains[node];
+      return is_any ? strains[node] : 0.;
     }
 
     double of_bond(const unsigned int i, const unsigned int j) const
     {
-      return 0.5 * (strains[i] + strains[j]);
+      return 0.5 * ((*this)[i] + (*this)[j]);
     }
 
     std::size_t memory_consumption() const
