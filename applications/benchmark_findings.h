@@ -46,4 +46,10 @@ namespace PeriDeal
 
   /** Elastic bonds, and one static solution (elastic_benchmarks.cc). */
   void measure_elasticity();
+
+  /** Explicit steps of bodies whose bonds may break (breaking_benchmarks.cc). */
+  void measure_breaking();
+
+  /** The same bonds in other programs, if they are installed. */
+  void measure_peers();
 } // namespace PeriDeal

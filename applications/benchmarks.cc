@@ -4,7 +4,8 @@
 // Speed and memory of the operators and steppers on one core, next to what the machine can do,
 // measured in the same run. Timings are never tests: the exit status is 0 whatever comes out.
 // Options are those of Google Benchmark; --quick leaves out the run with four million nodes,
-// --coupling leaves out all but coupled operators, --elasticity all but elastic ones.
+// --coupling leaves out all but coupled operators, --elasticity all but elastic ones, --peers all
+// but those that other programs, if they are installed, run beside.
 
 #include <deal.II/base/mpi.h>
 
@@ -350,17 +351,25 @@ namespace PeriDeal
         return false;
       };
       const bool quick = take("--quick"), coupling_alone = take("--coupling"),
-                 elasticity_alone = take("--elasticity");
+                 elasticity_alone = take("--elasticity"), peers_alone = take("--peers");
       benchmark::Initialize(&argc, argv);
 #if defined(__GLIBC__)
       mallopt(M_MMAP_THRESHOLD,
               1 << 20); // what is freed goes back at once, so that growth means something
 #endif
       MachineLimits machine;
-      if (coupling_alone || elasticity_alone)
+      if (coupling_alone || elasticity_alone || peers_alone)
         {
           measure_machine(machine);
-          coupling_alone ? measure_coupling() : measure_elasticity();
+          if (coupling_alone)
+            measure_coupling();
+          if (elasticity_alone)
+            {
+              measure_elasticity();
+              measure_breaking();
+            }
+          if (peers_alone)
+            measure_peers();
           print_findings(machine);
           return;
         }
@@ -387,6 +396,7 @@ namespace PeriDeal
       compare_steppers();
       measure_coupling();
       measure_elasticity();
+      measure_breaking();
       print_findings(machine);
     }
   } // namespace

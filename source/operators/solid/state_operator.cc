@@ -269,37 +269,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  double StateOperator<dim>::energy_of(const std::vector<unsigned int> &of_nodes,
-                                       const Vector                    &u) const
-  {
-    u.update_ghost_values();
-    if (solid.beyond)
-      solid.beyond->images().find(u.begin());
-    double sum = 0.;
-    for (const unsigned int i : of_nodes)
-      {
-        double of_node = 0., own = 0.; // sum of W x e
-        solid.rows.for_each(i, [&](const auto &bond) {
-          const double product = solid.kinematics.extension_moment(u.begin(), i, bond);
-          own += product;
-          of_node += 0.25 * bond.spring * product * product;
-        });
-        if (solid.beyond)
-          solid.beyond->for_each_of(i, [&](const auto &bond) {
-            const double product = solid.beyond->extension_moment(bond, u.begin());
-            own += product;
-            of_node += 0.5 * bond.spring * product * product;
-          });
-        if (solid.laws.volumetric)
-          of_node += 0.5 * solid.laws.tension(i, own) * own;
-        sum += of_node;
-      }
-    u.set_ghost_state(false);
-    return Utilities::MPI::sum(sum, solid.families.nodes().communicator());
-  }
-
-
-  template <int dim>
   NodalTensors<dim> StateOperator<dim>::tensors(const Vector &u) const
   {
     u.update_ghost_values();
@@ -419,57 +388,6 @@ namespace PeriDeal
       nodes.communicator());
     u.set_ghost_state(false);
     return result;
-  }
-
-
-  template <int dim>
-  unsigned long long StateOperator<dim>::break_bonds(const Vector &u,
-                                                     const double  t,
-                                                     const double  share)
-  {
-    const unsigned long long before = this->n_broken_bonds();
-    const auto               change =
-      breakage.break_bonds(u, t, share, [&]() { return energy_of(breakage.nodes_at_work(), u); });
-    if (!change)
-      return 0;
-    apply_change(*change, true);
-    return this->n_broken_bonds() - before;
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::apply_change(const ChangeSet<dim> &change, const bool loaded)
-  {
-    if (!change.damage)
-      breakage.apply_change(change, loaded);
-    follow_bonds(change.damage ? &change.nodes : nullptr);
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *of_nodes)
-  {
-    if (of_nodes && !solid.beyond)
-      mend_stiffness_diagonal(solid, *of_nodes, stiffness_diagonal);
-    else if (!of_nodes || !this->forgoes_diagonal)
-      find_stiffness_diagonal(solid, stiffness_diagonal);
-    conditions->mask(stiffness_diagonal, 1.);
-    if (solid.thermal.any())
-      find_thermal_loads();
-  }
-
-
-  template <int dim>
-  void StateOperator<dim>::exchange_bonds(Archive                     &archive,
-                                          const NodeKeys              &keys,
-                                          const std::function<void()> &at_surrogate)
-  {
-    breakage.exchange(archive, keys, marks_of_surrogate, [&]() {
-      follow_bonds();
-      at_surrogate();
-    });
-    if (archive.loads() && this->brittle())
-      follow_bonds();
   }
 
 

@@ -66,6 +66,7 @@ namespace PeriDeal
       return solid.kinematics.is_full();
     }
 
+    void                mend_unbalanced(Vector &r, const Vector &u, const double t) const override;
     void                linearize(const Vector &u) override;
     double              largest_stretch(const Vector &u) const override;
     Inversion           inverted(const Vector &u) const override;
@@ -124,6 +125,12 @@ namespace PeriDeal
     void find_conditions(const Nodes<dim> &nodes);
     void find_thermal_strains();
     void find_thermal_loads();
+
+    /**
+     * tau of the nodes that have just lost bonds, and what it has changed by, of owned nodes and
+     * ghosts. Collective.
+     */
+    void renew_tensions(const Vector &u, Vector &change) const;
 
     /** What these owned nodes have of energy(). Collective. */
     double energy_of(const std::vector<unsigned int> &of_nodes, const Vector &u) const;
