@@ -202,9 +202,6 @@ namespace PeriDeal
     /**
      * unbalanced() at the u and t of the last widen_zone() and break_bonds(), behind which nothing
      * else has changed. @p r is that of the body before. Collective.
-
-     * unbalanced() at the u and t of the last break_bonds(), behind which nothing else has changed.
-     * @p r is that of the body before. Collective.
      */
     virtual void mend_unbalanced(Vector &r, const Vector &u, const double t) const
     {
