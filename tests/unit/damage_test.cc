@@ -227,7 +227,9 @@ namespace PeriDeal
       });
     };
     expect_parts(fault_of(ModelKind::finite_elements, {}), {"Fracture energy", "no effect"});
-    expect_parts(fault_of(ModelKind::coupled, {}), {"Fracture energy", "coupled"});
+    expect_parts(fault_of(ModelKind::coupled, {}), {"'Zone'", "is empty", "'follow'"});
+    expect_parts(fault_of(ModelKind::coupled, {{"Coupling/Scheme", "blending"}}),
+                 {"Fracture energy", "'Scheme'", "do not break"});
     expect_parts(fault_of(ModelKind::peridynamics, {{"Material/Critical stretch", "1"}}),
                  {"Critical stretch", "Fracture energy"});
     expect_parts(fault_of(ModelKind::peridynamics, {{"Material/Fracture energy", "x - 0.5"}}),

@@ -42,7 +42,10 @@ namespace PeriDeal
       (control.is_near_cracks() || control.is_adaptive()) && body.cracks.cracks.empty(),
       "Zone",
       "'" + control.zone_text() +
-        "' lies around cracks, but section 'Cracks' has none: the zone is empty. Give a formula, or 'everywhere'.");
+        "' lies around cracks, but section 'Cracks' has none: the zone is empty. Give a formula, or 'everywhere'" +
+        (body.material.fracture_energy || body.material.critical_stretch ?
+           ", or 'follow', with which bonds appear where the body is about to break." :
+           "."));
     double widest = 0.;
     for (unsigned int d = 0; d < dim; ++d)
       widest = std::max(widest, body.domain.upper[d] - body.domain.lower[d]);
