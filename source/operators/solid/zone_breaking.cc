@@ -259,7 +259,8 @@ namespace PeriDeal
 
   template <int dim>
   double ZoneBreaking<dim>::largest_strain(const std::array<unsigned int, n_corners> &corners,
-                                           const Vector                              &u) const
+                                           const Vector                              &u,
+                                           const double at_least) const
   {
     const Tensor<1, dim> size = nodes.position(corners[n_corners - 1]) - nodes.position(corners[0]);
     Tensor<2, dim>       gradient;
@@ -276,7 +277,10 @@ namespace PeriDeal
         limit = std::min(limit, critical[i]);
         warm += thermal.empty() ? 0. : thermal[i] / n_corners;
       }
-    return (eigenvalues(symmetrize(gradient))[0] - warm) / limit;
+    const SymmetricTensor<2, dim> strain = symmetrize(gradient);
+    if (strain.norm() * (1. + 1e-12) - warm < at_least * limit)
+      return 0.;
+    return (eigenvalues(strain)[0] - warm) / limit;
   }
 
 
@@ -291,7 +295,7 @@ namespace PeriDeal
     };
     std::vector<Point<dim>> own;
     const auto              is_lit = [&](const std::array<unsigned int, n_corners> &corners) {
-      if (!(largest_strain(corners, u) >= share_of_zone))
+      if (!(largest_strain(corners, u, share_of_zone) >= share_of_zone))
         return false;
       own.push_back(centre(corners));
       return true;
@@ -329,7 +333,7 @@ namespace PeriDeal
             }
           if (inside)
             continue;
-          const double strain = largest_strain(corners, u);
+          const double strain = largest_strain(corners, u, 1.);
           if (!(strain > 1.))
             continue;
           ++n;

@@ -131,9 +131,13 @@ namespace PeriDeal
 
     void find_critical_stretches(const BodyParameters<dim> &body);
     void find_cells(const dealii::DoFHandler<dim> &dofs);
-    /** Thermal strain taken off, over the smallest critical stretch of the corners. */
+    /**
+     * Thermal strain taken off, over the smallest critical stretch of the corners; 0 where its
+     * bound, the norm of the strain, is not @p at_least so much.
+     */
     double largest_strain(const std::array<unsigned int, n_corners> &corners,
-                          const Vector                              &u) const;
+                          const Vector                              &u,
+                          const double                               at_least) const;
     void   keep_first_place(const std::vector<std::pair<NodePair, double>> &found);
 
     /** Local number of a node, or none. */
