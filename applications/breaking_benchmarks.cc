@@ -3,9 +3,6 @@
 
 // Explicit steps of bodies whose bonds may break, and the same bonds in LAMMPS, if it is installed.
 
-#include <deal.II/fe/fe_dgq.h>
-
-#include <perideal/operators/solid/state_operator.h>
 #include <perideal/solvers/motion_stepper.h>
 
 #include <cstdlib>
@@ -13,7 +10,7 @@
 #include <fstream>
 
 #include "benchmark_findings.h"
-#include "benchmark_problem.h"
+#include "elastic_body.h"
 
 namespace PeriDeal
 {
@@ -21,52 +18,30 @@ namespace PeriDeal
   {
     /** A square or cube with a short crack from its left side, pulled open at once. */
     template <int dim>
-    struct CrackedBody
+    std::string cracked_text(const unsigned int n_cells,
+                             const std::string &m,
+                             const std::string &form)
     {
-      CrackedBody(const unsigned int n_cells, const std::string &m, const std::string &form)
-      {
-        const auto list = [](const std::string &entry) {
-          return entry + ", " + entry + (dim > 2 ? ", " + entry : "");
-        };
-        const std::string crack = dim == 2 ?
-                                    "Segments = 0,0.5 ; 0.05,0.5" :
-                                    "Polygons = 0,0.5,0 ; 0.05,0.5,0 ; 0.05,0.5,1 ; 0,0.5,1",
-                          last  = dim == 2 ? "" : ", 0";
-        parse_scene(
-          SceneText{
-            "benchmark",
-            "set Dimension = " + std::to_string(dim) +
-              "\nset Physics = elasticity\nset Models = peridynamics\nsubsection Domain\nset "
-              "Lower corner = " +
-              list("0") + "\nset Upper corner = " + list("1") +
-              "\nset Cells = " + list(std::to_string(n_cells)) +
-              "\nset Nodes = cell centers\nend\nsubsection Material\nset Young modulus = "
-              "200\nset Poisson ratio = 0.25\nset Density = 1.0\nset Critical stretch = "
-              "0.01\nend\nsubsection Boundary conditions\nset Traction = top: 0, 0.7" +
-              last + "; bottom: 0, -0.7" + last + "\nend\nsubsection Cracks\nset " + crack +
-              "\nend\nsubsection Peridynamics\nset Horizon ratio = " + m +
-              "\nset Operator form = " + form +
-              "\nend\nsubsection Elasticity\nset Solver = dynamics\nend\nsubsection Time\n"
-              "set End time = 1\nend\n"},
-          scene);
-        std::vector<std::string> notes;
-        mesh    = build_mesh(scene, MPI_COMM_WORLD, notes);
-        handler = std::make_unique<dealii::DoFHandler<dim>>(*mesh);
-        handler->distribute_dofs(dealii::FE_DGQ<dim>(0));
-        number_along_lattice(*handler, scene.domain);
-        nodes = std::make_unique<Nodes<dim>>(*handler,
-                                             scene.domain,
-                                             scene.cracks,
-                                             scene.peridynamics.nodal_volume);
-        op    = std::make_unique<StateOperator<dim>>(*nodes, scene);
-      }
-
-      Scene<dim>                                  scene;
-      std::unique_ptr<dealii::Triangulation<dim>> mesh;
-      std::unique_ptr<dealii::DoFHandler<dim>>    handler;
-      std::unique_ptr<Nodes<dim>>                 nodes;
-      std::unique_ptr<StateOperator<dim>>         op;
-    };
+      const auto list = [](const std::string &entry) {
+        return entry + ", " + entry + (dim > 2 ? ", " + entry : "");
+      };
+      const std::string crack = dim == 2 ? "Segments = 0,0.5 ; 0.05,0.5" :
+                                           "Polygons = 0,0.5,0 ; 0.05,0.5,0 ; 0.05,0.5,1 ; 0,0.5,1",
+                        last  = dim == 2 ? "" : ", 0";
+      return "set Dimension = " + std::to_string(dim) +
+             "\nset Physics = elasticity\nset Models = peridynamics\nsubsection Domain\nset "
+             "Lower corner = " +
+             list("0") + "\nset Upper corner = " + list("1") +
+             "\nset Cells = " + list(std::to_string(n_cells)) +
+             "\nset Nodes = cell centers\nend\nsubsection Material\nset Young modulus = "
+             "200\nset Poisson ratio = 0.25\nset Density = 1.0\nset Critical stretch = "
+             "0.01\nend\nsubsection Boundary conditions\nset Traction = top: 0, 0.7" +
+             last + "; bottom: 0, -0.7" + last + "\nend\nsubsection Cracks\nset " + crack +
+             "\nend\nsubsection Peridynamics\nset Horizon ratio = " + m +
+             "\nset Operator form = " + form +
+             "\nend\nsubsection Elasticity\nset Solver = dynamics\nend\nsubsection Time\n"
+             "set End time = 1\nend\n";
+    }
 
 
     struct Rates
@@ -84,7 +59,7 @@ namespace PeriDeal
                          const double       end)
     {
       constexpr unsigned int n_steps = 10; // at a time
-      CrackedBody<dim>       body(n_cells, m, form);
+      ElasticBody<dim>       body(cracked_text<dim>(n_cells, m, form));
       StateOperator<dim>    &op      = *body.op;
       const double           n_bonds = static_cast<double>(op.size().bonds);
       Vector                 u, v;

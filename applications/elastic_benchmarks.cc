@@ -3,13 +3,10 @@
 
 // The state-based operator, and one static solution of the size of published ones.
 
-#include <deal.II/fe/fe_dgq.h>
-
-#include <perideal/operators/solid/state_operator.h>
 #include <perideal/solvers/static_solver.h>
 
 #include "benchmark_findings.h"
-#include "benchmark_problem.h"
+#include "elastic_body.h"
 
 namespace PeriDeal
 {
@@ -17,49 +14,26 @@ namespace PeriDeal
   {
     /** A unit square or cube that is held at the bottom and pulled at the top. */
     template <int dim>
-    struct ElasticBody
+    std::string pulled_text(const unsigned int n_cells,
+                            const std::string &m,
+                            const std::string &model,
+                            const std::string &form)
     {
-      ElasticBody(const unsigned int n_cells,
-                  const std::string &m,
-                  const std::string &model,
-                  const std::string &form)
-      {
-        const auto list = [](const std::string &entry) {
-          return entry + (dim > 1 ? ", " + entry : "") + (dim > 2 ? ", " + entry : "");
-        };
-        const std::string none = dim == 2 ? "0, 0" : "0, 0, 0", up = dim == 2 ? "0, 1" : "0, 1, 0";
-        parse_scene(
-          SceneText{
-            "benchmark",
-            "set Dimension = " + std::to_string(dim) +
-              "\nset Physics = elasticity\nset Models = peridynamics\nsubsection Domain\nset Lower corner = " +
-              list("0") + "\nset Upper corner = " + list("1") +
-              "\nset Cells = " + list(std::to_string(n_cells)) +
-              "\nset Nodes = cell centers\nend\nsubsection Material\nset Young modulus = 200\nset Poisson ratio = 0.3\nend\n"
-              "subsection Boundary conditions\nset Displacement = bottom: " +
-              none + "\nset Traction = top: " + up +
-              "\nend\nsubsection Peridynamics\nset Horizon ratio = " + m +
-              "\nset Operator form = " + form +
-              "\nend\nsubsection Elasticity\nset Model = " + model + "\nend\n"},
-          scene);
-        std::vector<std::string> notes;
-        mesh    = build_mesh(scene, MPI_COMM_WORLD, notes);
-        handler = std::make_unique<dealii::DoFHandler<dim>>(*mesh);
-        handler->distribute_dofs(dealii::FE_DGQ<dim>(0));
-        number_along_lattice(*handler, scene.domain);
-        nodes = std::make_unique<Nodes<dim>>(*handler,
-                                             scene.domain,
-                                             scene.cracks,
-                                             scene.peridynamics.nodal_volume);
-        op    = std::make_unique<StateOperator<dim>>(*nodes, scene);
-      }
-
-      Scene<dim>                                  scene;
-      std::unique_ptr<dealii::Triangulation<dim>> mesh;
-      std::unique_ptr<dealii::DoFHandler<dim>>    handler;
-      std::unique_ptr<Nodes<dim>>                 nodes;
-      std::unique_ptr<StateOperator<dim>>         op;
-    };
+      const auto list = [](const std::string &entry) {
+        return entry + (dim > 1 ? ", " + entry : "") + (dim > 2 ? ", " + entry : "");
+      };
+      const std::string none = dim == 2 ? "0, 0" : "0, 0, 0", up = dim == 2 ? "0, 1" : "0, 1, 0";
+      return "set Dimension = " + std::to_string(dim) +
+             "\nset Physics = elasticity\nset Models = peridynamics\nsubsection Domain\nset Lower corner = " +
+             list("0") + "\nset Upper corner = " + list("1") +
+             "\nset Cells = " + list(std::to_string(n_cells)) +
+             "\nset Nodes = cell centers\nend\nsubsection Material\nset Young modulus = 200\nset Poisson ratio = 0.3\nend\n"
+             "subsection Boundary conditions\nset Displacement = bottom: " +
+             none + "\nset Traction = top: " + up +
+             "\nend\nsubsection Peridynamics\nset Horizon ratio = " + m +
+             "\nset Operator form = " + form +
+             "\nend\nsubsection Elasticity\nset Model = " + model + "\nend\n";
+    }
 
 
     template <int dim>
@@ -72,8 +46,9 @@ namespace PeriDeal
       double                 rates[2], bytes[2]; // of the stored form, of the lattice form
       for (const bool lattice : {false, true})
         {
-          const ElasticBody<dim> body(n_cells, m, model, lattice ? "lattice" : "stored");
-          Vector                 x, y;
+          const ElasticBody<dim> body(
+            pulled_text<dim>(n_cells, m, model, lattice ? "lattice" : "stored"));
+          Vector x, y;
           body.op->initialize_vector(x);
           body.op->initialize_vector(y);
           for (unsigned int i = 0; i < x.locally_owned_size(); ++i)
@@ -104,7 +79,7 @@ namespace PeriDeal
     void measure_solution()
     {
       const auto           start = std::chrono::steady_clock::now();
-      const ElasticBody<2> body(592, "5", "state-based", "auto");
+      const ElasticBody<2> body(pulled_text<2>(592, "5", "state-based", "auto"));
       StaticOptions        options;
       options.tolerance = 1e-6;
       Vector             u;

@@ -12,7 +12,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
+
+#include "stretch_fault.h"
 
 namespace PeriDeal
 {
@@ -165,12 +166,7 @@ namespace PeriDeal
         else
           s = material.critical_stretch->value(p);
         if (message.empty() && !(s > 0.))
-          {
-            std::ostringstream where;
-            where << "'" << (converts ? "Fracture energy" : "Critical stretch")
-                  << "' in section 'Material' is not positive at (" << p << ").";
-            message = where.str();
-          }
+          message = stretch_fault(!converts, p);
       }
     throw_on_all_if_any(nodes.communicator(), message);
     stretches.update_ghost_values();

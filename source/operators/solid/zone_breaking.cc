@@ -13,8 +13,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <unordered_map>
+
+#include "stretch_fault.h"
 
 namespace PeriDeal
 {
@@ -99,12 +100,7 @@ namespace PeriDeal
                                 material.critical_stretch->value(p) :
                                 std::sqrt(material.fracture_energy->value(p) / (stiffness.at(p) * of_square));
         if (message.empty() && !(s > 0.))
-          {
-            std::ostringstream where;
-            where << "'" << (material.critical_stretch ? "Critical stretch" : "Fracture energy")
-                  << "' in section 'Material' is not positive at (" << p << ").";
-            message = where.str();
-          }
+          message = stretch_fault(material.critical_stretch.has_value(), p);
       }
     throw_on_all_if_any(nodes.communicator(), message);
     stretches.update_ghost_values();
