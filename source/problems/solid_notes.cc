@@ -198,6 +198,31 @@ namespace PeriDeal
            "Keep cells of lattice size there: 'Fine where' or a smaller 'Coarsening' in section 'Domain'." :
            "'Zone = follow' in section 'Coupling' goes with it."));
     }
+
+
+    /** A negative K_I is that of faces that are pressed together. */
+    template <int dim>
+    void note_pressed_faces(const SolidProblem<dim> &run, const RunContext &context)
+    {
+      constexpr double some = 0.02; // of both intensities
+      const auto      &kept = context.record.balances;
+      if (!kept.contains(run.name()) || !kept[run.name()].contains("stress intensity"))
+        return;
+      for (const auto &[end, value] : kept[run.name()]["stress intensity"].items())
+        {
+          const double first = value["I"], second = value["II"];
+          if (first > -some * std::hypot(first, second) || first == 0.)
+            continue;
+          const bool knows = run.scene.elasticity.contact && run.scene.coupling.exchanges() &&
+                             run.name() == to_string(ModelKind::coupled);
+          context.record.notes.push_back(
+            run.name() + ": K_I at " + end + " is negative: the faces of the crack " +
+            (knows ?
+               "press on each other there. It is found as if they bore nothing, and is none of an open crack; K_II is that of faces that slide." :
+               "pass through each other, since nothing is between them here. In 'peridynamics' and in 'coupled' with 'Scheme = exchange' they press on each other ('Contact' in section 'Elasticity')."));
+          return;
+        }
+    }
   } // namespace
 
 
@@ -233,6 +258,7 @@ namespace PeriDeal
     note_turning(run, context);
     note_torn_sides(run, context);
     note_end_of_zone(run, context);
+    note_pressed_faces(run, context);
   }
 
 

@@ -26,7 +26,7 @@ namespace PeriDeal
       "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; or a formula of "
       "x, y, z, in the zone where it is greater than 0. `adaptive`: as `cracks: 1`, on a mesh that follows the cracks and the solution as the run goes "
       "on (`Coarsening` in section `Domain` says how large its cells may be). `follow`, with elasticity and bonds that break: one horizon around cracks, broken bonds, "
-      "and wherever the body is stretched by more than `Zone share` of the critical stretch.");
+      "and wherever the body is stretched by more than `Zone share` of the critical stretch; the default there.");
     declare(
       "Zone share",
       EntryType::number,
@@ -57,23 +57,25 @@ namespace PeriDeal
   }
 
 
-  void CouplingControl::parse()
+  void CouplingControl::parse(const bool bonds_break)
   {
     scheme             = choice<CouplingScheme>("Scheme");
     overlap            = number("Overlap");
     certificate        = boolean("Certificate");
     adaptive_tolerance = positive_number("Adaptive tolerance");
-    if (is_given("Adaptive tolerance") && trimmed(text("Zone")) != "adaptive")
-      error("Adaptive tolerance", "is for 'Zone = adaptive'; 'Zone' is '" + text("Zone") + "'.");
+    parse_zone();
+    if (bonds_break && exchanges() && !is_given("Zone"))
+      zone = ZoneKind::follow;
+    if (is_given("Adaptive tolerance") && !is_adaptive())
+      error("Adaptive tolerance", "is for 'Zone = adaptive'; 'Zone' is '" + zone_text() + "'.");
     zone_share = positive_number("Zone share");
     refuse(zone_share > 0.9,
            "Zone share",
            "found " + text("Zone share") +
              ", needs more than 0 and at most 0.9: bonds have to be there before they break.");
-    if (is_given("Zone share") && trimmed(text("Zone")) != "follow")
-      error("Zone share", "is for 'Zone = follow'; 'Zone' is '" + text("Zone") + "'.");
+    if (is_given("Zone share") && !follows_stretches())
+      error("Zone share", "is for 'Zone = follow'; 'Zone' is '" + zone_text() + "'.");
     refuse(overlap < 0., "Overlap", "found " + text("Overlap") + ", needs 0 or more horizons.");
-    parse_zone();
     if (is_adaptive() && !exchanges())
       error("Zone",
             "'adaptive' changes the mesh while the run goes on, which 'Scheme = " +
@@ -85,7 +87,7 @@ namespace PeriDeal
 
   std::string CouplingControl::zone_text() const
   {
-    return text("Zone");
+    return follows_stretches() ? "follow" : text("Zone");
   }
 
 

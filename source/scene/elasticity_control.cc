@@ -59,6 +59,13 @@ namespace PeriDeal
       "1",
       "With `Temperature change = computed` that changes in time: the part of its heat that a bond still conducts once it has broken, from 0 (nothing) to 1 (as before).");
     declare(
+      "Contact",
+      EntryType::boolean,
+      "true",
+      "",
+      "Faces of cracks of section `Cracks` and of bonds that have broken press on each other, without friction, where they close "
+      "(peridynamics, and `coupled` with `Scheme = exchange`, with `Kinematics = linear`). Finite elements alone do not know of it.");
+    declare(
       "Solver",
       EntryType::choice,
       "linear",
@@ -134,6 +141,7 @@ namespace PeriDeal
       error("Reference temperature",
             "has no effect: 'Temperature change' is '" + text("Temperature change") +
               "'. Use 'Temperature change = computed', or leave the entry out.");
+    contact              = boolean("Contact");
     broken_bonds_conduct = number("Broken bonds conduct");
     if (!(broken_bonds_conduct >= 0. && broken_bonds_conduct <= 1.))
       error("Broken bonds conduct",
@@ -150,6 +158,10 @@ namespace PeriDeal
     if (is_given("Preconditioner") && solver != ElasticSolver::conjugate_gradients)
       error("Preconditioner",
             "is for 'Solver = conjugate gradients'; 'Solver' is '" + solver_name() + "'.");
+    if (has_full_kinematics() && contact && is_given("Contact"))
+      error(
+        "Contact",
+        "found 'true', but faces of cracks bear pressure with 'Kinematics = linear' only, and 'Kinematics' is 'full'. Use 'linear', or leave the entry out.");
     if (has_full_kinematics() && solver == ElasticSolver::linear)
       error(
         "Kinematics",

@@ -219,7 +219,7 @@ namespace PeriDeal
     cracks.parse(general.physics);
     keep_cracks_off_nodes(*this);
     peridynamics.parse(general.physics);
-    coupling.parse();
+    coupling.parse(this->deforms && (material.fracture_energy || material.critical_stretch));
     finite_elements.parse(general.physics, elasticity.computes_temperature);
     make_heat_problem(*this);
     // a conductor without capacitance is always in its steady state, and an equilibrium has a time

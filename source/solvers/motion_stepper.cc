@@ -115,6 +115,7 @@ namespace PeriDeal
   void MotionStepper::begin(const Vector &u, const Vector &v, const double t)
   {
     const double before = account.kept_back(unbalanced);
+    find_touching(u);
     op.unbalanced(unbalanced, u, t);
     account.begin(u, v, unbalanced, t, before);
     fresh = false;
@@ -139,7 +140,7 @@ namespace PeriDeal
 
   void MotionStepper::check_drift(const Vector &u, const Vector &v, const double t)
   {
-    if (found.has("energy"))
+    if (has_touched || found.has("energy"))
       return;
     const MotionEnergy now   = energy(u, v);
     const std::string  fault = account.drift_fault(now, allowed_drift);
@@ -309,6 +310,7 @@ namespace PeriDeal
     spent.exchange(archive);
     archive.exchange("unbalanced", unbalanced, keys);
     archive.exchange("fresh", fresh);
+    archive.exchange("has touched", has_touched);
     archive.exchange("longest step", longest);
     archive.exchange("shortest step", shortest);
     account.exchange(archive, keys);

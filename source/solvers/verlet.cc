@@ -41,6 +41,7 @@ namespace PeriDeal
                                   dt,
                                   n);
         op.distribute(u, t + dt);
+        find_touching(u);
         op.unbalanced(unbalanced, u, t + dt);
         NodeLoops::accumulate(v.begin(), free_inverse_mass.data(), unbalanced.begin(), 0.5 * dt, n);
         follow_supports(v, u, dt);

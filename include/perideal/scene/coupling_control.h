@@ -46,8 +46,9 @@ namespace PeriDeal
     /**
      * Throws UserError for a zone that is none, a width or an overlap below 0, contradicting
      * entries.
+     * @param bonds_break of a solid: an exchange then has the zone `follow` unless it is given one
      */
-    void parse();
+    void parse(const bool bonds_break = false);
 
     bool exchanges() const
     {

@@ -27,6 +27,7 @@ namespace PeriDeal
     bool          computes_temperature  = false; // by the heat problem of the same scene
     double        reference_temperature = 0.;    // of the unstressed body, where it is computed
     double        broken_bonds_conduct  = 0.;    // of heat: their transmission, 0 to 1
+    bool          contact               = true;  // faces of cracks bear pressure
     ElasticSolver solver                = ElasticSolver::linear;
     bool          multigrid             = true; // entry `Preconditioner`
 

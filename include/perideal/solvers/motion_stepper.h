@@ -117,6 +117,14 @@ namespace PeriDeal
     /** As exchange(), of what a method has beyond that. */
     virtual void exchange_own(Archive &) {}
 
+    /** ElasticOperator::update_contact(). What begins or ceases to touch makes energy. */
+    bool find_touching(const Vector &u)
+    {
+      const bool changes = op.update_contact(u);
+      has_touched        = has_touched || changes;
+      return changes;
+    }
+
     /** y = M^{-1} r on free unknowns, zero elsewhere. */
     void accelerate(Vector &y, const Vector &r) const;
 
@@ -145,7 +153,7 @@ namespace PeriDeal
     StepSpan                   span;
     double                     longest, shortest;
     std::unique_ptr<StepLimit> limit; // null: none
-    bool                       fresh = true, leaves_bonds = false;
+    bool                       fresh = true, leaves_bonds = false, has_touched = false;
     Vector                     change; // of a step
     MotionAccount              account;
   };

@@ -300,6 +300,7 @@ namespace PeriDeal
   void ElasticElements<dim>::set_temperature_change(const Vector &nodal)
   {
     this->keep_temperature_change(nodal);
+    this->set_contact_strains();
     find_thermal();
     this->keep_constant_loads();
   }
@@ -392,6 +393,7 @@ namespace PeriDeal
     this->initialize_vector(reactions);
     find_loads(loads, t);
     multiply(reactions, u);
+    this->add_contact(reactions, u, true);
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     if (zone_bonds)
       for (const types::boundary_id side : zone_bonds->mirrors())

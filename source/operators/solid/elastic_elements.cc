@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "elastic_cell_data.h"
@@ -68,6 +67,7 @@ namespace PeriDeal
     cut_by_cracks.set(this->history.pieces(this->cracks_of, !body.cuts_in_part_at_tips()), 0.);
     assemble();
     this->keep_constant_loads();
+    this->make_contact();
   }
 
 
@@ -295,7 +295,7 @@ namespace PeriDeal
     std::vector<Cell> cells;
     search->find(boxes, of_cells, cells);
     changes_forces = true;
-    double gained  = add_zone_parts(cells, rows, -1., u);
+    double gained = add_zone_parts(cells, rows, -1., u);
     make_change();
     gained += add_zone_parts(cells, rows, 1., u);
     stiffness.compress(VectorOperation::add);
@@ -307,7 +307,7 @@ namespace PeriDeal
       }
     note_parted(cells);
     mend_diagonal(cells, rows);
-    return -Utilities::MPI::sum(gained, dofs.get_communicator());
+    return this->change_contact(rows, u) - Utilities::MPI::sum(gained, dofs.get_communicator());
   }
 
 
@@ -333,6 +333,7 @@ namespace PeriDeal
     hanging.condense(force_change);
     hanging.set(force_change, 0.);
     r -= force_change;
+    this->mend_contact(r);
     force_change   = 0.;
     changes_forces = false;
   }
@@ -483,7 +484,7 @@ namespace PeriDeal
     Vector image;
     this->initialize_vector(image);
     multiply(image, u);
-    return 0.5 * (u * image) - u * thermal_loads + thermal_energy;
+    return 0.5 * (u * image) - u * thermal_loads + thermal_energy + this->contact_energy(u);
   }
 
   template <int dim>

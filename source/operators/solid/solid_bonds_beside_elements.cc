@@ -279,6 +279,28 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void SolidBondsBesideElements<dim>::contact_family(
+    const unsigned int                             node,
+    std::vector<typename CrackContact<dim>::Bond> &list) const
+  {
+    if (!coupled->symmetric())
+      return;
+    std::vector<Bond> bonds;
+    coupled->bonds_of(node, bonds);
+    if (std::none_of(bonds.begin(), bonds.end(), [](const Bond &bond) {
+          return bond.weight == 0. && bond.intact != 0.;
+        }))
+      return;
+    for (const Bond &bond : bonds)
+      {
+        const Tensor<1, dim> xi = nodes().position(bond.neighbor) - nodes().position(node);
+        list.push_back(
+          {bond.neighbor, xi, 0.5 * bond.intact * xi.norm_square(), bond.weight == 0.});
+      }
+  }
+
+
   template class SolidBondsBesideElements<1>;
   template class SolidBondsBesideElements<2>;
   template class SolidBondsBesideElements<3>;

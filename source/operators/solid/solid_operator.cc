@@ -143,6 +143,7 @@ namespace PeriDeal
           keep_surrogate();
         take_loaded(time);
       }
+    exchange_contact(archive, keys);
     conditions->exchange(archive, keys);
     ElasticOperator::exchange(archive, keys);
   }
@@ -161,6 +162,8 @@ namespace PeriDeal
             before = joined;
           }
         apply_change(change, u == nullptr);
+        if (contact)
+          contact->set_rows(owned_nodes());
         this->released_by_growth += u ? before - this->energy(*u) : 0.;
       }
     catch (const UserError &fault)
@@ -190,6 +193,7 @@ namespace PeriDeal
   {
     ++this->applications;
     this->multiply(y, x);
+    add_contact(y, x, false);
     conditions->mask(y);
   }
 
@@ -207,6 +211,8 @@ namespace PeriDeal
   {
     ++this->applications;
     find_forces(r, u);
+    add_contact(r, u, true);
+    contact_changes = false;
     if (loads_vary)
       find_loads(scratch, t);
     NodeLoops::subtract_from(r.begin(),

@@ -85,6 +85,7 @@ namespace PeriDeal
         this->unbalanced(r, u, t);
         return;
       }
+    this->leave_out_contact(r, u);
     u.update_ghost_values();
     Vector change;
     if (solid.laws.volumetric)
@@ -135,6 +136,9 @@ namespace PeriDeal
           r.local_element(dim * i + d) = scratch.local_element(dim * i + d) + force[d];
       }
     u.set_ghost_state(false);
+    r *= -1.;
+    this->add_contact(r, u, true);
+    r *= -1.;
   }
 
 
@@ -144,12 +148,50 @@ namespace PeriDeal
                                                      const double  share)
   {
     const unsigned long long before = this->n_broken_bonds();
-    const auto               change =
+    const auto change =
       breakage.break_bonds(u, t, share, [&]() { return energy_of(breakage.nodes_at_work(), u); });
     if (!change)
       return 0;
     apply_change(*change, true);
+    breakage.add_released(this->change_contact(change->nodes, u));
     return this->n_broken_bonds() - before;
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::contact_family(const unsigned int                             node,
+                                          std::vector<typename CrackContact<dim>::Bond> &list) const
+  {
+    const SolidRows<dim> &rows = solid.rows;
+    if (rows.is_on_lattice(node))
+      return;
+    std::vector<typename Families<dim>::Member> family;
+    std::vector<std::pair<unsigned int, int>>   crossed;
+    solid.families.members_of(node, family);
+    const double own = solid.laws.stiffness(node), tiny = 1e-9 * body.horizon();
+    std::size_t  k   = rows.begin_of(node);
+    bool         any = false;
+    for (const auto &member : family)
+      {
+        const unsigned int   j  = member.neighbor;
+        const Tensor<1, dim> xi = solid.families.neighbors().bond_vector(node, j);
+        bool                 is_lost;
+        if (k < rows.end_of(node) && rows.neighbor(k) == j) // left out are those cut at first
+          is_lost = !breakage.broken_state().is_whole(k++);
+        else
+          {
+            solid.families.cracks().crossed_cracks(node, j, crossed);
+            is_lost = !crossed.empty() || solid.families.is_parted(node, j);
+            if (!is_lost)
+              continue; // a void does that
+          }
+        if (xi.norm() < tiny) // twins across a crack between doubled nodes
+          continue;
+        any = any || is_lost;
+        list.push_back({j, xi, 0.5 * member.weight * (own + solid.laws.stiffness(j)), is_lost});
+      }
+    if (!any)
+      list.clear();
   }
 
 
@@ -189,16 +231,19 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                   \
-  template double StateOperator<dim>::energy_of(const std::vector<unsigned int> &, const Vector &)  \
-    const;                                                                                          \
-  template void StateOperator<dim>::mend_unbalanced(Vector &, const Vector &, const double) const;  \
-  template void StateOperator<dim>::renew_tensions(const Vector &, Vector &) const;                 \
-  template unsigned long long StateOperator<dim>::break_bonds(const Vector &, double, double);      \
-  template void               StateOperator<dim>::apply_change(const ChangeSet<dim> &, const bool); \
-  template void               StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *);  \
-  template void               StateOperator<dim>::exchange_bonds(Archive &,                         \
-                                                   const NodeKeys &,                  \
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template double StateOperator<dim>::energy_of(const std::vector<unsigned int> &, const Vector &) \
+    const;                                                                                         \
+  template void StateOperator<dim>::mend_unbalanced(Vector &, const Vector &, const double) const; \
+  template void StateOperator<dim>::renew_tensions(const Vector &, Vector &) const;                \
+  template unsigned long long StateOperator<dim>::break_bonds(const Vector &, double, double);     \
+  template void               StateOperator<dim>::contact_family(                                  \
+    const unsigned int,                                                              \
+    std::vector<typename CrackContact<dim>::Bond> &) const;                          \
+  template void StateOperator<dim>::apply_change(const ChangeSet<dim> &, const bool);              \
+  template void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *);               \
+  template void StateOperator<dim>::exchange_bonds(Archive &,                                      \
+                                                   const NodeKeys &,                               \
                                                    const std::function<void()> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

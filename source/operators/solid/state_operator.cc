@@ -33,6 +33,7 @@ namespace PeriDeal
     find_stiffness_diagonal(solid, stiffness_diagonal);
     conditions->mask(stiffness_diagonal, 1.);
     find_thermal_strains();
+    this->make_contact();
   }
 
 
@@ -73,6 +74,7 @@ namespace PeriDeal
       nodes.n_local(),
       [&](const unsigned int i) { return this->thermal_strain_at(i); },
       nodes.communicator());
+    this->set_contact_strains();
     find_thermal_loads();
   }
 
@@ -225,6 +227,7 @@ namespace PeriDeal
     this->initialize_vector(reactions);
     find_loads(all_loads, t);
     find_forces(reactions, u);
+    this->add_contact(reactions, u, true);
     reactions -= all_loads;
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     conditions->add_reactions(reactions, sums);
@@ -264,7 +267,7 @@ namespace PeriDeal
           }
       }
     u.set_ghost_state(false);
-    return Utilities::MPI::sum(sum, nodes.communicator());
+    return Utilities::MPI::sum(sum, nodes.communicator()) + this->contact_energy(u);
   }
 
 

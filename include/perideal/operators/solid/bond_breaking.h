@@ -66,6 +66,12 @@ namespace PeriDeal
       bonds.apply_change(change, state, marked);
     }
 
+    /** Energy that what the bonds held has released beside. */
+    void add_released(const double energy)
+    {
+      so_far.released += energy;
+    }
+
     /** How many bonds are not whole any more, inside and beyond; those at the start apart. */
     using Count = std::array<std::size_t, 2>;
 

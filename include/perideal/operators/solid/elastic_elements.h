@@ -191,6 +191,13 @@ namespace PeriDeal
     void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
     void find_loads(Vector &loads, const double t) const override;
     void surrogate_made() const override;
+    void contact_family(const unsigned int                             node,
+                        std::vector<typename CrackContact<dim>::Bond> &list) const override
+    {
+      if (zone_bonds)
+        zone_bonds->contact_family(node, list);
+    }
+
     void exchange_bonds(Archive                     &archive,
                         const NodeKeys              &keys,
                         const std::function<void()> &at_surrogate) override;

@@ -5,32 +5,15 @@
 
 #include <perideal/operators/interface/operator.h>
 #include <perideal/operators/solid/break_history.h>
+#include <perideal/operators/solid/force_balance.h>
 #include <perideal/scene/change_set.h>
 
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace PeriDeal
 {
-  /**
-   * The forces on a body at rest, each with one component for each direction (N; in 2D per unit
-   * thickness).
-   */
-  struct ForceBalance
-  {
-    std::map<std::string, std::vector<double>> sides; // reactions and tractions, by the side's name
-    std::vector<double>                        body;  // body forces
-
-    /** Length of the sum of all. */
-    double imbalance() const;
-
-    /** Half the sum of the lengths of all: what passes through the body. */
-    double throughput() const;
-  };
-
-
   /**
    * Where a body has been turned inside out: nodes have passed through neighbours to which bonds or
    * elements hold them.
@@ -195,6 +178,12 @@ namespace PeriDeal
      * energy_released_by_joining(). Collective.
      */
     virtual bool widen_zone(const Vector & /*u*/)
+    {
+      return false;
+    }
+
+    /** Find which faces of cracks touch at u. Returns whether that and K change. Collective. */
+    virtual bool update_contact(const Vector & /*u*/)
     {
       return false;
     }

@@ -6,6 +6,7 @@
 #include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/coupling/node_families.h>
 #include <perideal/operators/parts/crack_side_factors.h>
+#include <perideal/operators/solid/crack_contact.h>
 
 #include <memory>
 #include <vector>
@@ -128,6 +129,10 @@ namespace PeriDeal
     double add_thermal(Vector                 &loads,
                        const CrackSideFactors &factors,
                        const ThermalStrain    &strain) const;
+
+    /** The bonds of an owned node, broken ones and such that cracks cut marked as lost. */
+    void contact_family(const unsigned int                             node,
+                        std::vector<typename CrackContact<dim>::Bond> &list) const;
 
     /** Mark owned nodes with broken bonds, and add what the others give to the trace. */
     void add_to(CrackSideFactors::Sums &sums) const;

@@ -6,6 +6,7 @@
 #include <deal.II/base/partitioner.h>
 
 #include <perideal/laws/elasticity.h>
+#include <perideal/operators/solid/crack_contact.h>
 #include <perideal/operators/solid/displacement_conditions.h>
 #include <perideal/scene/crack_history.h>
 
@@ -88,6 +89,7 @@ namespace PeriDeal
     }
 
     bool grow_cracks(const Vector &u, const double t) override;
+    bool update_contact(const Vector &u) override;
 
     /** The representative time of the cracks as they are in K (CrackHistory). Not collective. */
     double crack_time() const
@@ -136,6 +138,38 @@ namespace PeriDeal
     {
       this->multiply(y, u);
     }
+
+    /**
+     * Let faces of cracks bear pressure if the scene wants it, of bonds that contact_family()
+     * gives; to be called once these are known. Collective.
+     */
+    void make_contact();
+
+    /** CrackContact::FamilyOf. */
+    virtual void contact_family(const unsigned int,
+                                std::vector<typename CrackContact<dim>::Bond> & /*bonds*/) const
+    {}
+
+    /** Thermal strains have changed. */
+    void set_contact_strains();
+
+    /** Add the forces of contact to K u, with thermal strains less their load. Collective. */
+    void add_contact(Vector &y, const Vector &u, const bool strained) const;
+
+    /** The energy of contact at u, whose ghosts are brought up to date. Collective. */
+    double contact_energy(const Vector &u) const;
+
+    /**
+     * To be called when these owned nodes, in ascending order, have lost or got bonds at u. Returns
+     * what contact has released. Collective.
+     */
+    double change_contact(const std::vector<unsigned int> &of_nodes, const Vector &u);
+
+    /** Mend unbalanced() for these changes of contact. Collective. */
+    void mend_contact(Vector &r) const;
+
+    /** As mend_contact(), and leave no forces of contact in r at all. Collective. */
+    void leave_out_contact(Vector &r, const Vector &u) const;
 
     /** What surrogate() gives, of the body as it is now. Collective. */
     virtual void assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const = 0;
@@ -203,10 +237,16 @@ namespace PeriDeal
     };
 
     /** @param u at which energy is released; null: by a body that is loaded, which has told it. */
-    void              take(const ChangeSet<dim> &change, const Vector *u);
-    void              take_loaded(const double time);
-    Vector            constant_loads;
-    mutable Surrogate latest;
+    void                      take(const ChangeSet<dim> &change, const Vector *u);
+    void                      take_loaded(const double time);
+    std::vector<unsigned int> owned_nodes() const;
+    void                      exchange_contact(Archive &archive, const NodeKeys &keys);
+
+    Vector                             constant_loads;
+    mutable Surrogate                  latest;
+    std::unique_ptr<CrackContact<dim>> contact;        // null: faces of cracks bear nothing
+    mutable Vector                     contact_change; // of its forces, since they were all found
+    mutable bool                       contact_changes = false;
 
   protected:
     mutable Vector scratch;
