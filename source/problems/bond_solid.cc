@@ -119,6 +119,10 @@ namespace PeriDeal
           {
             const std::vector<double> damage = states->breaking().damage();
             list.add("damage", [&](const unsigned int i) { return damage[i]; });
+            if (scene.material.scatter)
+              list.add("critical_stretch", [&](const unsigned int i) {
+                return states->breaking().critical_stretches()[i];
+              });
           }
         list.add("node_volume", [&](const unsigned int i) { return node_set->volume(i); });
         return list.take();
@@ -202,8 +206,8 @@ namespace PeriDeal
     private:
       std::string note_on_critical_stretch() const
       {
-        if (!states->brittle() || scene.material.fracture_energy || !scene.domain.has_lattice() ||
-            states->bonds().families.nodes().n_owned() == 0)
+        if (!states->brittle() || scene.material.fracture_energy || scene.material.scatter ||
+            !scene.domain.has_lattice() || states->bonds().families.nodes().n_owned() == 0)
           return {};
         const auto [energy, of_ball] = states->breaking().energies_of_first();
         return note_on_stretch(scene, energy, of_ball);

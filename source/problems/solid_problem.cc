@@ -409,11 +409,13 @@ namespace PeriDeal
   void SolidProblem<dim>::make_loading()
   {
     StaticOptions options;
-    options.tolerance      = scene.solver.tolerance;
-    options.max_iterations = scene.solver.most_iterations(scene.elasticity.solver);
-    options.direct_up_to   = scene.solver.direct_up_to;
-    options.multigrid      = scene.elasticity.multigrid;
-    loading                = std::make_unique<SlowLoading>(
+    options.tolerance        = scene.solver.tolerance;
+    options.max_iterations   = scene.solver.most_iterations(scene.elasticity.solver);
+    options.direct_up_to     = scene.solver.direct_up_to;
+    options.multigrid        = scene.elasticity.multigrid;
+    options.breaks_in_motion = scene.elasticity.breaks_in_motion;
+    options.divides_steps    = !scene.warms_slowly(); // the temperature is given at their ends
+    loading                  = std::make_unique<SlowLoading>(
       op(),
       make_static_solver(scene.elasticity.solver_name(), op(), options),
       options);

@@ -84,6 +84,14 @@ namespace PeriDeal
       "",
       "Of `Solver = conjugate gradients`: multigrid on springs between nearest neighbours, or none as published (Le 2014).",
       {"multigrid", "none"});
+    declare(
+      "Breaking",
+      EntryType::choice,
+      "in motion",
+      "",
+      "Of bodies at rest whose bonds break: once the first bonds have broken, the others break in a damped motion from equilibrium to equilibrium; or `at rest`, "
+      "in one equilibrium after the other, in each those whose stretch is at least 0.9 of the largest. Then slow cracks are drawn to the rows of the lattice.",
+      {"in motion", "at rest"});
     parse();
   }
 
@@ -162,6 +170,9 @@ namespace PeriDeal
       error(
         "Contact",
         "found 'true', but faces of cracks bear pressure with 'Kinematics = linear' only, and 'Kinematics' is 'full'. Use 'linear', or leave the entry out.");
+    breaks_in_motion = choice_name("Breaking") == "in motion";
+    if (is_given("Breaking") && !is_static())
+      error("Breaking", "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
     if (has_full_kinematics() && solver == ElasticSolver::linear)
       error(
         "Kinematics",

@@ -77,6 +77,20 @@ namespace PeriDeal
     entry("Critical stretch",
           "",
           "Relative extension at which a bond breaks, instead of Fracture energy" + formula);
+    declare(
+      "Weibull modulus",
+      EntryType::number,
+      "",
+      "1",
+      "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; "
+      "a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.");
+    declare(
+      "Strength seed",
+      EntryType::whole_number,
+      "",
+      "",
+      "With Weibull modulus: which of the possible bodies. The same seed gives the same nodes the "
+      "same numbers, on any number of processes.");
   }
 
 
@@ -138,6 +152,26 @@ namespace PeriDeal
   }
 
 
+  void Material::parse_scatter()
+  {
+    scatter.reset();
+    const bool modulus = is_given("Weibull modulus"), seed = is_given("Strength seed");
+    refuse(
+      modulus && !fracture_energy && !critical_stretch,
+      "Weibull modulus",
+      "is for bonds that break: give 'Fracture energy' or 'Critical stretch', too, or leave it out.");
+    refuse(
+      modulus && !seed,
+      "Strength seed",
+      "is empty, but 'Weibull modulus' is given: give a whole number, so that the body is the same each time.");
+    refuse(seed && !modulus,
+           "Strength seed",
+           "has no effect without 'Weibull modulus': give that one, too, or leave the entry out.");
+    if (modulus)
+      scatter = Scatter{positive_number("Weibull modulus"), whole_number("Strength seed")};
+  }
+
+
   void Material::parse(const Physics                          physics,
                        const unsigned int                     dim,
                        const PlaneState                       plane,
@@ -169,6 +203,7 @@ namespace PeriDeal
     critical_stretch  = optional_property("Critical stretch", physics);
     if (fracture_energy && critical_stretch)
       error("Critical stretch", "'Fracture energy' is given, too: give one of the two.");
+    parse_scatter();
     if (physics == Physics::elasticity)
       parse_moduli(dim, plane);
     else

@@ -22,6 +22,9 @@ namespace PeriDeal
 
   namespace
   {
+    constexpr double most_beyond = 0.02; // the critical stretch before bonds break, over it
+
+
     /** `, the first at (0, 1), beside the side 'top', which is loaded: ...`. */
     std::string where_bonds_broke(const BreakPlaces &places)
     {
@@ -49,6 +52,8 @@ namespace PeriDeal
   {
     for (Vector *v : {&last, &before.change, &unbalanced, &scratch})
       op.initialize_vector(*v);
+    if (options.breaks_in_motion && op.brittle())
+      motion.emplace(op);
   }
 
 
@@ -110,25 +115,39 @@ namespace PeriDeal
   }
 
 
-  void SlowLoading::change_bonds(Vector &u, const double t, const AfterStep &after_round)
+  bool SlowLoading::break_bonds(Vector &u, const double t)
   {
     constexpr double share = 0.9; // of the largest stretch: what breaks at once
+    // What is stretched much too far would break all at once in a motion.
+    const double most  = motion ? op.stretch_over_critical(u) : 0.;
+    const bool   moves = most > 0. && most < shatters;
+    if (op.break_bonds(u, t, share) == 0)
+      return false;
+    if (moves)
+      iterations += motion->run(u, t);
+    return true;
+  }
+
+
+  void SlowLoading::change_bonds(Vector &u, const double t, const AfterStep &after_round)
+  {
     if (!op.may_release_energy())
       return;
     if (!breaking.is_open)
-      breaking = {t, op.energy(u), false, true};
+      breaking = {t, op.energy(u), false, true, breaking.goal, breaking.most};
+    bool grown = op.grow_cracks(u, t);
+    if (grown && motion)
+      motion->operator_changed();
     // Nodes join a zone until none does; only then bonds break.
-    for (bool grown = op.grow_cracks(u, t);
-         grown || op.widen_zone(u) || op.break_bonds(u, t, share) > 0;
-         grown = false)
+    for (scratch = u; grown || op.widen_zone(u) || break_bonds(u, t); grown = false)
       {
         breaking.any = true;
         solver->operator_changed();
-        scratch = u;
         solve(u, t);
         scratch.sadd(-1., 1., u);
         // Supports are at rest.
         const double gain = scratch * work_of_forces.loads(), left = op.energy(u);
+        scratch = u;
         so_far.work += gain;
         so_far.dissipated += breaking.energy + gain - left;
         breaking.energy = left;
@@ -136,6 +155,8 @@ namespace PeriDeal
           after_round(t);
       }
     breaking.is_open = false;
+    if (motion)
+      breaking.most = op.stretch_over_critical(u);
     if (!breaking.any)
       return;
     op.unbalanced(unbalanced, u, t);
@@ -156,9 +177,39 @@ namespace PeriDeal
   }
 
 
+  double SlowLoading::shorten(Vector &u)
+  {
+    constexpr double shortest = 1e-3; // of what is left of the step
+    double           end      = breaking.goal;
+    if (!motion || !options.divides_steps)
+      return end;
+    for (double most = op.stretch_over_critical(u);
+         most > 1. + most_beyond && end - now > shortest * (breaking.goal - now);
+         most = op.stretch_over_critical(u))
+      {
+        // Were it linear in t. It is convex where u is: at most this, then.
+        const double target = 1. + 0.5 * most_beyond;
+        const double part   = (target - breaking.most) / (most - breaking.most);
+        end                 = now + part * (end - now);
+        u.sadd(part, 1. - part, last);
+        solve(u, end);
+      }
+    return end;
+  }
+
+
   void SlowLoading::step(Vector &u, const double t, const AfterStep &after_round)
   {
-    last = u;
+    breaking.goal = t;
+    reach(u);
+    go_on(u, after_round);
+  }
+
+
+  void SlowLoading::reach(Vector &u)
+  {
+    const double t = breaking.goal;
+    last           = u;
     if (before.any)
       {
         size = std::max(size, undeformed_residual(op, u, scratch, unbalanced, t));
@@ -171,26 +222,31 @@ namespace PeriDeal
     else
       size = std::max(size, start_statics(op, u, t, options));
     solve(u, t);
-    op.unbalanced(unbalanced, u, t);
+    const double end = shorten(u);
+    op.unbalanced(unbalanced, u, end);
     before.change = u;
     before.change -= last;
-    so_far.work += work_of_forces.step(last, u, unbalanced, t);
+    so_far.work += work_of_forces.step(last, u, unbalanced, end);
     so_far.exchanged = std::max(so_far.exchanged, so_far.start + std::abs(so_far.work));
-    breaking         = {t, 0., false, false};
-    go_on(u, after_round);
+    breaking         = {end, 0., false, false, t, breaking.most};
   }
 
 
   void SlowLoading::go_on(Vector &u, const AfterStep &after_round)
   {
-    const double t = breaking.time;
-    change_bonds(u, t, after_round);
-    before.change.sadd(-1., 1., u);
-    before.any   = true;
-    before.start = now;
-    now          = t;
+    for (;;)
+      {
+        change_bonds(u, breaking.time, after_round);
+        before.change.sadd(-1., 1., u);
+        before.any   = true;
+        before.start = now;
+        now          = breaking.time;
+        if (now >= breaking.goal)
+          break;
+        reach(u);
+      }
     ++steps;
-    tell_step(t);
+    tell_step(now);
   }
 
 
@@ -212,6 +268,10 @@ namespace PeriDeal
     archive.exchange("energy of breaking", breaking.energy);
     archive.exchange("any broken", breaking.any);
     archive.exchange("breaking", breaking.is_open);
+    archive.exchange("goal of the step", breaking.goal);
+    archive.exchange("stretch over the critical one", breaking.most);
+    if (motion)
+      motion->exchange(archive);
     work_of_forces.exchange(archive, keys);
     solver->exchange(archive);
   }

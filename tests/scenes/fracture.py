@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Bonds that break: strength against Griffith, energies, motion, numbers of processes.
 
-    fracture.py plate | cantilever | block | bend | mesh | motion | steps | ranks
+    fracture.py plate | cantilever | block | bend | mesh | motion | steps | ranks | oblique | scatter
     fracture.py fine_plate | fine_block | fine_motion      the scenes on their own lattices; the others take one of half the cells a side
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
@@ -214,8 +214,65 @@ def ranks():
     check_close([v for row in b for v in row[2:]], [v for row in a for v in row[2:]], relative=1e-9, what="energies on two processes")
 
 
+# Angle of the crack to the rows and the bound of what it turns by, degrees.
+OBLIQUE = ((10, 5), (22.5, 5))
+
+
+def tilted(angle, half=0.3):
+    """The settings of a plate with a crack at an angle (degrees) to the rows of the lattice, pulled straight across it."""
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    pulled = f"0.016*t*({s * s}*x - {s * c}*y), 0.016*t*({c * c}*y - {s * c}*x)"
+    return {"Cracks/Segments": f"{-half * c},{-half * s} ; {half * c},{half * s}",
+            "Boundary conditions/Displacement": "; ".join(f"{side}: {pulled}" for side in ("left", "right", "bottom", "top"))}
+
+
+def turned(run, angle, half=0.3, shown=0.35):
+    """By how many degrees each half of the crack has left its direction: total least squares of the damaged nodes beyond the tip, within 0.45 of it."""
+    import h5py
+    import numpy as np
+
+    with h5py.File(os.path.join(run.folder, run.summary["fields"][-1]["files"][PD])) as file:
+        nodes, damage = file["nodes"][:, :2], file["damage"][:].ravel()
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    turns = []
+    for side in (1, -1):
+        there = side * nodes @ np.array([[c, -s], [s, c]])
+        there = there[(damage > shown) & (there[:, 0] > half + 0.03) & (there[:, 0] < half + 0.45)]
+        check(len(there) > 20 and there[:, 0].max() > half + 0.3, f"the crack at {angle} degrees grows: {len(there)} nodes")
+        along = np.linalg.svd(there - there.mean(0))[2][0]
+        turns.append(math.degrees(math.atan(along[1] / along[0])))
+    return turns
+
+
+def oblique():
+    """A slow crack goes straight on, whatever its angle to the rows; that of `Breaking = at rest` turns to them."""
+    table = Comparison("Slow crack at an angle to the rows, m = 4")
+    shared = {"Output/Fields": "hdf5", "Output/Write at": "0.7", "Time/End time": "0.7"}
+    for angle, bound in OBLIQUE:
+        run = run_scene("prm/fracture/oblique_crack_growth.prm", {**shared, **tilted(angle)})
+        for turn in turned(run, angle):
+            table.add(f"at {angle} degrees: angle to its direction", turn, 0, absolute=bound)
+    table.show()
+
+
+def scatter():
+    """Weibull strength: a bar in tension is the weaker the more its strength scatters, the same on any number of processes and for the same seed alone."""
+    shared = {**COARSE, "Cracks/Segments": "", "Boundary conditions/Displacement": "top: 0, 0.03*t; bottom: 0, -0.03*t", "Material/Strength seed": "1"}
+    shared = {**shared, "Material/Fracture energy": "", "Material/Critical stretch": "0.02"}
+    found = {}
+    for modulus in ("40", "10"):
+        for seed, ranks in (("1", 1), ("1", 2), ("2", 1)):
+            run = run_scene("prm/fracture/centre_crack.prm", {**shared, "Material/Weibull modulus": modulus, "Material/Strength seed": seed}, ranks=ranks)
+            found[modulus, seed, ranks] = strength(run, 1)
+    for modulus in ("40", "10"):
+        check_close(found[modulus, "1", 2], found[modulus, "1", 1], relative=1e-9, what=f"modulus {modulus}: strength on two processes")
+        check(abs(found[modulus, "2", 1] / found[modulus, "1", 1] - 1) > 1e-6, f"modulus {modulus}: another seed, another strength: {found}")
+    check_less(found["10", "1", 1], 0.9 * found["40", "1", 1], "strength at modulus 10 against 40")
+    print(f"strength with scatter: {found}")
+
+
 def main():
-    parts = {function.__name__: function for function in (plate, cantilever, block, bend, mesh, motion, steps, ranks, fine_plate, fine_block, fine_motion)}
+    parts = {function.__name__: function for function in (plate, cantilever, block, bend, mesh, motion, steps, ranks, oblique, scatter, fine_plate, fine_block, fine_motion)}
     for name in sys.argv[1:] or [name for name in parts if not name.startswith("fine")]:
         parts[name]()
     finish()

@@ -6,6 +6,10 @@
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/slow_loading.h>
 
+#include <array>
+#include <cmath>
+#include <map>
+
 #include "elastic_test_tools.h"
 #include "scene_test_tools.h"
 
@@ -216,6 +220,85 @@ namespace PeriDeal
         EXPECT_GT(body.op().n_broken_bonds(), 50u);
         EXPECT_NEAR(loading.energy(u).strain, 0., 1e-10 * most);
       }
+  }
+
+
+  TEST(Damage, StrengthScattersAsWeibullSays)
+  {
+    const auto scattered = [](const std::string &modulus, const std::string &seed) {
+      return Settings{{"Domain/Lower corner", "0, 0"},
+                      {"Domain/Upper corner", "1, 1"},
+                      {"Domain/Cells", "100, 100"},
+                      {"Material/Young modulus", "3"},
+                      {"Material/Poisson ratio", "0.2"},
+                      {"Material/Critical stretch", "0.02*(1 + x)"},
+                      {"Material/Weibull modulus", modulus},
+                      {"Material/Strength seed", seed}};
+    };
+    for (const double modulus : {1.5, 10.})
+      {
+        const Body<2> body(scattered(std::to_string(modulus), "1"), ModelKind::peridynamics);
+        const Body<2> alone(scattered(std::to_string(modulus), "1"),
+                            ModelKind::peridynamics,
+                            MPI_COMM_SELF);
+        const Body<2> other(scattered(std::to_string(modulus), "2"), ModelKind::peridynamics);
+        const auto    factors = [](const Body<2> &of) {
+          std::map<std::array<double, 2>, double> list;
+          const std::vector<double> &found = of.states->breaking().critical_stretches();
+          for (unsigned int i = 0; i < found.size(); ++i) // owned nodes and ghosts
+            list[{{of.nodes->position(i)[0], of.nodes->position(i)[1]}}] =
+              found[i] / (0.02 * (1. + of.nodes->position(i)[0]));
+          return list;
+        };
+        const auto   all = factors(alone), here = factors(body), others = factors(other);
+        unsigned int n_alike = 0;
+        for (const auto &[place, factor] : here)
+          {
+            EXPECT_EQ(factor, all.at(place)); // to the bit, on any number of processes
+            n_alike += factor == others.at(place);
+          }
+        EXPECT_EQ(n_alike, 0u);
+
+        // Mean 1; the modulus by its maximum likelihood, sum x^k ln x / sum x^k - mean ln x = 1/k.
+        const double n   = all.size();
+        double       sum = 0., logs = 0., neighbors = 0.;
+        for (const auto &[place, factor] : all)
+          {
+            sum += factor;
+            logs += std::log(factor) / n;
+          }
+        const auto likelihood = [&](const double k) {
+          double powers = 0., weighted = 0.;
+          for (const auto &[place, factor] : all)
+            {
+              powers += std::pow(factor, k);
+              weighted += std::pow(factor, k) * std::log(factor);
+            }
+          return weighted / powers - logs - 1. / k;
+        };
+        double low = 0.5 * modulus, high = 2. * modulus;
+        while (high - low > 1e-6 * modulus)
+          (likelihood(0.5 * (low + high)) > 0. ? high : low) = 0.5 * (low + high);
+        // Standard deviations of samples: of the modulus 0.78 k/sqrt(n), of the mean that of a value over sqrt(n).
+        const double deviation = std::sqrt(
+          std::tgamma(1. + 2. / modulus) / std::pow(std::tgamma(1. + 1. / modulus), 2) - 1.);
+        EXPECT_NEAR(low / modulus, 1., 3. * 0.78 / std::sqrt(n));
+        EXPECT_NEAR(sum / n, 1., 3. * deviation / std::sqrt(n));
+        // Nodes beside each other know nothing of each other.
+        double before = 0.;
+        for (const auto &[place, factor] : all) // along y
+          {
+            neighbors += (before - 1.) * (factor - 1.) / (n * deviation * deviation);
+            before = factor;
+          }
+        EXPECT_NEAR(neighbors, 0., 3. / std::sqrt(n));
+      }
+    const auto fault_of = [&](const std::string &modulus, const std::string &seed) {
+      return message_of([&] { Body<2>(scattered(modulus, seed), ModelKind::peridynamics); });
+    };
+    expect_parts(fault_of("10", ""), {"Strength seed", "is empty", "Weibull modulus"});
+    expect_parts(fault_of("", "1"), {"Strength seed", "no effect", "Weibull modulus"});
+    expect_parts(fault_of("0", "1"), {"Weibull modulus", "greater than 0"});
   }
 
 

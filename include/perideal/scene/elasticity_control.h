@@ -30,6 +30,7 @@ namespace PeriDeal
     bool          contact               = true;  // faces of cracks bear pressure
     ElasticSolver solver                = ElasticSolver::linear;
     bool          multigrid             = true; // entry `Preconditioner`
+    bool          breaks_in_motion      = true; // bonds of bodies at rest, entry `Breaking`
 
     bool is_bond_based() const
     {
@@ -47,7 +48,7 @@ namespace PeriDeal
 
     /**
      * Throws UserError: a `Micromodulus` of another model than `bond-based`, a `Plane` where there
-     * is none, full kinematics by the linear solver, a temperature change that depends on t or is
+     * is none, full kinematics by the linear solver, `Breaking` of a body in motion, a temperature change that depends on t or is
      * computed for a body in motion, and with another physics any entry that is given.
      */
     void parse(const Physics physics = Physics::elasticity, const unsigned int dim = 2);

@@ -35,6 +35,14 @@ namespace PeriDeal
     std::optional<MaterialProperty> fracture_energy;   // per area; not both
     std::optional<MaterialProperty> critical_stretch;
 
+    /** Of the critical stretch from node to node. */
+    struct Scatter
+    {
+      double       modulus = 0.; // of Weibull's distribution
+      unsigned int seed    = 0;
+    };
+    std::optional<Scatter> scatter;
+
     bool uniform_conductivity() const;
 
     /** rho c at a point. */
@@ -92,6 +100,8 @@ namespace PeriDeal
 
     std::optional<MaterialProperty> optional_property(const std::string &entry,
                                                       const Physics      physics) const;
+
+    void parse_scatter();
 
     void parse_moduli(const unsigned int dim, const PlaneState plane);
 

@@ -3,12 +3,14 @@
 
 #pragma once
 
+#include <perideal/solvers/breaking_motion.h>
 #include <perideal/solvers/findings.h>
 #include <perideal/solvers/static_solver.h>
 #include <perideal/solvers/step_span.h>
 #include <perideal/solvers/work_of_forces.h>
 
 #include <memory>
+#include <optional>
 
 namespace PeriDeal
 {
@@ -40,9 +42,11 @@ namespace PeriDeal
   /**
    * A body under loads that change so slowly that it is always at rest: equilibria at one load
    * after the other, at each of which cracks grow to where they are by then, and bonds break until
-   * none is stretched too far. Of those that are, the most stretched break first, and the others
-   * are asked again in the new equilibrium, so that a large step of the load does not shatter what
-   * a crack would relieve. Vectors are allocated once.
+   * none is stretched too far. A step is divided where loads would stretch bonds by more than a few
+   * percent of the critical stretch beyond it. Of the bonds that are stretched too far the most
+   * stretched break first; what breaks then breaks in a damped motion (BreakingMotion), or, if
+   * that is not wanted or would shatter the body, is asked for again in the new equilibrium. Vectors are
+   * allocated once.
    */
   class SlowLoading
   {
@@ -108,6 +112,8 @@ namespace PeriDeal
     {
       double time = 0., energy = 0.; // of that of the last round
       bool   any = false, is_open = false;
+      double goal = 0.; // the time at which the step ends
+      double most = 0.; // stretch over critical stretch after the last rounds
     };
 
     /** What the last step brought before bonds broke, from which the next one is guessed. */
@@ -118,14 +124,18 @@ namespace PeriDeal
       bool   any   = false;
     };
 
-    void solve(Vector &u, const double t);
-    void change_bonds(Vector &u, const double t, const AfterStep &after_round);
-    void check_inversion(Vector &u, const double t);
+    void   solve(Vector &u, const double t);
+    void   reach(Vector &u);
+    double shorten(Vector &u);
+    bool   break_bonds(Vector &u, const double t);
+    void   change_bonds(Vector &u, const double t, const AfterStep &after_round);
+    void   check_inversion(Vector &u, const double t);
 
     ElasticOperator              &op;
     std::unique_ptr<StaticSolver> solver;
     const StaticOptions           options;
-    Vector                        last; // equilibrium before the step
+    std::optional<BreakingMotion> motion; // where bonds break in one
+    Vector                        last;   // equilibrium before the step
     LastStep                      before;
     Vector                        unbalanced, scratch;
     WorkOfForces                  work_of_forces;

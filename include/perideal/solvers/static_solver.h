@@ -18,6 +18,8 @@ namespace PeriDeal
     unsigned int max_iterations = 1000;
     unsigned int direct_up_to   = 2000; // as of MultigridPreconditioner
     bool         multigrid      = true; // preconditions the conjugate gradients
+    // Of SlowLoading: bonds break in a motion between equilibria; loads are those of any time.
+    bool breaks_in_motion = true, divides_steps = true;
   };
 
 

@@ -8,6 +8,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/laws/kernel.h>
 #include <perideal/operators/solid/bond_breaking.h>
+#include <perideal/operators/solid/weibull_field.h>
 
 #include <algorithm>
 #include <cmath>
@@ -169,6 +170,12 @@ namespace PeriDeal
           message = stretch_fault(!converts, p);
       }
     throw_on_all_if_any(nodes.communicator(), message);
+    if (material.scatter)
+      {
+        const WeibullField<dim> field(nodes, material.scatter->modulus, material.scatter->seed);
+        for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+          stretches.local_element(i) *= field.factor(nodes.position(i));
+      }
     stretches.update_ghost_values();
     critical.assign(stretches.begin(), stretches.begin() + nodes.n_local());
   }
@@ -190,18 +197,18 @@ namespace PeriDeal
 
 
   template <int dim>
-  double BondBreaking<dim>::overstretch(const double                        *u,
-                                        const unsigned int                   i,
-                                        const typename SolidRows<dim>::Bond &bond) const
+  std::pair<double, double> BondBreaking<dim>::stretch_and_limit(
+    const double                        *u,
+    const unsigned int                   i,
+    const typename SolidRows<dim>::Bond &bond) const
   {
     // W x e and W x^2; the same digits at both ends of a bond.
     const BondKinematics<dim> &kinematics = bonds.kinematics;
-    const Tensor<1, dim>       xi    = bonds.families.neighbors().bond_vector(i, bond.neighbor);
-    const double               all   = kinematics.is_full() ? kinematics.length(bond) * xi.norm() :
-                                                              bond.moment * xi;
-    const double               limit = all * std::min(critical[i], critical[bond.neighbor]);
-    const double               found = kinematics.extension_moment(u, i, bond);
-    return found > limit ? found / limit : 0.;
+    const Tensor<1, dim>       xi  = bonds.families.neighbors().bond_vector(i, bond.neighbor);
+    const double               all = kinematics.is_full() ? kinematics.length(bond) * xi.norm() :
+                                                            bond.moment * xi;
+    return {kinematics.extension_moment(u, i, bond),
+            all * std::min(critical[i], critical[bond.neighbor])};
   }
 
 
@@ -215,8 +222,8 @@ namespace PeriDeal
       rows.for_each_stored(i, [&](const auto &bond) {
         if (!state.is_whole(bond.number))
           return;
-        if (const double ratio = overstretch(u, i, bond); ratio > 0.)
-          inside.emplace_back(bond.number, ratio);
+        if (const auto [found, limit] = stretch_and_limit(u, i, bond); found > limit)
+          inside.emplace_back(bond.number, found / limit);
       });
     };
     for (unsigned int i = 0; !screen && i < bonds.families.nodes().n_owned(); ++i)
@@ -229,7 +236,8 @@ namespace PeriDeal
             bool any = false;
             if (screen->may_reach(i, u, least_strain))
               rows.for_each_to_store(i, family, [&](const auto &bond) {
-                any = any || overstretch(u, i, bond) > 0.;
+                const auto [found, limit] = stretch_and_limit(u, i, bond);
+                any                       = any || found > limit;
               });
             if (!any)
               continue;
@@ -262,6 +270,29 @@ namespace PeriDeal
                                  list->end(),
                                  [&](const auto &bond) { return bond.second < at_least; }),
                   list->end());
+  }
+
+
+  template <int dim>
+  double BondBreaking<dim>::stretch_over_critical(const Vector &u)
+  {
+    if (!breaks)
+      return 0.;
+    Assert(!screen, ExcMessage("All bonds are to be stored."));
+    double most = 0.;
+    u.update_ghost_values();
+    for (unsigned int i = 0; i < bonds.families.nodes().n_owned(); ++i)
+      bonds.rows.for_each_stored(i, [&](const auto &bond) {
+        if (!state.is_whole(bond.number))
+          return;
+        if (const auto [found, limit] = stretch_and_limit(u.begin(), i, bond); found > most * limit)
+          most = found / limit;
+      });
+    if (bonds.beyond)
+      for (const auto &[number, ratio] : bonds.beyond->find_overstretched(u.begin(), critical))
+        most = std::max(most, ratio);
+    u.set_ghost_state(false);
+    return Utilities::MPI::max(most, bonds.families.nodes().communicator());
   }
 
 

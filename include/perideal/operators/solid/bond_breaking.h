@@ -57,6 +57,9 @@ namespace PeriDeal
       return losing;
     }
 
+    /** As ElasticOperator::stretch_over_critical(). Collective. */
+    double stretch_over_critical(const Vector &u);
+
     /**
      * What cracks cut as they grow is marked, too. Collective. Throws UserError.
      * @param marked the change has been loaded with the state of the bonds
@@ -135,14 +138,15 @@ namespace PeriDeal
     }
 
   private:
-    void   find_critical_stretches();
-    double overstretch(const double                        *u,
-                       const unsigned int                   i,
-                       const typename SolidRows<dim>::Bond &bond) const; // over 1, or 0
-    void   find_inside(const double *u);
-    void   find_overstretched(const Vector &u, const double share);
-    void   find_losing();
-    void   keep_places(); // of what is overstretched
+    void                      find_critical_stretches();
+    std::pair<double, double> stretch_and_limit(
+      const double                        *u,
+      const unsigned int                   i,
+      const typename SolidRows<dim>::Bond &bond) const; // both times W x^2
+    void find_inside(const double *u);
+    void find_overstretched(const Vector &u, const double share);
+    void find_losing();
+    void keep_places(); // of what is overstretched
 
     /** Returns the number of ends of bonds. */
     unsigned long long break_overstretched(const double t);

@@ -162,6 +162,15 @@ namespace PeriDeal
     }
 
     /**
+     * The largest stretch over critical stretch of unbroken bonds at u, which must have been through
+     * distribute(); 0: none is longer than it was, or none may break. Collective.
+     */
+    virtual double stretch_over_critical(const Vector & /*u*/)
+    {
+      return 0.;
+    }
+
+    /**
      * Make the cracks of the scene those of the span of time between events that holds t: nodes
      * join the zone of a coupling, then bonds and cells are cut. Both give up energy at u, which
      * released_energy() counts. Returns whether K has changed: then its diagonal has, too, and its

@@ -82,6 +82,11 @@ namespace PeriDeal
 
     unsigned long long break_bonds(const Vector &u, double t, double share = 0.) override;
 
+    double stretch_over_critical(const Vector &u) override
+    {
+      return breakage.stretch_over_critical(u);
+    }
+
     const dealii::Point<dim> &position(const unsigned int node) const override
     {
       return solid.families.nodes().position(node);

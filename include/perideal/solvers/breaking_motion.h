@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/operators/solid/elastic_operator.h>
+
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * The motion of a body of density one under loads and supports at rest, in which bonds break as
+   * they do in any motion: at the step at which they are stretched too far. A crack between two
+   * equilibria finds its way so, hardly drawn to the rows of the lattice. (Equilibria after each
+   * break hold it back at each bond, most of all where it would leave a row.) The damping,
+   * proportional to the mass, lets waves die away within some ten horizons; the step is that of
+   * velocity Verlet.
+   */
+  class BreakingMotion
+  {
+  public:
+    /** @param op is referred to. */
+    explicit BreakingMotion(ElasticOperator &op);
+
+    /**
+     * From u at rest, distributed, until no bond has broken for a while. Returns the number of
+     * steps. Collective.
+     */
+    unsigned int run(Vector &u, const double t);
+
+    /** The spectrum of K may have grown. Not collective. */
+    void operator_changed()
+    {
+      step = 0.;
+    }
+
+    /** What the next run depends on. Collective. */
+    void exchange(Archive &archive)
+    {
+      archive.exchange("step of breaking", step);
+    }
+
+  private:
+    void choose_step();
+
+    ElasticOperator          &op;
+    const std::vector<double> inverse_mass;
+    double                    step = 0.; // 0: to be chosen
+    Vector                    velocity, residual;
+  };
+} // namespace PeriDeal
