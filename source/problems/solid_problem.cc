@@ -414,7 +414,7 @@ namespace PeriDeal
     options.direct_up_to     = scene.solver.direct_up_to;
     options.multigrid        = scene.elasticity.multigrid;
     options.breaks_in_motion = scene.elasticity.breaks_in_motion;
-    options.divides_steps    = !scene.warms_slowly(); // the temperature is given at their ends
+    options.divides_steps    = !scene.warms_slowly(); // temperatures are those of their ends
     loading                  = std::make_unique<SlowLoading>(
       op(),
       make_static_solver(scene.elasticity.solver_name(), op(), options),

@@ -29,8 +29,8 @@ namespace PeriDeal
 
   unsigned int BreakingMotion::run(Vector &u, const double t)
   {
-    constexpr double       damping = 0.026; // rate times step; a wave passes a horizon in two steps
-    constexpr unsigned int wait    = 60;    // steps without a break
+    constexpr double       damping = 0.01; // rate times step; a wave passes a horizon in two steps
+    constexpr unsigned int wait    = 60;   // steps without a break
     constexpr double       keep = (2. - damping) / (2. + damping), push = 2. / (2. + damping);
     if (step == 0.)
       choose_step();

@@ -22,7 +22,8 @@ namespace PeriDeal
 
   namespace
   {
-    constexpr double most_beyond = 0.02; // the critical stretch before bonds break, over it
+    // Stretch over critical stretch: more shortens a step; more would shatter a body in motion.
+    constexpr double begins = 1.02, shatters = 1.05;
 
 
     /** `, the first at (0, 1), beside the side 'top', which is loaded: ...`. */
@@ -184,11 +185,11 @@ namespace PeriDeal
     if (!motion || !options.divides_steps)
       return end;
     for (double most = op.stretch_over_critical(u);
-         most > 1. + most_beyond && end - now > shortest * (breaking.goal - now);
+         most > begins && end - now > shortest * (breaking.goal - now);
          most = op.stretch_over_critical(u))
       {
         // Were it linear in t. It is convex where u is: at most this, then.
-        const double target = 1. + 0.5 * most_beyond;
+        const double target = 0.5 * (1. + begins);
         const double part   = (target - breaking.most) / (most - breaking.most);
         end                 = now + part * (end - now);
         u.sadd(part, 1. - part, last);

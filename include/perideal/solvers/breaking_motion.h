@@ -14,8 +14,8 @@ namespace PeriDeal
    * they do in any motion: at the step at which they are stretched too far. A crack between two
    * equilibria finds its way so, hardly drawn to the rows of the lattice. (Equilibria after each
    * break hold it back at each bond, most of all where it would leave a row.) The damping,
-   * proportional to the mass, lets waves die away within some ten horizons; the step is that of
-   * velocity Verlet.
+   * proportional to the mass, halves waves on their way through 70 horizons; what still moves when
+   * the last bond has broken is left to the next equilibrium. The step is that of velocity Verlet.
    */
   class BreakingMotion
   {
