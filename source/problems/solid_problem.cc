@@ -415,10 +415,8 @@ namespace PeriDeal
     options.multigrid        = scene.elasticity.multigrid;
     options.breaks_in_motion = scene.elasticity.breaks_in_motion;
     options.divides_steps    = !scene.warms_slowly(); // temperatures are those of their ends
-    loading                  = std::make_unique<SlowLoading>(
-      op(),
-      make_static_solver(scene.elasticity.solver_name(), op(), options),
-      options);
+    auto solver              = make_static_solver(scene.elasticity.solver_name(), op(), options);
+    loading                  = std::make_unique<SlowLoading>(op(), std::move(solver), options);
     if (scene.guards.goes_on())
       loading->findings().let_wait();
   }

@@ -279,7 +279,8 @@ namespace PeriDeal
         double low = 0.5 * modulus, high = 2. * modulus;
         while (high - low > 1e-6 * modulus)
           (likelihood(0.5 * (low + high)) > 0. ? high : low) = 0.5 * (low + high);
-        // Standard deviations of samples: of the modulus 0.78 k/sqrt(n), of the mean that of a value over sqrt(n).
+        // Standard deviations of samples: of the modulus 0.78 k/sqrt(n), of the mean that of a
+        // value over sqrt(n).
         const double deviation = std::sqrt(
           std::tgamma(1. + 2. / modulus) / std::pow(std::tgamma(1. + 1. / modulus), 2) - 1.);
         EXPECT_NEAR(low / modulus, 1., 3. * 0.78 / std::sqrt(n));

@@ -44,8 +44,8 @@ namespace PeriDeal
    * after the other, at each of which cracks grow to where they are by then, and bonds break until
    * none is stretched too far. A step is divided where loads would stretch bonds by more than a few
    * percent of the critical stretch beyond it. Of the bonds that are stretched too far the most
-   * stretched break first; what breaks then breaks in a damped motion (BreakingMotion), or, if
-   * that is not wanted or would shatter the body, is asked for again in the new equilibrium. Vectors are
+   * stretched break first; what breaks then breaks in a damped motion (BreakingMotion), or, if that
+   * is not wanted or would shatter the body, is asked for again in the new equilibrium. Vectors are
    * allocated once.
    */
   class SlowLoading

@@ -162,8 +162,9 @@ namespace PeriDeal
     }
 
     /**
-     * The largest stretch over critical stretch of unbroken bonds at u, which must have been through
-     * distribute(); 0: none is longer than it was, or none may break. Collective.
+     * The largest stretch over critical stretch of unbroken bonds at u, which must have been
+     * through distribute(); 0: none is longer than it was, none may break, or it is not known, and
+     * bonds of bodies at rest do not break in a motion then. Collective.
      */
     virtual double stretch_over_critical(const Vector & /*u*/)
     {

@@ -10,8 +10,8 @@
 namespace PeriDeal
 {
   /**
-   * Factors of the strength of nodes, drawn from a Weibull distribution of mean 1: with U uniform in
-   * (0, 1) and the modulus k,
+   * Factors of the strength of nodes, drawn from a Weibull distribution of mean 1: with U uniform
+   * in (0, 1) and the modulus k,
    *   (-ln U)^(1/k) / Gamma(1 + 1/k).
    * U follows from a seed and the place of the node alone, so that the field is the same on any
    * number of processes, and nodes are independent of each other.
