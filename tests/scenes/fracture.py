@@ -84,7 +84,7 @@ def cantilever():
     late = [row for row in growth if row[0] > 0.599]
     check(late[-1][1] - late[0][1] > 0.15, f"the crack grows from {late[0][1]} to {late[-1][1]}")
     check(max(b[1] - a[1] for a, b in zip(late, late[1:])) < 0.03, "the crack grows bit by bit")
-    # Measured: 1.20 and 1.14 to 1.23 of the fracture energy, whose roots are 1.095 and 1.07 to 1.11
+    # Measured: 1.14 and, in the mean, 1.12 of the fracture energy, whose roots are 1.07 and 1.06
     # of Griffith's load.
     rate = (late[-1][3] - late[0][3]) / (late[-1][1] - late[0][1])
     table.add("energy dissipated per length over the fracture energy", rate / ENERGY, 1, absolute=0.32)
@@ -215,7 +215,7 @@ def ranks():
 
 
 # Angle of the crack to the rows and the bound of what it turns by, degrees.
-OBLIQUE = ((10, 4), (22.5, 4))
+OBLIQUE = ((10, 2), (22.5, 3.7))  # measured: 1.2 and 2.3; at rest 10 and 13
 
 
 def tilted(angle, half=0.3):

@@ -195,9 +195,13 @@ namespace PeriDeal
                {"Cracks/Segments", "0,0.5 ; 0.25,0.5"},
                {"Boundary conditions/Displacement", "bottom: 0, 0; top: 0, 0.1*sin(t)"}};
     StaticOptions options;
-    options.tolerance = 1e-11;
+    options.tolerance        = 1e-11;
+    options.breaks_in_motion = false;
     for (const char *name : {"linear", "conjugate gradients"})
       {
+        options.breaks_in_motion = !options.breaks_in_motion; // the second time at rest
+        // What bonds release in a motion is wrong by the error of its step: measured 10.5 %.
+        const double  gap = options.breaks_in_motion ? 0.17 : 1e-9;
         const Body<2> body(settings, ModelKind::peridynamics);
         SlowLoading   loading(body.op(), make_static_solver(name, body.op(), options), options);
         Vector        u;
@@ -209,7 +213,7 @@ namespace PeriDeal
             const LoadingEnergy energy = loading.energy(u);
             EXPECT_NEAR(energy.imbalance(), 0., 1e-10 * (energy.work + 1e-6));
             EXPECT_GE(energy.dissipated, last * (1. - 1e-12));
-            EXPECT_GE(energy.dissipated, body.op().released_energy() * (1. - 1e-9));
+            EXPECT_GE(energy.dissipated, body.op().released_energy() * (1. - gap));
             last = energy.dissipated;
             most = std::max(most, energy.strain);
             Vector r;
@@ -232,6 +236,7 @@ namespace PeriDeal
                       {"Material/Young modulus", "3"},
                       {"Material/Poisson ratio", "0.2"},
                       {"Material/Critical stretch", "0.02*(1 + x)"},
+                      {"Boundary conditions/Displacement", "bottom: 0, 0"},
                       {"Material/Weibull modulus", modulus},
                       {"Material/Strength seed", seed}};
     };
