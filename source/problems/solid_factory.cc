@@ -46,6 +46,9 @@ namespace PeriDeal
         none && (material.fracture_energy || material.critical_stretch),
         material.fracture_energy ? "Fracture energy" : "Critical stretch",
         "has no effect: finite elements do not break. Add 'peridynamics' or 'coupled' to 'Models', or leave the entry out.");
+      material.refuse(material.scatter && runs(scene, ModelKind::coupled),
+                      "Weibull modulus",
+                      "is for 'Models = peridynamics', not 'coupled'; leave the entry out.");
       if (bonds)
         return;
       pd.refuse(
